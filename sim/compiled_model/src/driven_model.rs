@@ -13,7 +13,7 @@ use eomgen_sim::ode::{
 
 use crate::audit::{Auditor, Energies, EnergyAndPower, EnergyRoundings};
 use crate::contacts::Contacts;
-use crate::corners::{CornerEnergy, Corners};
+use crate::corners::{CornerEnergy, Corners, TouchingContact};
 use crate::jacobians::{Jacobian, JacobianEvaluator};
 use crate::motion::FrictionChoice;
 use crate::observers::{Observers, Results};
@@ -211,9 +211,12 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         let (given, arrived) = (self.inputs.borrow(), y.to_vec());
         let inputs = [before.0, t].map(|t| given.evaluate(t).into_owned());
         let inputs = [&inputs[0][..], &inputs[1][..]];
-        let Some(energy) = corners.borrow_mut().apply(before, (t, y), inputs) else {
+        let touching = self.touching_contacts((t, y));
+        let mut corners = corners.borrow_mut();
+        let Some(energy) = corners.apply(before, (t, y), inputs, &touching) else {
             return false;
         };
+        drop(corners);
         if let Some(auditor) = &self.auditor {
             let energies = &mut DrivenEnergies(self);
             let CornerEnergy { before, work } = energy;
@@ -222,6 +225,29 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
                 .audit_corner((t, y), (before, work), energies);
         }
         arrived != y
+    }
+
+    /// Returns the contacts at which bodies touch at rest, which act where the rates jump.
+    fn touching_contacts(&self, (t, state): (f64, &[f64])) -> Vec<TouchingContact> {
+        let Some(contacts) = &self.contacts else {
+            return Vec::new();
+        };
+        self.with_contacts(contacts, (t, state), |contacts, own, inputs| {
+            contacts.touching_contacts(own, Point { t, state, inputs })
+        })
+    }
+
+    /// Releases surfaces and decides contacts after a jump of the rates where energies or inputs jump.
+    fn decide_contacts_after_jump(&self, (t, state): (f64, &[f64])) {
+        if let Some(sliding) = &self.sliding {
+            let inputs = &self.inputs.borrow().evaluate(t);
+            sliding.borrow_mut().release_moved((t, state), inputs);
+        }
+        if let Some(contacts) = &self.contacts {
+            self.with_contacts(contacts, (t, state), |contacts, own, inputs| {
+                contacts.decide_after_jump(own, Point { t, state, inputs });
+            });
+        }
     }
 
     /// Returns cause and cure if the motion stopped because bodies overlap or at a corner.
@@ -631,17 +657,22 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
                 contacts.borrow_mut().offset_for_projection((t, y));
             }
             if let Some(auditor) = self.auditor.as_ref().filter(|_| jumps) {
-                let energies = &mut DrivenEnergies(self);
+                let energies = &mut EnergiesBeforeCorner(DrivenEnergies(self));
                 let states = (&arrived[..], &*y);
                 auditor.borrow_mut().audit_impact(t, states, work, energies);
             }
         }
-        jumps |= self.apply_corner(before, t, y);
+        let has_corner = self.apply_corner(before, t, y);
+        jumps |= has_corner;
+        let sliding = self.sliding.as_ref();
+        let others = sliding.map(|sliding| sliding.borrow_mut().release_other_sides());
+        if has_corner {
+            self.decide_contacts_after_jump((t, y));
+        }
         let has_changed = self.update_closed_contacts();
-        if let Some(sliding) = &self.sliding {
+        if let Some((sliding, others)) = sliding.zip(others) {
             let inputs = &self.inputs.borrow().evaluate(t);
             let mut states = sliding.borrow_mut();
-            let others = states.release_other_sides();
             // Rates that jump over a surface do not arrive on it.
             if !jumps {
                 states.apply_crossing(inputs, before, t, y);
@@ -662,9 +693,12 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         };
         let inputs = self.inputs_around(t);
         let around = [&inputs[0][..], &inputs[1][..]];
-        let Some(energy) = corners.borrow_mut().apply_input_jump((t, y), around) else {
+        let touching = self.touching_contacts((t, y));
+        let mut corners = corners.borrow_mut();
+        let Some(energy) = corners.apply_input_jump((t, y), around, &touching) else {
             return false;
         };
+        drop(corners);
         if let Some(auditor) = &self.auditor {
             let energies = &mut DrivenEnergies(self);
             let CornerEnergy { before, work } = energy;
@@ -672,9 +706,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
                 .borrow_mut()
                 .audit_corner_between_steps((t, y), (before, work), energies);
         }
-        if let Some(sliding) = &self.sliding {
-            sliding.borrow_mut().release_moved((t, y), &inputs[1]);
-        }
+        self.decide_contacts_after_jump((t, y));
         true
     }
 
@@ -871,6 +903,30 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Energies for DrivenEn
             });
         }
         bounds
+    }
+}
+
+/// Energies of a motion of the model just before the energies jump, if they do at the same instant.
+struct EnergiesBeforeCorner<'m, E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>>(
+    DrivenEnergies<'m, E, I>,
+);
+
+impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Energies
+    for EnergiesBeforeCorner<'_, E, I>
+{
+    fn evaluate(&mut self, at: (f64, &[f64])) -> EnergyAndPower {
+        let model = self.0.0;
+        let mut found = self.0.evaluate(at);
+        if let Some(corners) = &model.corners {
+            let inputs = &model.inputs.borrow().evaluate(at.0);
+            let energy = corners.borrow_mut().energy(at, inputs);
+            found.energy = energy.unwrap_or(found.energy);
+        }
+        found
+    }
+
+    fn bound_roundings(&mut self, at: (f64, &[f64])) -> EnergyAndPower {
+        self.0.bound_roundings(at)
     }
 }
 

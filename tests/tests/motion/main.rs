@@ -10,6 +10,7 @@ mod continued_controllers;
 mod controller_library;
 mod controllers;
 mod corners;
+mod corners_at_contacts;
 mod drawn_motion;
 mod energy_audit;
 mod event_log;

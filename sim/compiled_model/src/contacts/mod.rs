@@ -14,6 +14,7 @@ mod drift;
 mod drift_correction;
 mod friction;
 mod impulses;
+mod jump;
 mod power;
 mod redundant;
 mod sequence;
@@ -404,10 +405,7 @@ impl Contacts {
         self.open_since.fill(point.t);
         own.impacts(point, &mut self.at);
         self.note_sizes(point.state);
-        let rates = self.rate_magnitudes(own, point.state);
-        let small: Vec<f64> = (0..self.at.len())
-            .map(|place| ROUNDING * self.rate_size(place, &rates))
-            .collect();
+        let small = self.rate_roundings(own, point.state);
         let touches = |place: &usize| self.at[*place].distance <= ROUNDING * self.sizes[*place];
         let touching: Vec<usize> = (0..self.at.len())
             .filter(|place| touches(place) || self.closed.contains(place))
@@ -418,13 +416,7 @@ impl Contacts {
             .filter(|place| is_still(place) || self.closed.contains(place))
             .collect();
         self.offset_distances(&touching);
-        match self.has_friction() {
-            false => self.close(own, &still, (point, point)),
-            true => {
-                let started = self.start_resting(own, point, (&still, &small));
-                self.note_forces(started);
-            }
-        }
+        self.close_still(own, point, (&still, &small));
     }
 
     /// Notes that the motion ends if there are no contact forces.

@@ -11,6 +11,21 @@ const ENERGY_ROUNDING: f64 = 1e-13;
 /// Largest remainder of a dependent row of the constraints, relative to its length.
 const MAX_DEPENDENT_REMAINDER: f64 = 1e-9;
 
+/// Number of changes of the contacts that act. Two contacts need at most three.
+const MAX_CONTACT_CHANGES: usize = 64;
+
+/// Largest pull of a contact, and speed into it, that count as rounding, relative to the motion.
+const CONTACT_ROUNDING: f64 = 1e-9;
+
+/// Contact at which bodies touch at rest: it acts during the jump if it pushes.
+#[derive(Clone, Debug)]
+pub(crate) struct TouchingContact {
+    /// Rate of the distance at zero rates of the coordinates.
+    pub drift: f64,
+    /// Derivatives of the distance by the coordinates.
+    pub row: DVector<f64>,
+}
+
 /// Model with given sides of its surfaces, at a position and time.
 pub(super) struct SidedPoint<'e> {
     pub evaluator: &'e mut Evaluator,
@@ -18,6 +33,9 @@ pub(super) struct SidedPoint<'e> {
     pub state: Vec<f64>,
     /// Inputs of the model, then the sides.
     pub inputs: Vec<f64>,
+    pub contacts: &'e [TouchingContact],
+    /// True for the contacts that act.
+    pub acts: Vec<bool>,
 }
 
 impl SidedPoint<'_> {
@@ -52,10 +70,17 @@ impl SidedPoint<'_> {
         mass.clone().cholesky()?;
         let rates = self.rates();
         let momenta = DVector::from_column_slice(&values.momenta);
-        let rows = independent_constraints(&values, &mass);
+        let constraints = values.constraints.iter().map(|(rate, row)| {
+            let row = DVector::from_column_slice(row);
+            (None, rate - row.dot(&rates), row)
+        });
+        let acting = self.contacts.iter().zip(&self.acts).enumerate();
+        let acting = acting.filter(|(_, (_, acts))| **acts);
+        let acting =
+            acting.map(|(place, (contact, _))| (Some(place), contact.drift, contact.row.clone()));
+        let rows = independent_rows(constraints.chain(acting).collect(), &mass);
         let count = rows.len();
-        let constraints = DMatrix::from_fn(count, degrees, |row, column| rows[row].1[column]);
-        let all = DVector::from_iterator(count, rows.iter().map(|row| row.0));
+        let constraints = DMatrix::from_fn(count, degrees, |row, column| rows[row].2[column]);
         let mut matrix = DMatrix::zeros(degrees + count, degrees + count);
         matrix.view_mut((0, 0), (degrees, degrees)).copy_from(&mass);
         let below = &mut matrix.view_mut((degrees, 0), (count, degrees));
@@ -63,21 +88,80 @@ impl SidedPoint<'_> {
         let beside = &mut matrix.view_mut((0, degrees), (degrees, count));
         beside.copy_from(&(-constraints.transpose()));
         Some(Balance {
-            constant_momenta: momenta - mass * &rates,
-            drift: all - constraints * &rates,
+            constant_momenta: momenta - &mass * &rates,
+            drift: DVector::from_iterator(count, rows.iter().map(|row| row.1)),
+            contacts: rows.iter().map(|row| row.0).collect(),
             matrix: matrix.lu(),
+            mass,
             values,
         })
     }
+
+    /// Marks the contacts that act at the arrival: those that do not part.
+    pub(super) fn mark_resting(&mut self) -> Option<()> {
+        let rates = self.rates();
+        let measure = ContactMeasure::new(&self.balance()?.mass, &[&rates])?;
+        let parts = |contact| measure.rate(contact, &rates) > CONTACT_ROUNDING;
+        self.acts = self
+            .contacts
+            .iter()
+            .map(|contact| !parts(contact))
+            .collect();
+        Some(())
+    }
+
+    /// Returns a contact that pulls, or into which bodies move, after a jump from the rates `before`.
+    fn find_contradiction(&self, before: &DVector<f64>, jump: &Jump) -> Option<Option<usize>> {
+        let after = self.rates();
+        let measure = ContactMeasure::new(&jump.mass, &[before, &after])?;
+        let contradicts = |place: &usize| {
+            let contact = &self.contacts[*place];
+            match self.acts[*place] {
+                true => measure.impulse(contact, jump.impulse_at(*place)) < -CONTACT_ROUNDING,
+                false => measure.rate(contact, &after) < -CONTACT_ROUNDING,
+            }
+        };
+        Some((0..self.contacts.len()).find(contradicts))
+    }
 }
 
-/// Returns the rates of the constraints with their rows, without those that depend on the others.
-fn independent_constraints<'v>(
-    values: &'v CornerValues,
-    mass: &DMatrix<f64>,
-) -> Vec<&'v (f64, Vec<f64>)> {
+/// Rates and impulses of contacts relative to the motion, in the norm of the kinetic energy.
+struct ContactMeasure {
+    inverse: nalgebra::Cholesky<f64, nalgebra::Dyn>,
+    /// Largest length of the rates.
+    size: f64,
+}
+
+impl ContactMeasure {
+    fn new(mass: &DMatrix<f64>, rates: &[&DVector<f64>]) -> Option<Self> {
+        let lengths = rates.iter().map(|rates| rates.dot(&(mass * *rates)).sqrt());
+        Some(Self {
+            inverse: mass.clone().cholesky()?,
+            size: lengths.fold(f64::MIN_POSITIVE, f64::max),
+        })
+    }
+
+    /// Returns the length of the row of a contact.
+    fn length(&self, contact: &TouchingContact) -> f64 {
+        contact.row.dot(&self.inverse.solve(&contact.row)).sqrt()
+    }
+
+    fn rate(&self, contact: &TouchingContact, rates: &DVector<f64>) -> f64 {
+        (contact.drift + contact.row.dot(rates)) / (self.length(contact) * self.size)
+    }
+
+    fn impulse(&self, contact: &TouchingContact, impulse: f64) -> f64 {
+        impulse * self.length(contact) / self.size
+    }
+}
+
+/// Row of a constraint or contact: its contact, its rate at zero rates, its derivatives by the coordinates.
+type Row = (Option<usize>, f64, DVector<f64>);
+
+/// Returns the rows without those that depend on the others.
+fn independent_rows(rows: Vec<Row>, mass: &DMatrix<f64>) -> Vec<Row> {
     let inertia = mass.diagonal();
-    let scaled = values.constraints.iter().map(|(_, row)| {
+    let scaled = rows.iter().map(|(_, _, row)| {
         let entries = row.iter().zip(inertia.iter());
         let mut scaled: Vec<f64> = entries.map(|(entry, mass)| entry / mass.sqrt()).collect();
         let length = norm(&scaled);
@@ -85,30 +169,43 @@ fn independent_constraints<'v>(
         scaled
     });
     let dependent = dependent_rows(&scaled.collect::<Vec<_>>(), MAX_DEPENDENT_REMAINDER);
-    let places = (0..values.constraints.len()).filter(|place| !dependent.contains(place));
-    places.map(|place| &values.constraints[place]).collect()
+    let places = rows.into_iter().enumerate();
+    let independent = places.filter(|(place, _)| !dependent.contains(place));
+    independent.map(|(_, row)| row).collect()
 }
 
-/// Equations M q' - A^T mu = p - b, A q' = -a_t for the rates at given momenta.
+/// Equations M q' - A^T mu = p - b, A q' = -a_t for the rates at given momenta. A has the rows of the constraints and of
+/// the contacts that act.
 pub(super) struct Balance {
     pub values: CornerValues,
+    mass: DMatrix<f64>,
     /// Momenta b at zero rates.
     constant_momenta: DVector<f64>,
     /// Rates a_t of the constraints at zero rates of the coordinates.
     drift: DVector<f64>,
+    /// Contact of each row.
+    contacts: Vec<Option<usize>>,
     matrix: nalgebra::LU<f64, nalgebra::Dyn, nalgebra::Dyn>,
 }
 
 impl Balance {
-    /// Returns the rates at these momenta, and the work of the constraints' impulses by time.
-    pub(super) fn rates_at(&self, momenta: &DVector<f64>) -> Option<(DVector<f64>, f64)> {
-        let (rates, impulses) = self.solve(&(momenta - &self.constant_momenta), &-&self.drift)?;
-        Some((rates, impulses.dot(&self.drift)))
+    /// Returns the rates at these momenta, and the impulses of the rows.
+    pub(super) fn rates_at(&self, momenta: &DVector<f64>) -> Option<(DVector<f64>, DVector<f64>)> {
+        self.solve(&(momenta - &self.constant_momenta), &-&self.drift)
     }
 
-    /// Returns the change of the rates by a unit impulse along a row.
-    pub(super) fn column(&self, row: &DVector<f64>) -> Option<DVector<f64>> {
-        Some(self.solve(row, &DVector::zeros(self.drift.len()))?.0)
+    /// Returns the changes of the rates and of the impulses of the rows by a unit impulse along a row.
+    pub(super) fn column(&self, row: &DVector<f64>) -> Option<(DVector<f64>, DVector<f64>)> {
+        self.solve(row, &DVector::zeros(self.drift.len()))
+    }
+
+    fn jump(self, passage: Passage, impulses: DVector<f64>) -> Jump {
+        Jump {
+            passage,
+            impulses,
+            contacts: self.contacts,
+            mass: self.mass,
+        }
     }
 
     fn solve(
@@ -136,32 +233,90 @@ pub(super) enum Passage {
     Returned,
 }
 
-/// Applies the corner conditions at the surface `place` to the rates of a point, whose side there changes to
+/// Jump of the rates at a surface.
+struct Jump {
+    passage: Passage,
+    /// Impulse of each row.
+    impulses: DVector<f64>,
+    /// Contact of each row.
+    contacts: Vec<Option<usize>>,
+    mass: DMatrix<f64>,
+}
+
+impl Jump {
+    fn impulse_at(&self, contact: usize) -> f64 {
+        let mut rows = self.contacts.iter().zip(&self.impulses);
+        let found = rows.find(|(own, _)| **own == Some(contact));
+        found.map_or(0.0, |(_, impulse)| *impulse)
+    }
+}
+
+/// Applies the corner conditions at the surface `place`, with the contacts that push and do not pull. `None` if the rates
+/// do not follow from the momenta beyond, or no choice of contacts is free of contradiction.
+pub(super) fn pass(point: &mut SidedPoint<'_>, place: usize, side: f64) -> Option<Passage> {
+    let jump = apply_with_contacts(point, |point| cross(point, place, side))?;
+    Some(jump.passage)
+}
+
+/// Changes the rates for given momenta, with the contacts that push and do not pull.
+pub(super) fn keep_momenta(point: &mut SidedPoint<'_>, momenta: &DVector<f64>) -> Option<()> {
+    apply_with_contacts(point, |point| {
+        let balance = point.balance()?;
+        let (rates, impulses) = balance.rates_at(momenta)?;
+        point.set_rates(&rates);
+        Some(balance.jump(Passage::Transmitted, impulses))
+    })?;
+    Some(())
+}
+
+/// Applies a jump, and lets contacts act or part until none pulls and bodies move into none (least index first, as in
+/// K. G. Murty's method for complementarity problems, which is finite).
+fn apply_with_contacts(
+    point: &mut SidedPoint<'_>,
+    mut apply: impl FnMut(&mut SidedPoint<'_>) -> Option<Jump>,
+) -> Option<Jump> {
+    point.mark_resting()?;
+    let (state, inputs, before) = (point.state.clone(), point.inputs.clone(), point.rates());
+    for _ in 0..=MAX_CONTACT_CHANGES {
+        let jump = apply(point)?;
+        let Some(place) = point.find_contradiction(&before, &jump)? else {
+            return Some(jump);
+        };
+        point.acts[place] = !point.acts[place];
+        point.state.clone_from(&state);
+        point.inputs.clone_from(&inputs);
+    }
+    None
+}
+
+/// Applies the corner conditions at the surface `place`, with the contacts that act, to the rates of a point, whose side there changes to
 /// `side` if the motion passes. `None` if the rates do not follow from the momenta beyond.
 ///
 /// With the rates v0 at unchanged momenta, D = dv/dlambda and a = dg/dq D, the energy balance is
 /// c + r lambda + a lambda^2/2 = 0, where r is the rate of g at v0 and c the change of H there. The rate of g
 /// at the solutions is +-sqrt(r^2 - 2 a c); beyond the surface it keeps its sign.
-pub(super) fn pass(point: &mut SidedPoint<'_>, place: usize, side: f64) -> Option<Passage> {
+fn cross(point: &mut SidedPoint<'_>, place: usize, side: f64) -> Option<Jump> {
     let first_side = point.inputs.len() - sides(point.evaluator);
     let direction = if side > 0.0 { 1.0 } else { -1.0 };
     let near = point.balance()?;
     let (arrival, row) = &near.values.surfaces[place];
     let row = DVector::from_column_slice(row);
     if direction * arrival <= 0.0 {
-        return Some(Passage::Returned);
+        let none = DVector::zeros(near.drift.len());
+        return Some(near.jump(Passage::Returned, none));
     }
     let rates = point.rates();
     let own_rate = arrival - row.dot(&rates);
     let old_side = std::mem::replace(&mut point.inputs[first_side + place], side);
     let far = point.balance()?;
     let momenta = DVector::from_column_slice(&near.values.momenta);
-    let (free, work) = far.rates_at(&momenta)?;
-    let column = far.column(&row)?;
+    let (free, impulses) = far.rates_at(&momenta)?;
+    let work = impulses.dot(&far.drift);
+    let (column, reactions) = far.column(&row)?;
     let yielding = row.dot(&column);
     point.set_rates(&free);
     if yielding <= 0.0 {
-        return Some(Passage::Transmitted);
+        return Some(far.jump(Passage::Transmitted, impulses));
     }
     let (before, after) = (near.values.hamiltonian, point.values()?.hamiltonian);
     let mut excess = after - before + work;
@@ -178,12 +333,13 @@ pub(super) fn pass(point: &mut SidedPoint<'_>, place: usize, side: f64) -> Optio
             false => (beyond - rate) / yielding,
         };
         point.set_rates(&(free + column * impulse));
-        return Some(Passage::Transmitted);
+        return Some(far.jump(Passage::Transmitted, impulses + reactions * impulse));
     }
     point.inputs[first_side + place] = old_side;
-    let column = near.column(&row)?;
-    point.set_rates(&(&rates - &column * (2.0 * arrival / row.dot(&column))));
-    Some(Passage::Returned)
+    let (column, reactions) = near.column(&row)?;
+    let impulse = -2.0 * arrival / row.dot(&column);
+    point.set_rates(&(&rates + &column * impulse));
+    Some(near.jump(Passage::Returned, reactions * impulse))
 }
 
 /// Returns the number of sides among the inputs of a program.

@@ -7,7 +7,8 @@
 mod law;
 
 use eomgen_codegen::program::evaluator::{CornerValues, Evaluator, Point};
-use law::{SidedPoint, pass, sides};
+pub(crate) use law::TouchingContact;
+use law::{SidedPoint, keep_momenta, pass, sides};
 use nalgebra::DVector;
 
 /// Maximum number of surfaces that are crossed at one instant.
@@ -77,6 +78,16 @@ impl Corners {
         }
     }
 
+    /// Returns the energy of a state on the sides on which the motion was last, J.
+    pub fn energy(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Option<f64> {
+        let functions = self.functions(at, inputs);
+        let known = self.sides.iter().zip(functions);
+        let sides: Vec<f64> = known
+            .map(|(side, function)| side.or(side_of(function)).unwrap_or(0.0))
+            .collect();
+        Some(self.point(at, inputs, &sides).values()?.energy)
+    }
+
     /// Changes the rates of a state just beyond surfaces; `before` is on their near side. A motion that
     /// returns gets a position on the near side. Returns the energies if the motion has a corner.
     pub fn apply(
@@ -84,6 +95,7 @@ impl Corners {
         (t_before, before): (f64, &[f64]),
         (t, state): (f64, &mut [f64]),
         [inputs_before, inputs]: [&[f64]; 2],
+        contacts: &[TouchingContact],
     ) -> Option<CornerEnergy> {
         self.failure = None;
         let near = self.functions((t_before, before), inputs_before);
@@ -103,11 +115,13 @@ impl Corners {
         if crossed.is_empty() {
             return None;
         }
-        match self.find_outcome((t, state), inputs, (&from, &to, &crossed)) {
+        match self.find_outcome((t, state), inputs, (&from, &to, &crossed), contacts) {
             Ok(outcome) => {
-                let energy = self.energies((t, state), inputs, (&from, &crossed), &outcome);
+                let energy =
+                    self.energies((t, state), inputs, (&from, &crossed), &outcome, contacts);
                 state.copy_from_slice(&outcome.state);
-                self.return_to_sides((t, state), inputs, (&outcome.sides, &crossed));
+                let sides = &outcome.sides;
+                self.return_to_sides((t, state), inputs, (sides, &crossed), contacts);
                 for place in crossed {
                     let side = outcome.sides[place];
                     self.sides[place] = Some(side);
@@ -128,6 +142,7 @@ impl Corners {
         &mut self,
         (t, state): (f64, &mut [f64]),
         [inputs_before, inputs]: [&[f64]; 2],
+        contacts: &[TouchingContact],
     ) -> Option<CornerEnergy> {
         if inputs_before == inputs {
             return None;
@@ -158,8 +173,12 @@ impl Corners {
         {
             return None;
         }
-        let (rates, _) = balance.rates_at(&momenta)?;
-        far.set_rates(&rates);
+        far.contacts = contacts;
+        if keep_momenta(&mut far, &momenta).is_none() {
+            self.failure = Some(singular(t));
+            state.fill(f64::NAN);
+            return None;
+        }
         let after = far.values()?.energy;
         state.copy_from_slice(&far.state);
         Some(CornerEnergy {
@@ -174,6 +193,7 @@ impl Corners {
         (t, state): (f64, &[f64]),
         inputs: &[f64],
         (from, to, crossed): (&[f64], &[f64], &[usize]),
+        contacts: &[TouchingContact],
     ) -> Result<Outcome, String> {
         if crossed.len() > MAX_COINCIDENT {
             return Err(format!(
@@ -184,6 +204,7 @@ impl Corners {
         let mut found: Option<Outcome> = None;
         for order in permutations(crossed) {
             let mut point = self.point((t, state), inputs, from);
+            point.contacts = contacts;
             for place in order {
                 pass(&mut point, place, to[place]).ok_or_else(|| singular(t))?;
             }
@@ -211,6 +232,7 @@ impl Corners {
         inputs: &[f64],
         (from, crossed): (&[f64], &[usize]),
         outcome: &Outcome,
+        contacts: &[TouchingContact],
     ) -> Option<CornerEnergy> {
         let near = self.point(at, inputs, from).values()?;
         let far = self
@@ -226,6 +248,7 @@ impl Corners {
         let moves = speed(&near, at.1)
             .iter()
             .chain(&speed(&far, &outcome.state))
+            .chain(contacts.iter().map(|contact| &contact.drift))
             .any(|own| own.abs() > 0.0);
         let change = far.energy - near.energy;
         let work = match moves {
@@ -244,6 +267,7 @@ impl Corners {
         (t, state): (f64, &mut [f64]),
         inputs: &[f64],
         (sides, crossed): (&[f64], &[usize]),
+        contacts: &[TouchingContact],
     ) {
         let degrees = self.evaluator.program().degrees_of_freedom();
         for place in crossed {
@@ -253,11 +277,12 @@ impl Corners {
                 continue;
             }
             let mut point = self.point((t, state), inputs, sides);
-            let Some(balance) = point.balance() else {
+            point.contacts = contacts;
+            let Some(balance) = point.mark_resting().and_then(|()| point.balance()) else {
                 return;
             };
             let row = DVector::from_column_slice(&balance.values.surfaces[*place].1);
-            let Some(column) = balance.column(&row) else {
+            let Some((column, _)) = balance.column(&row) else {
                 return;
             };
             let terms = row
@@ -294,6 +319,8 @@ impl Corners {
             t,
             state: state.to_vec(),
             inputs: [inputs, sides].concat(),
+            contacts: &[],
+            acts: Vec::new(),
         }
     }
 

@@ -120,6 +120,13 @@ impl SurfaceStates {
                 *place = SurfaceState::Free;
             }
         }
+        for disc in &mut self.discs {
+            let has_moved = norm(disc.velocity(&functions)) > norm(disc.velocity(&allowed));
+            if has_moved && disc.is_holding() {
+                disc.state = DiscState::Sliding;
+            }
+            disc.follow(&functions);
+        }
         self.known = KnownSides::Nothing;
     }
 

@@ -1,0 +1,71 @@
+//! Contacts at a jump of the rates that no contact causes, as where energies or inputs jump.
+
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use nalgebra::DVector;
+
+use super::{Contacts, ROUNDING};
+use crate::corners::TouchingContact;
+
+impl Contacts {
+    /// Returns the contacts at which bodies touch at rest.
+    pub fn touching_contacts(
+        &mut self,
+        own: &mut Evaluator,
+        point: Point<'_>,
+    ) -> Vec<TouchingContact> {
+        let resting = self.resting();
+        if resting.is_empty() {
+            return Vec::new();
+        }
+        own.impacts(point, &mut self.at);
+        let degrees = own.program().degrees_of_freedom();
+        let rates = DVector::from_column_slice(&point.state[degrees..2 * degrees]);
+        let touching = resting.iter().map(|place| {
+            let row = DVector::from_column_slice(&self.at[*place].row);
+            let drift = self.at[*place].rate - row.dot(&rates);
+            TouchingContact { drift, row }
+        });
+        touching.collect()
+    }
+
+    /// Decides the contacts at rest anew, at a point after a jump: those that the jump parts open, and the others take
+    /// the directions of their new slips.
+    pub fn decide_after_jump(&mut self, own: &mut Evaluator, point: Point<'_>) {
+        let touching = self.resting();
+        if touching.is_empty() {
+            return;
+        }
+        self.note_closed_until(point.t);
+        own.impacts(point, &mut self.at);
+        let small = self.rate_roundings(own, point.state);
+        let is_still = |place: &usize| self.at[*place].rate.abs() <= small[*place];
+        let still: Vec<usize> = touching.iter().copied().filter(is_still).collect();
+        self.closed.clear();
+        self.redundant.clear();
+        self.offset_by_rounding(&touching, (point.t, point.state));
+        self.close_still(own, point, (&still, &small));
+    }
+
+    /// Returns the rates of the distances that count as zero.
+    pub(super) fn rate_roundings(&self, own: &Evaluator, state: &[f64]) -> Vec<f64> {
+        let rates = self.rate_magnitudes(own, state);
+        let sizes = (0..self.at.len()).map(|place| self.rate_size(place, &rates));
+        sizes.map(|size| ROUNDING * size).collect()
+    }
+
+    /// Closes those of the contacts that touch at rest which push. Slips up to the `small` rates of each contact are zero.
+    pub(super) fn close_still(
+        &mut self,
+        own: &mut Evaluator,
+        point: Point<'_>,
+        (still, small): (&[usize], &[f64]),
+    ) {
+        match self.has_friction() {
+            false => self.close(own, still, (point, point)),
+            true => {
+                let started = self.start_resting(own, point, (still, small));
+                self.note_forces(started);
+            }
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! Jumps of energies of machines with closed contacts and with friction that holds: closed forms.
+
+use eomgen_compiled_model::{CompiledModel, Orders, Request, Solver};
+
+const SOLVERS: [Solver; 2] = [Solver::Rk, Solver::Radau];
+
+/// Body of 1 kg under 10 m/s^2 with the coordinates x and y.
+fn body(parameters: &str, start: f64, potential: &str, contacts: &str) -> String {
+    format!(
+        r#"
+[model]
+name = "body"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+g = {{ value = 10, unit = "m/s^2" }}
+a = {{ value = 1, unit = "m" }}
+{parameters}
+[coordinates]
+x = {{ unit = "m", initial_rate = {start:?} }}
+y = {{ unit = "m" }}
+[kinetic]
+t = "1/2*m*(dot(x)^2 + dot(y)^2)"
+[potential]
+weight = "m*g*y"
+step = "{potential}"
+[impacts]
+{contacts}
+"#
+    )
+}
+
+/// Body on a base that starts to move along `base` with V at 0.5 s.
+fn on_moving_base(speed: f64, base: &str, rest: &str) -> String {
+    format!(
+        r#"
+[model]
+name = "on_base"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+g = {{ value = 10, unit = "m/s^2" }}
+F = {{ value = 2, unit = "N" }}
+V = {{ value = {speed:?}, unit = "m/s" }}
+t_1 = {{ value = 0.5, unit = "s" }}
+[coordinates]
+x = {{ unit = "m" }}
+y = {{ unit = "m" }}
+[definitions]
+{base} = "{place} + V*max(t - t_1, 0)"
+{rest}
+"#,
+        place = if base == "X" { "x" } else { "y" }
+    )
+}
+
+/// Simulates with the energy audit, which must find nothing, and returns the last state.
+fn end(text: &str, until: f64, solver: Solver) -> Vec<f64> {
+    let model = CompiledModel::from_text("machine.toml", text, Orders::Declared)
+        .unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let run = model.with_declared_parameters().expect("an instance");
+    let request = Request {
+        initial: run.initial_state(),
+        times: &[0.0, until],
+        inputs: &run.default_inputs(),
+        solver,
+        tolerance: 1e-11,
+        max_step: f64::INFINITY,
+        audit: true,
+    };
+    let motion = run.simulate_until_stop(&request, &mut |_| {});
+    let motion = motion.and_then(|motion| motion.into_complete());
+    let motion = motion.unwrap_or_else(|error| panic!("{solver}: {error}\n{text}"));
+    let audit = motion.audit.as_ref().expect("an audit");
+    assert_eq!(audit.fault_count, 0, "{audit:?}\n{text}");
+    motion.trajectory.states.last().expect("a sample").clone()
+}
+
+#[test]
+fn friction_of_a_contact_follows_the_slip_that_a_step_reverses() {
+    let step = "U = { value = 9, unit = \"J\" }";
+    for friction in ["0.2", "0.4"] {
+        let contact = format!(
+            "floor = {{ when = \"y\", restitution = 0.3, friction = {friction}, slip = \"dot(x)\" }}"
+        );
+        let mu: f64 = friction.parse().expect("a number");
+        for solver in SOLVERS {
+            let found = end(&body(step, 4.0, "U*above(x - a)", &contact), 2.5, solver);
+            // The energy at the step, 8 J less the friction over 1 m, is lost over the way back.
+            let expected = 1.0 - (8.0 - 10.0 * mu) / (10.0 * mu);
+            assert!((found[0] - expected).abs() < 1e-8, "{solver:?}: {found:?}");
+            assert_eq!(found[2], 0.0, "{solver:?}");
+        }
+    }
+}
+
+#[test]
+fn body_that_friction_holds_slips_after_its_base_starts() {
+    let kinetic =
+        "[kinetic]\nt = \"1/2*m*(dot(X)^2 + dot(y)^2)\"\n[potential]\nweight = \"m*g*y\"\n";
+    let weightless = kinetic.replace("m*g*y", "0*m*g*y");
+    let puck = "u = \"[x, y]\"\nv = \"dot(u)\"\n";
+    for (definitions, energies, law) in [
+        (
+            "",
+            kinetic,
+            "[impacts]\nf = { when = \"y\", restitution = 0, friction = 0.2, slip = \"dot(x)\" }",
+        ),
+        (
+            puck,
+            &*weightless,
+            "[forces]\nf = { on = \"u\", value = \"-F*v/norm(v)\" }",
+        ),
+        (
+            "",
+            &*weightless,
+            "[forces]\nf = { on = \"x\", value = \"-F*sign(dot(x))\" }",
+        ),
+    ] {
+        let text = on_moving_base(1.0, "X", &format!("{definitions}{energies}{law}\n"));
+        for solver in SOLVERS {
+            let found = end(&text, 1.5, solver);
+            // 1 m/s backwards, stopped by 2 m/s^2.
+            assert!(
+                (found[0] + 0.25).abs() < 1e-8,
+                "{law} {solver:?}: {found:?}"
+            );
+            assert_eq!(found[2], 0.0, "{law} {solver:?}");
+        }
+    }
+}
+
+#[test]
+fn floor_that_drops_leaves_the_body_and_one_that_rises_takes_it_along() {
+    let rest = "[kinetic]\nt = \"1/2*m*(dot(x)^2 + dot(Y)^2)\"\n[potential]\nweight = \"m*g*y\"\n\
+                [impacts]\nf = { when = \"y\", restitution = 0 }\n";
+    for (speed, place) in [(-2.0, 2.0 * 0.25 - 5.0 * 0.25 * 0.25), (2.0, 0.0)] {
+        let text = on_moving_base(speed, "Y", rest);
+        for solver in SOLVERS {
+            let found = end(&text, 0.75, solver);
+            assert!(
+                (found[1] - place).abs() < 1e-9,
+                "{speed} {solver:?}: {found:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn contact_acts_in_a_jump_if_it_pushes() {
+    let energy = "J = { value = 1, unit = \"J\" }";
+    let floor = "f = { when = \"y\", restitution = 0 }\n";
+    let both = format!("{floor}g = {{ when = \"-y\", restitution = 0 }}\n");
+    // The step releases 1 J. Along (1, 1/2) its impulse lifts the body, along (1, -1/2) the floor bears it.
+    let impulse = (-2.0 + 6.5_f64.sqrt()) / 1.25;
+    let lifted = [2.0 + impulse, 0.5 * impulse - 10.0 * 0.02];
+    let pressed = [6.0_f64.sqrt(), 0.0];
+    for (along, contacts, expected) in [
+        ("+", floor, lifted),
+        ("-", floor, pressed),
+        ("-", &both, pressed),
+        ("+", &both, pressed),
+    ] {
+        let potential = format!("-J*above(x {along} 0.5*y - a)");
+        for solver in SOLVERS {
+            let found = end(&body(energy, 2.0, &potential, contacts), 0.52, solver);
+            for (a, b) in found[2..].iter().zip(expected) {
+                assert!(
+                    (a - b).abs() < 1e-9,
+                    "{along} {contacts} {solver:?}: {found:?}, expected {expected:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn impact_and_jump_at_one_instant_have_their_own_energies() {
+    let text = r#"
+[model]
+name = "both"
+[parameters]
+m = { value = 1, unit = "kg" }
+d = { value = 2, unit = "kg" }
+t_1 = { value = 0.5, unit = "s" }
+a = { value = 1, unit = "m" }
+[coordinates]
+x = { unit = "m", initial_rate = 2 }
+[kinetic]
+t = "1/2*(m + d*above(t - t_1))*dot(x)^2"
+[impacts]
+w = { when = "a - x", restitution = 0.5 }
+"#;
+    for solver in SOLVERS {
+        let found = end(text, 1.0, solver);
+        assert!((found[1] + 1.0 / 3.0).abs() < 1e-9, "{solver:?}: {found:?}");
+    }
+}
