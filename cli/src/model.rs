@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use eomgen_codegen::variant::examine;
 use eomgen_compiled_model::{CompiledModel, Orders};
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Diagnostics;
@@ -86,6 +87,15 @@ pub fn note_redundancy(notes: &[String]) {
     for note in notes {
         warn(&format!("note: {note}"));
     }
+}
+
+/// Prints notes about constraints of a model that depend on each other.
+pub fn note_dependent_constraints(model: &Model, orders: &[usize]) -> Result {
+    if !model.constraints.is_empty() {
+        let redundancy = examine(model, orders).map_err(Error::Specification)?;
+        note_redundancy(&redundancy.describe(model));
+    }
+    Ok(())
 }
 
 /// Loads and derives a model to print its equations; coordinates without inertia are accepted.

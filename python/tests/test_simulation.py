@@ -363,6 +363,15 @@ def test_progress_is_reported_and_may_raise(endless):
     assert told == sorted(told) and all(0 < part < 1 for part in told)
 
 
+@pytest.mark.parametrize("start", [100.0, -2.0, -1.0])
+def test_progress_begins_at_the_start_of_the_motion(start):
+    told = []
+    m = eomgen.load(SPECIFICATIONS / "pendulum.toml")
+    m.simulate(until=start + 1, start=start, interval=1e-3, solver="rk", max_step=1e-5, progress=told.append)
+    assert told and told == sorted(told) and told[0] < 0.5
+    assert all(0 <= part <= 1 for part in told)
+
+
 def test_ctrl_c_interrupts_a_simulation(endless, interrupt):
     with pytest.raises(KeyboardInterrupt):
         with interrupt(after=0.7):

@@ -16,7 +16,7 @@ use crate::emission;
 use crate::emitted_files::{CERTIFICATE, check_names};
 use crate::error::{Error, Result, print_json, print_text, warn};
 use crate::family;
-use crate::model::{load, orders};
+use crate::model::{load, note_redundancy, orders};
 use crate::output::write_file;
 use crate::settings::with_settings;
 use crate::test_vectors;
@@ -72,6 +72,7 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
     let orders = orders(&model, options.order.text())?;
     let variant =
         Variant::derive_with_trace(&model, &orders, &outputs).map_err(Error::Specification)?;
+    note_redundancy(&variant.equations.redundancy.describe(&model));
     let form = (options.target, options.packaging);
     let mut emitted = emission::files(&model, &variant, form)?;
     let name = &variant.program.name;

@@ -1,9 +1,11 @@
 //! `eomgen linearise`: the matrices A, B, C, D of a model at a state.
 
 use eomgen_compiled_model::CompiledModel;
+use serde_json::json;
 
 use crate::arguments::Linearise;
 use crate::count::count;
+use crate::document::SCHEMA;
 use crate::error::{Result, print_bytes};
 use crate::linearisation::{LinearModel, arrays, document};
 use crate::operating_point::{is_equilibrium, model, point};
@@ -14,7 +16,7 @@ pub fn run(options: &Linearise) -> Result {
     let destination = options
         .out
         .as_deref()
-        .map(|out| Destination::for_output(out, false));
+        .map(|out| Destination::for_output(out, options.output.json));
     let destination = destination.transpose()?;
     let compiled = model(&options.model, &options.parameters)?;
     let run = compiled.with_declared_parameters()?;
@@ -43,11 +45,24 @@ pub fn run(options: &Linearise) -> Result {
 
 fn summary(options: &Linearise, compiled: &CompiledModel) -> String {
     let file = options.out.as_ref().map(|out| out.display().to_string());
+    let file = file.unwrap_or_default();
+    let states = compiled.program().states();
+    let inputs = compiled.model().inputs.len();
+    let outputs = compiled.program().observables.len();
+    if options.output.json {
+        let document = json!({
+            "schema": SCHEMA,
+            "file": file,
+            "states": states,
+            "inputs": inputs,
+            "outputs": outputs,
+        });
+        return format!("{document:#}\n");
+    }
     format!(
-        "{}: {}, {}, {}\n",
-        file.unwrap_or_default(),
-        count(compiled.program().states(), "state"),
-        count(compiled.model().inputs.len(), "input"),
-        count(compiled.program().observables.len(), "output")
+        "{file}: {}, {}, {}\n",
+        count(states, "state"),
+        count(inputs, "input"),
+        count(outputs, "output")
     )
 }

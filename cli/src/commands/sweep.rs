@@ -9,7 +9,7 @@ use crate::count::count;
 use crate::document::SCHEMA;
 use crate::engines::{self, Submission};
 use crate::error::{Error, Result, print_json, print_text, warn};
-use crate::model::{load, order};
+use crate::model::{load, note_dependent_constraints, order, orders};
 use crate::progress::Bar;
 use crate::settings::settings;
 use crate::sweep_files::finish;
@@ -22,6 +22,7 @@ pub fn run(options: &Sweep) -> Result {
         .map_or(Ok(Shard::WHOLE), Shard::parse);
     let shard = shard.map_err(input_error)?;
     let declared = load(&options.model.spec)?.model;
+    note_dependent_constraints(&declared, &orders(&declared, options.model.order.text())?)?;
     let sweep = eomgen_sweep::Sweep::new(&declared, request(options, &declared)?)?;
     for warning in &sweep.warnings {
         warn(&format!("warning: {warning}"));

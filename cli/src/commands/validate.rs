@@ -7,7 +7,7 @@ use crate::arguments::{Extra, Validate};
 use crate::bounds::bounds;
 use crate::certification::{document, summary};
 use crate::error::{Error, Result, print_bytes, print_text};
-use crate::model::{load, orders};
+use crate::model::{load, note_dependent_constraints, orders};
 use crate::output::Destination;
 use crate::progress::Note;
 use crate::settings::with_settings;
@@ -20,6 +20,7 @@ pub fn run(options: &Validate) -> Result {
     let model = load(&options.model.spec)?.model;
     let model = with_settings(model, &options.parameters.set)?;
     let orders = orders(&model, options.model.order.text())?;
+    note_dependent_constraints(&model, &orders)?;
     let outputs = Extra::outputs(&options.with);
     let bounds = match options.bounds {
         true => Some(bounds(&model, &orders, &outputs, options)?),

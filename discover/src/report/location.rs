@@ -39,11 +39,15 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
         return String::new();
     };
     let channel = &problem.dataset.channels[worst];
+    let tested = fit.test.channel_rms[worst];
     let mut text = format!(
-        "The residual is largest in {}: {} or {} times its noise.",
+        "The residual of the training records is largest in {}: {} or {} times its noise; that of the test records is \
+         {} or {} times.",
         channel.name,
         format_quantity(fit.train.channel_rms[worst], 3, &channel.unit),
-        format_number(normalised_rms[worst], 3)
+        format_number(normalised_rms[worst], 3),
+        format_quantity(tested, 3, &channel.unit),
+        format_number(tested / problem.noise[worst], 3)
     );
     if let Some(worst) = find_worst_window(problem, fit) {
         let window = &problem.train.windows[worst];

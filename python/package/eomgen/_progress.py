@@ -58,8 +58,9 @@ def _in_notebook() -> bool:
 class Fraction:
     """Reports the completed fraction, 0 to 1, to `progress`, or on a line."""
 
-    def __init__(self, what: str, whole: float, progress: Optional[Callable[[float], object]]):
-        self._what, self._whole = what, whole
+    def __init__(self, what: str, span: tuple[float, float], progress: Optional[Callable[[float], object]]):
+        self._what = what
+        self._begin, self._end = span
         self._progress = _arguments.function("progress", progress, "a function of the completed fraction")
         self._line = _Line()
 
@@ -70,7 +71,8 @@ class Fraction:
         self._line.clear()
 
     def tell(self, done: float) -> None:
-        part = min(max(done / self._whole, 0.0), 1.0)
+        whole = self._end - self._begin
+        part = min(max((done - self._begin) / whole, 0.0), 1.0) if whole > 0.0 else 1.0
         if self._progress is not None:
             self._progress(part)
         else:

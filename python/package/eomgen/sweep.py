@@ -84,7 +84,7 @@ def sweep(
         [state] if isinstance(state, str) else _assignments("state", state),
     )
     workers = 0 if threads is None else _arguments.whole("threads", threads, 1024)
-    with Fraction("sweeping", 1.0, progress) as shown, tempfile.TemporaryDirectory() as unused:
+    with Fraction("sweeping", (0.0, 1.0), progress) as shown, tempfile.TemporaryDirectory() as unused:
         folder = os.path.join(unused, "sweep") if out is None else _arguments.path("out", out, FOLDER)
 
         def tell(computed: int, whole: int) -> None:

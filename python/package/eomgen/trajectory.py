@@ -177,7 +177,7 @@ def simulate(
     others = (*driven_names, *model._native.controlled_inputs)
     known = {**{name: 0.0 for name in others}, **given, **{name: 0.0 for name, _ in expressions}}
     input_times, input_values, functions = driving(names, known, times)
-    with Fraction("simulating", times[-1], progress) as line:
+    with Fraction("simulating", (times[0], times[-1]), progress) as line:
         found = _native.simulate(
             native,
             initial,

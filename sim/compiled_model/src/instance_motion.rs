@@ -13,6 +13,10 @@ use crate::labels::Labels;
 use crate::motion_model::MotionModel;
 use crate::sticking::SidedModel;
 
+/// Length of a machine whose parameters and initial state contain none, relative to the typical size of a coordinate.
+/// Distances of a unit roundoff of that size then count as zero.
+const UNMOVED_LENGTH_FRACTION: f64 = 1e-5;
+
 impl MotionModel for Instance<'_> {
     fn labels(&self) -> &Labels {
         self.model.labels()
@@ -51,7 +55,11 @@ impl MotionModel for Instance<'_> {
         let dimension = model.impacts[impact].unit.dimension;
         let parameters = model.parameters.iter().zip(self.values());
         let lengths = parameters.filter(|(known, _)| known.unit.dimension == dimension);
-        lengths.fold(0.0, |most, (_, value)| value.abs().max(most))
+        let sizes = self.model.typical_sizes();
+        let coordinates = self.labels().impacts[impact].coordinates.iter();
+        let unmoved = coordinates.map(|place| UNMOVED_LENGTH_FRACTION * sizes[*place]);
+        let lengths = lengths.map(|(_, value)| value.abs());
+        lengths.chain(unmoved).fold(0.0, f64::max)
     }
 
     fn find_infinite_function(&self, span: (f64, f64)) -> Option<String> {

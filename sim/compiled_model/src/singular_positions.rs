@@ -36,6 +36,10 @@ const SINGULAR_VALUE_LIMIT: f64 = 1e-3;
 /// the unit roundoff.
 const UNDETERMINED_VALUE_LIMIT: f64 = 1.5e-8;
 
+/// Least singular value of the scaled rows below which a step ends the motion if its straight continuation reaches a
+/// singular position: accelerations have eight digits there, and fewer with every shorter step.
+const IMMINENT_VALUE_LIMIT: f64 = 1e-4;
+
 /// Least singular value of the scaled rows below which a motion is extrapolated to a singular
 /// position.
 const NEAR_SINGULAR_VALUE_LIMIT: f64 = 0.1;
@@ -94,6 +98,10 @@ impl SingularityWatch {
         state: &[f64],
         inputs: &HeldInputs,
     ) -> bool {
+        eprintln!(
+            "DBG t={t:?} passed={:?}",
+            self.passed.iter().map(|p| p.t).collect::<Vec<_>>()
+        );
         // The solver rejected steps to later times.
         self.passed.retain(|earlier| earlier.t < t);
         let Some(here) = self.watch_state(t, state.to_vec(), inputs) else {
@@ -102,6 +110,13 @@ impl SingularityWatch {
         if here.least <= UNDETERMINED_VALUE_LIMIT {
             self.found = Some(self.describe_singularity(&here));
             return true;
+        }
+        if here.least <= IMMINENT_VALUE_LIMIT {
+            let straight = vec![0.0; here.state.len()];
+            if let Some(fold) = self.find_singularity_ahead(&here, &straight, inputs) {
+                self.found = Some(self.describe_singularity(&fold));
+                return true;
+            }
         }
         if let Some(last) = self.passed.pop() {
             let path = cubic(&last, &here, self.degrees());

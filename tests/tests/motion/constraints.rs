@@ -10,6 +10,7 @@ use eomgen_compiled_model::{
     CompiledModel, DrivenModel, EquilibriumRequest, Error, EventKind, Orders, Request, Solver,
 };
 use eomgen_sim::ode::{Settings, simulate};
+use eomgen_tests::motions::{grid, simulate_declared};
 
 const ROD: &str = r#"
 [model]
@@ -453,6 +454,44 @@ fn folded_position_has_no_motion_and_no_linearisation() {
 
 /// The speed is high enough to step over the flat position; two such linkages fold at the same
 /// time.
+/// Parallelogram whose links turn without forces, so that steps grow until the fold.
+const FREE_PARALLELOGRAM: &str = r#"
+[model]
+name = "fold"
+[parameters]
+J = { value = 0.1, unit = "kg m^2" }
+a = { value = 1, unit = "m" }
+b = { value = 2, unit = "m" }
+[coordinates]
+p = { unit = "rad", initial = 1, initial_rate = 2 }
+q = { unit = "rad" }
+s = { unit = "rad", initial = 1, initial_rate = 2 }
+[kinetic]
+t = "1/2*J*dot(p)^2 + 1/2*J*dot(s)^2 + 1/2*J*dot(q)^2"
+[constraints]
+c_1 = { zero = "(a*cos(p) + b*cos(q) - a*cos(s) - b)/a" }
+c_2 = { zero = "(a*sin(p) + b*sin(q) - a*sin(s))/a" }
+"#;
+
+#[test]
+fn steps_to_a_fold_end_there_for_any_sampling() {
+    let fold = 0.5 * (std::f64::consts::PI - 1.0);
+    for sample in [0.05, 0.07, 0.08, 0.09, 0.11, 0.14, 0.33, 0.41] {
+        for solver in [Solver::Rk, Solver::Radau] {
+            let times = grid(3.0, (3.0_f64 / sample).floor() as usize);
+            let motion =
+                simulate_declared(FREE_PARALLELOGRAM, &times, solver, (1e-9, f64::INFINITY));
+            let stopped = motion.early_stop.as_ref().expect("a stop");
+            assert!(
+                (stopped.t.expect("a time") - fold).abs() < 1e-8,
+                "{sample} {solver}: {stopped:?}"
+            );
+            let evaluations = motion.trajectory.statistics.evaluations;
+            assert!(evaluations < 20_000, "{sample} {solver}: {evaluations}");
+        }
+    }
+}
+
 #[test]
 fn fold_stops_motion_for_any_sampling_and_solver() {
     let one = parallelogram(0.0).replace("initial = 1.2", "initial_rate = -8, initial = 1.2");

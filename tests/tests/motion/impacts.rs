@@ -780,6 +780,28 @@ fn initial_penetration_by_rounding_starts_on_contact() {
 }
 
 #[test]
+fn rounding_below_a_stop_is_moved_onto_it_without_any_length() {
+    for (height, starts) in [("-1e-17", true), ("-1e-300", true), ("-1e-12", false)] {
+        let text = format!(
+            "[model]\nname = \"block\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
+             k = {{ value = 10, unit = \"N/m\" }}\n[coordinates]\n\
+             x = {{ unit = \"m\", initial = {height} }}\n[kinetic]\n\
+             T = \"1/2*m*dot(x)^2\"\n[potential]\nV = \"1/2*k*x^2\"\n[impacts]\n\
+             stop = {{ when = \"x\", restitution = 0.5 }}\n"
+        );
+        let model = CompiledModel::from_text("block.toml", &text, Orders::Declared).expect(&text);
+        let run = model.with_declared_parameters().unwrap();
+        let motion = run.simulate(
+            run.initial_state(),
+            &[0.0, 1.0],
+            &run.default_inputs(),
+            Solver::Rk,
+        );
+        assert_eq!(motion.is_ok(), starts, "{height}: {motion:?}");
+    }
+}
+
+#[test]
 fn start_just_beside_a_floor_costs_no_more_than_one_on_it() {
     let starts = |height: &str, speed: &str| {
         let text = format!(

@@ -56,6 +56,31 @@ fn json_option_prints_one_document_for_every_command() {
     // The warning about the undriven force goes to stderr.
     let simulated = document(&["simulate", &emps, "--until", "1", "--out", &table], 0);
     assert_eq!(simulated["rows"], 1001);
+    for name in ["matrices.json", "matrices.npz"] {
+        let matrices = folder.path().join(name).display().to_string();
+        let linearised = document(&["linearise", &emps, "--out", &matrices], 0);
+        assert_eq!(linearised["states"], 2, "{name}");
+    }
+}
+
+#[test]
+fn commands_that_derive_note_dependent_constraints() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().display().to_string();
+    let rods = project().join("tests/features/redundant_rods.toml");
+    let rods = rods.display().to_string();
+    for command in [
+        &["check"][..],
+        &["derive"],
+        &["generate", "--out", &out],
+        &["generate", "--target", "c99", "--out", &out],
+        &["simulate", "--until", "0.01", "--out", "-"],
+        &["modes"],
+    ] {
+        let found = run(&[&[command[0], &rods], &command[1..]].concat());
+        let said = text(&found.stderr);
+        assert!(said.contains("is redundant"), "{command:?}: {said}");
+    }
 }
 
 #[test]
