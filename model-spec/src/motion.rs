@@ -279,7 +279,7 @@ impl Checker<'_, '_> {
                 let help = "its accelerations must be given: declare the input with rates = 2";
                 Some((place, "this input has no given rates", help))
             } else if let Some(place) = motion.switch {
-                let help = "declare a separate impact for each smooth distance";
+                let help = "declare an impact for each smooth distance, and give prescribed motion without max, min, abs and above";
                 Some((place, "this switches", help))
             } else if motion.values.is_empty() {
                 let help = "give a distance between bodies, for example y, or x_2 - x_1 - d";

@@ -13,9 +13,9 @@ use crate::labels::Labels;
 use crate::motion_model::MotionModel;
 use crate::sticking::SidedModel;
 
-/// Length of a machine whose parameters and initial state contain none, relative to the typical size of a coordinate.
-/// Distances of a unit roundoff of that size then count as zero.
-const UNMOVED_LENGTH_FRACTION: f64 = 1e-5;
+/// Length, in the SI unit of a distance, of a machine without parameters of that dimension. Distances of a unit roundoff
+/// of an SI unit then count as zero.
+const UNKNOWN_LENGTH_SI: f64 = 1e-5;
 
 impl MotionModel for Instance<'_> {
     fn labels(&self) -> &Labels {
@@ -55,11 +55,8 @@ impl MotionModel for Instance<'_> {
         let dimension = model.impacts[impact].unit.dimension;
         let parameters = model.parameters.iter().zip(self.values());
         let lengths = parameters.filter(|(known, _)| known.unit.dimension == dimension);
-        let sizes = self.model.typical_sizes();
-        let coordinates = self.labels().impacts[impact].coordinates.iter();
-        let unmoved = coordinates.map(|place| UNMOVED_LENGTH_FRACTION * sizes[*place]);
         let lengths = lengths.map(|(_, value)| value.abs());
-        lengths.chain(unmoved).fold(0.0, f64::max)
+        lengths.reduce(f64::max).unwrap_or(UNKNOWN_LENGTH_SI)
     }
 
     fn find_infinite_function(&self, span: (f64, f64)) -> Option<String> {

@@ -50,7 +50,8 @@ pub(crate) trait MotionModel {
     /// Terms that cannot be differentiated.
     fn jacobian_evaluator(&self) -> Result<Option<JacobianEvaluator>, Error>;
 
-    /// Returns the largest magnitude of the parameters with the dimension of an impact's distance, SI.
+    /// Returns the largest magnitude of the parameters with the dimension of an impact's distance, SI; without any a
+    /// length of which a unit roundoff of an SI unit is rounding.
     fn largest_length(&self, impact: usize) -> f64;
 
     /// Returns the message for a function of time that has no finite value where a motion over a time span (s) ended.
