@@ -98,10 +98,6 @@ impl SingularityWatch {
         state: &[f64],
         inputs: &HeldInputs,
     ) -> bool {
-        eprintln!(
-            "DBG t={t:?} passed={:?}",
-            self.passed.iter().map(|p| p.t).collect::<Vec<_>>()
-        );
         // The solver rejected steps to later times.
         self.passed.retain(|earlier| earlier.t < t);
         let Some(here) = self.watch_state(t, state.to_vec(), inputs) else {
