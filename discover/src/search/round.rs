@@ -208,13 +208,24 @@ impl SearchRound<'_> {
             repeating.len()
         ));
         // Behind the others, so that what was fitted keeps its place.
+        let singles = candidates.len();
         candidates.extend(repeating);
-        let screened = screen_candidates(
+        let rescreened = screen_candidates(
             self.context.problem,
             fit,
             &candidates,
             window.window_fraction(),
         );
+        if self.context.problem.stop.check_not_stopped().is_err() {
+            // Responses that the stop interrupted are missing, so that those of the fits have other places.
+            candidates.truncate(singles);
+            return Some(TestedPool {
+                candidates,
+                screening: screened,
+                fitted_hypotheses,
+            });
+        }
+        let screened = rescreened;
         fitted_hypotheses.extend(fit_singles(
             &self.pool_in(window, &candidates, &screened),
             from,

@@ -202,6 +202,18 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         [t.next_down(), t].map(|t| given.evaluate(t).into_owned())
     }
 
+    /// Returns true if the motion crosses a surface at which the energies jump.
+    fn crosses_corner(&self, before: (f64, &[f64]), at: (f64, &[f64])) -> bool {
+        let Some(corners) = &self.corners else {
+            return false;
+        };
+        let given = self.inputs.borrow();
+        let inputs = [before.0, at.0].map(|t| given.evaluate(t));
+        corners
+            .borrow_mut()
+            .crosses(before, at, [&inputs[0], &inputs[1]])
+    }
+
     /// Applies the corner of the motion between a state on the near side of a surface and one just beyond
     /// it. Returns true if the state changed.
     fn apply_corner(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) -> bool {
@@ -632,6 +644,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
 
     fn apply_event(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) -> bool {
         let mut jumps = false;
+        let has_corner = self.crosses_corner(before, (t, y));
         if let Some(contacts) = &self.contacts {
             let arrived = y.to_vec();
             let given = self.inputs.borrow();
@@ -649,7 +662,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
                         state: before.1,
                         inputs: &near,
                     };
-                    contacts.apply_impact(own, before, (t, inputs), y)
+                    contacts.apply_impact(own, before, (t, inputs), y, has_corner)
                 });
             let work = contacts.borrow().impact_work();
             jumps = arrived != y;
@@ -662,8 +675,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
                 auditor.borrow_mut().audit_impact(t, states, work, energies);
             }
         }
-        let has_corner = self.apply_corner(before, t, y);
-        jumps |= has_corner;
+        jumps |= has_corner && self.apply_corner(before, t, y);
         let sliding = self.sliding.as_ref();
         let others = sliding.map(|sliding| sliding.borrow_mut().release_other_sides());
         if has_corner {

@@ -195,8 +195,8 @@ const FAULTS: [(&str, &str, &[&str]); 4] = [
         &["emitted_rust", "f32"],
     ),
     (
-        "let held = T::select_greater(p, b, b, p);",
-        "let held = if T::all_greater(p, b) { b } else { p };",
+        "let v2 = T::select_greater(p, b, b, p);",
+        "let v2 = if T::all_greater(p, b) { b } else { p };",
         &["lanes"],
     ),
     (

@@ -194,3 +194,86 @@ w = { when = "a - x", restitution = 0.5 }
         assert!((found[1] + 1.0 / 3.0).abs() < 1e-9, "{solver:?}: {found:?}");
     }
 }
+
+/// Body of 1 kg in a corner that starts to move with V to both sides, while mass is taken up.
+fn in_corner(force: f64) -> String {
+    format!(
+        r#"
+[model]
+name = "corner"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+F = {{ value = {force:?}, unit = "N" }}
+G = {{ value = 5, unit = "N" }}
+V = {{ value = 1, unit = "m/s" }}
+d = {{ value = 4, unit = "kg" }}
+t_1 = {{ value = 0.2, unit = "s" }}
+[coordinates]
+x = {{ unit = "m" }}
+y = {{ unit = "m" }}
+[definitions]
+X = "x + V*max(t - t_1, 0)"
+Y = "y + V*max(t - t_1, 0)"
+[kinetic]
+k = "1/2*m*(dot(X)^2 + dot(Y)^2) + 1/2*d*above(t - t_1)*(dot(X) - dot(Y))^2"
+[potential]
+p = "F*x + G*y"
+[impacts]
+wall = {{ when = "x", restitution = 0.5 }}
+floor = {{ when = "y", restitution = 0.5 }}
+"#
+    )
+}
+
+#[test]
+fn contacts_that_bear_stay_closed_where_mass_is_taken_up() {
+    for force in [1.0, 3.9, 5.0] {
+        for solver in SOLVERS {
+            let found = end(&in_corner(force), 0.3, solver);
+            assert!(
+                found.iter().all(|entry| entry.abs() < 1e-9),
+                "{force} {solver:?}: {found:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn more_contacts_than_freedoms_act_in_a_jump() {
+    let text = r#"
+[model]
+name = "block"
+[parameters]
+m = { value = 2, unit = "kg" }
+J = { value = 0.5, unit = "kg m^2" }
+g = { value = 9.81, unit = "m/s^2" }
+F = { value = 3, unit = "N" }
+l = { value = 1, unit = "m" }
+V = { value = 1, unit = "m/s" }
+t_1 = { value = 0.2, unit = "s" }
+[coordinates]
+x = { unit = "m" }
+y = { unit = "m" }
+phi = { unit = "rad" }
+[definitions]
+X = "x + 0.08*max(t - t_1, 0)*V"
+Y = "y + 0.32*max(t - t_1, 0)*V"
+P = "phi - 0.94*max(t - t_1, 0)*V/l"
+[kinetic]
+k = "1/2*m*(dot(X)^2 + dot(Y)^2) + 1/2*J*dot(P)^2"
+[potential]
+p = "m*g*y + F*x"
+[impacts]
+c_0 = { when = "x + 0.5*l*phi", restitution = 0 }
+c_1 = { when = "y - l*phi", restitution = 0 }
+c_2 = { when = "y + l*phi", restitution = 0 }
+c_3 = { when = "x - 0.5*l*phi", restitution = 0 }
+"#;
+    for solver in SOLVERS {
+        let found = end(text, 0.3, solver);
+        assert!(
+            found.iter().all(|entry| entry.abs() < 1e-9),
+            "{solver:?}: {found:?}"
+        );
+    }
+}

@@ -186,3 +186,38 @@ z = {{ on = "y - x", value = "-z" }}
         assert_equal(&found, &right, &[0, 1, 4], 1e-6, &text);
     }
 }
+
+#[test]
+fn block_carried_at_the_limit_of_its_friction_stops_with_the_one_below() {
+    for case in 0..12 {
+        let (lower, upper) = (0.8 + 0.37 * f64::from(case), 2.7 - 0.19 * f64::from(case));
+        let (friction, speed) = (0.3 + 0.06 * f64::from(case % 5), 0.75);
+        let text = format!(
+            r#"
+[model]
+name = "stack"
+[parameters]
+g = {{ value = 9.81, unit = "m/s^2" }}
+mu = {{ value = {friction} }}
+m = {{ value = {lower}, unit = "kg" }}
+n = {{ value = {upper}, unit = "kg" }}
+[coordinates]
+x = {{ unit = "m", initial_rate = {speed} }}
+y = {{ unit = "m", initial_rate = {speed} }}
+[kinetic]
+k = "1/2*m*dot(x)^2 + 1/2*n*dot(y)^2"
+[forces]
+floor = {{ on = "x", value = "-mu*g*(m + n)*sign(dot(x))" }}
+between = {{ on = "y - x", value = "-mu*g*n*sign(dot(y) - dot(x))" }}
+"#
+        );
+        let right = speed * speed / (2.0 * friction * 9.81);
+        for solver in [Solver::Rk, Solver::Radau, Solver::Exact] {
+            let motion = simulate(&text, solver, &[0.0, 0.5], f64::INFINITY);
+            let found = motion.trajectory.states.last().expect("a sample");
+            let places = (found[0] - right).abs().max((found[1] - right).abs());
+            let rates = found[2].abs().max(found[3].abs());
+            assert!(places < 1e-9 && rates < 1e-9, "{solver}: {found:?}\n{text}");
+        }
+    }
+}

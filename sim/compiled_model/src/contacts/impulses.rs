@@ -52,13 +52,15 @@ impl Flight {
 
 impl Contacts {
     /// Applies an impact in the step across a surface, from a point `before` to `state` just
-    /// beyond it at the time `t`, with these inputs. Returns true if contacts are hit.
+    /// beyond it at the time `t`, with these inputs. Without an impact contacts change their modes, but not at a corner,
+    /// after which they are decided anew. Returns true if contacts are hit.
     pub fn apply_impact(
         &mut self,
         own: &mut Evaluator,
         before: Point<'_>,
         (t, inputs): (f64, &[f64]),
         state: &mut [f64],
+        has_corner: bool,
     ) -> bool {
         self.impact_work = 0.0;
         self.note_closed_until(t);
@@ -69,6 +71,9 @@ impl Contacts {
             !contacts.rests(*place) && beyond[*place] + contacts.offset(*place, t) < 0.0
         };
         let Some(first) = (0..count).find(|place| is_hit(place, self)) else {
+            if has_corner {
+                return false;
+            }
             let located = Point {
                 t,
                 state: before.state,

@@ -11,8 +11,12 @@ const ENERGY_ROUNDING: f64 = 1e-13;
 /// Largest remainder of a dependent row of the constraints, relative to its length.
 const MAX_DEPENDENT_REMAINDER: f64 = 1e-9;
 
-/// Number of changes of the contacts that act. Two contacts need at most three.
-const MAX_CONTACT_CHANGES: usize = 64;
+/// Number of changes of the contacts that act, for each contact. Where contacts depend on each other the changes may
+/// have no end.
+const MAX_CHANGES_PER_CONTACT: usize = 4;
+
+/// Number of contacts of which all combinations are tried then.
+const MAX_COMBINED_CONTACTS: usize = 10;
 
 /// Largest pull of a contact, and speed into it, that count as rounding, relative to the motion.
 const CONTACT_ROUNDING: f64 = 1e-9;
@@ -36,6 +40,15 @@ pub(super) struct SidedPoint<'e> {
     pub contacts: &'e [TouchingContact],
     /// True for the contacts that act.
     pub acts: Vec<bool>,
+}
+
+impl<'e> SidedPoint<'e> {
+    /// Sets the contacts at which bodies touch at rest. All act at first.
+    pub(super) fn with_contacts(mut self, contacts: &'e [TouchingContact]) -> Self {
+        self.contacts = contacts;
+        self.acts = vec![true; contacts.len()];
+        self
+    }
 }
 
 impl SidedPoint<'_> {
@@ -97,23 +110,10 @@ impl SidedPoint<'_> {
         })
     }
 
-    /// Marks the contacts that act at the arrival: those that do not part.
-    pub(super) fn mark_resting(&mut self) -> Option<()> {
-        let rates = self.rates();
-        let measure = ContactMeasure::new(&self.balance()?.mass, &[&rates])?;
-        let parts = |contact| measure.rate(contact, &rates) > CONTACT_ROUNDING;
-        self.acts = self
-            .contacts
-            .iter()
-            .map(|contact| !parts(contact))
-            .collect();
-        Some(())
-    }
-
     /// Returns a contact that pulls, or into which bodies move, after a jump from the rates `before`.
     fn find_contradiction(&self, before: &DVector<f64>, jump: &Jump) -> Option<Option<usize>> {
         let after = self.rates();
-        let measure = ContactMeasure::new(&jump.mass, &[before, &after])?;
+        let measure = ContactMeasure::new(jump, &[before, &after], self.contacts)?;
         let contradicts = |place: &usize| {
             let contact = &self.contacts[*place];
             match self.acts[*place] {
@@ -128,17 +128,22 @@ impl SidedPoint<'_> {
 /// Rates and impulses of contacts relative to the motion, in the norm of the kinetic energy.
 struct ContactMeasure {
     inverse: nalgebra::Cholesky<f64, nalgebra::Dyn>,
-    /// Largest length of the rates.
+    /// Largest length of the rates, of those without momenta, and of the speeds of the contacts' surfaces.
     size: f64,
 }
 
 impl ContactMeasure {
-    fn new(mass: &DMatrix<f64>, rates: &[&DVector<f64>]) -> Option<Self> {
-        let lengths = rates.iter().map(|rates| rates.dot(&(mass * *rates)).sqrt());
-        Some(Self {
-            inverse: mass.clone().cholesky()?,
-            size: lengths.fold(f64::MIN_POSITIVE, f64::max),
-        })
+    fn new(jump: &Jump, rates: &[&DVector<f64>], contacts: &[TouchingContact]) -> Option<Self> {
+        let inverse = jump.mass.clone().cholesky()?;
+        let free = inverse.solve(&jump.constant_momenta);
+        let rates = rates.iter().copied().chain([&free]);
+        let lengths = rates.map(|rates| rates.dot(&(&jump.mass * rates)).sqrt());
+        let size = lengths.fold(f64::MIN_POSITIVE, f64::max);
+        let own = Self { inverse, size };
+        let speeds = contacts.iter();
+        let speeds = speeds.map(|contact| contact.drift.abs() / own.length(contact));
+        let size = speeds.fold(size, f64::max);
+        Some(Self { size, ..own })
     }
 
     /// Returns the length of the row of a contact.
@@ -205,6 +210,7 @@ impl Balance {
             impulses,
             contacts: self.contacts,
             mass: self.mass,
+            constant_momenta: self.constant_momenta,
         }
     }
 
@@ -241,6 +247,8 @@ struct Jump {
     /// Contact of each row.
     contacts: Vec<Option<usize>>,
     mass: DMatrix<f64>,
+    /// Momenta at zero rates.
+    constant_momenta: DVector<f64>,
 }
 
 impl Jump {
@@ -270,19 +278,36 @@ pub(super) fn keep_momenta(point: &mut SidedPoint<'_>, momenta: &DVector<f64>) -
 }
 
 /// Applies a jump, and lets contacts act or part until none pulls and bodies move into none (least index first, as in
-/// K. G. Murty's method for complementarity problems, which is finite).
+/// K. G. Murty's method for complementarity problems, which ends if the contacts are independent). Otherwise a
+/// combination of independent contacts does.
 fn apply_with_contacts(
     point: &mut SidedPoint<'_>,
     mut apply: impl FnMut(&mut SidedPoint<'_>) -> Option<Jump>,
 ) -> Option<Jump> {
-    point.mark_resting()?;
     let (state, inputs, before) = (point.state.clone(), point.inputs.clone(), point.rates());
-    for _ in 0..=MAX_CONTACT_CHANGES {
+    let count = point.acts.len();
+    for _ in 0..=MAX_CHANGES_PER_CONTACT * count {
         let jump = apply(point)?;
         let Some(place) = point.find_contradiction(&before, &jump)? else {
             return Some(jump);
         };
         point.acts[place] = !point.acts[place];
+        point.state.clone_from(&state);
+        point.inputs.clone_from(&inputs);
+    }
+    if count > MAX_COMBINED_CONTACTS {
+        return None;
+    }
+    for combination in 0..1_u32 << count {
+        for (place, acts) in point.acts.iter_mut().enumerate() {
+            *acts = combination >> place & 1 == 1;
+        }
+        let jump = apply(point)?;
+        let is_independent =
+            jump.contacts.iter().flatten().count() == combination.count_ones() as usize;
+        if is_independent && point.find_contradiction(&before, &jump)?.is_none() {
+            return Some(jump);
+        }
         point.state.clone_from(&state);
         point.inputs.clone_from(&inputs);
     }

@@ -42,6 +42,13 @@ pub(crate) struct CornerEnergy {
     pub work: f64,
 }
 
+/// Surfaces that a motion crosses at one instant, and the sides of all before and after.
+struct Crossed {
+    from: Vec<f64>,
+    to: Vec<f64>,
+    crossed: Vec<usize>,
+}
+
 /// Rates and sides after surfaces that are crossed at one instant.
 struct Outcome {
     state: Vec<f64>,
@@ -98,20 +105,8 @@ impl Corners {
         contacts: &[TouchingContact],
     ) -> Option<CornerEnergy> {
         self.failure = None;
-        let near = self.functions((t_before, before), inputs_before);
-        let beyond = self.functions((t, state), inputs);
-        let known = self.sides.iter().zip(&near);
-        let from: Vec<f64> = known
-            .map(|(side, near)| side.or_else(|| side_of(*near)).unwrap_or(0.0))
-            .collect();
-        let to: Vec<f64> = beyond
-            .iter()
-            .zip(&from)
-            .map(|(value, side)| side_of(*value).unwrap_or(*side))
-            .collect();
-        let crossed: Vec<usize> = (0..to.len())
-            .filter(|place| to[*place] != from[*place])
-            .collect();
+        let Crossed { from, to, crossed } =
+            self.find_crossed((t_before, before), (t, state), [inputs_before, inputs]);
         if crossed.is_empty() {
             return None;
         }
@@ -133,6 +128,41 @@ impl Corners {
                 state.fill(f64::NAN);
                 None
             }
+        }
+    }
+
+    /// Returns true if the motion crosses a surface between two states.
+    pub fn crosses(
+        &mut self,
+        before: (f64, &[f64]),
+        at: (f64, &[f64]),
+        inputs: [&[f64]; 2],
+    ) -> bool {
+        !self.find_crossed(before, at, inputs).crossed.is_empty()
+    }
+
+    fn find_crossed(
+        &mut self,
+        before: (f64, &[f64]),
+        at: (f64, &[f64]),
+        [inputs_before, inputs]: [&[f64]; 2],
+    ) -> Crossed {
+        let near = self.functions(before, inputs_before);
+        let beyond = self.functions(at, inputs);
+        let known = self.sides.iter().zip(&near);
+        let from: Vec<f64> = known
+            .map(|(side, near)| side.or_else(|| side_of(*near)).unwrap_or(0.0))
+            .collect();
+        let to: Vec<f64> = beyond
+            .iter()
+            .zip(&from)
+            .map(|(value, side)| side_of(*value).unwrap_or(*side))
+            .collect();
+        let crossed = (0..to.len()).filter(|place| to[*place] != from[*place]);
+        Crossed {
+            crossed: crossed.collect(),
+            from,
+            to,
         }
     }
 
@@ -173,7 +203,7 @@ impl Corners {
         {
             return None;
         }
-        far.contacts = contacts;
+        let mut far = far.with_contacts(contacts);
         if keep_momenta(&mut far, &momenta).is_none() {
             self.failure = Some(singular(t));
             state.fill(f64::NAN);
@@ -203,8 +233,8 @@ impl Corners {
         }
         let mut found: Option<Outcome> = None;
         for order in permutations(crossed) {
-            let mut point = self.point((t, state), inputs, from);
-            point.contacts = contacts;
+            let point = self.point((t, state), inputs, from);
+            let mut point = point.with_contacts(contacts);
             for place in order {
                 pass(&mut point, place, to[place]).ok_or_else(|| singular(t))?;
             }
@@ -276,9 +306,8 @@ impl Corners {
             if direction * value > 0.0 {
                 continue;
             }
-            let mut point = self.point((t, state), inputs, sides);
-            point.contacts = contacts;
-            let Some(balance) = point.mark_resting().and_then(|()| point.balance()) else {
+            let point = self.point((t, state), inputs, sides);
+            let Some(balance) = point.with_contacts(contacts).balance() else {
                 return;
             };
             let row = DVector::from_column_slice(&balance.values.surfaces[*place].1);
@@ -388,8 +417,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 fn singular(t: f64) -> String {
     format!(
-        "at t = {t:?} s the energies jump, and beyond a coordinate has no inertia or the constraints do not \
-         determine the rates: give every coordinate inertia on both sides"
+        "at t = {t:?} s the energies jump, and beyond a coordinate has no inertia, or constraints and closed contacts do \
+         not determine the rates: give every coordinate inertia on both sides, and remove contacts that others replace"
     )
 }
 

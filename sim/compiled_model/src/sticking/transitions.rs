@@ -86,9 +86,10 @@ impl SurfaceStates {
             let is_crossed = came_from[surface] * (to + moved) < 0.0;
             let near = NEAR_MOVE_FACTOR * (to - from).abs();
             let near = near.min(MAX_NEAR_FRACTION * self.sizes[surface]) + roundings[surface];
-            let is_near = to.abs() <= near;
+            let is_near = to.abs() <= near.max(2.0 * place.displacement().abs());
             is_new |= place.is_moved_by_contacts((t, to));
-            if place.is_on() || is_crossed || (is_near && *place == SurfaceState::Free) {
+            // A surface that the motion has not left yet may hold it again.
+            if place.is_on() || is_crossed || is_near {
                 is_new |= is_crossed && !place.is_on();
                 touching.push(surface);
                 arrivals.push(overcome[surface].unwrap_or(Arrival {
