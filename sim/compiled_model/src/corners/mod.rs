@@ -2,14 +2,17 @@
 //!
 //! Position and time are continuous there; momenta and energy follow the corner conditions of Weierstrass
 //! and Erdmann ([`law`]). The motion passes the surface, or returns from it if its energy does not suffice.
-//! Surfaces that are crossed at one instant are tried in every order, and all orders must agree.
+//! Closed contacts act if they push ([`contacts`]). Surfaces that are crossed at one instant are tried in every order, and all orders must agree.
 
+mod contacts;
 mod law;
+mod sided_point;
 
 use eomgen_codegen::program::evaluator::{CornerValues, Evaluator, Point};
-pub(crate) use law::TouchingContact;
-use law::{SidedPoint, keep_momenta, pass, sides};
+use law::{keep_momenta, pass, sides};
 use nalgebra::DVector;
+use sided_point::SidedPoint;
+pub(crate) use sided_point::TouchingContact;
 
 /// Maximum number of surfaces that are crossed at one instant.
 const MAX_COINCIDENT: usize = 4;
