@@ -4,8 +4,8 @@ use nalgebra::DVector;
 
 use super::sided_point::{Jump, SidedPoint, TouchingContact};
 
-/// Number of changes of the contacts that act, for each contact. Where contacts depend on each other the changes may
-/// have no end.
+/// Number of changes of the contacts that act, for each contact. If contacts depend on each other, the changes may have
+/// no end.
 const MAX_CHANGES_PER_CONTACT: usize = 4;
 
 /// Number of contacts of which all combinations are tried then.
@@ -14,9 +14,9 @@ const MAX_COMBINED_CONTACTS: usize = 10;
 /// Largest pull of a contact, and speed into it, that count as rounding, relative to the motion.
 const CONTACT_ROUNDING: f64 = 1e-9;
 
-/// Applies a jump, and lets contacts act or part until none pulls and bodies move into none (least index first, as in
-/// K. G. Murty's method for complementarity problems, which ends if the contacts are independent). Otherwise a
-/// combination of independent contacts does.
+/// Applies a jump with the contacts that push. A contact that pulls opens, and one into which bodies move acts, one at a
+/// time with the least index first. This method for complementarity problems (K. G. Murty) ends if the contacts are
+/// independent. Otherwise the combinations of independent contacts are tried.
 pub(super) fn apply_with_contacts(
     point: &mut SidedPoint<'_>,
     mut apply: impl FnMut(&mut SidedPoint<'_>) -> Option<Jump>,

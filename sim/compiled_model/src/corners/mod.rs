@@ -91,10 +91,7 @@ impl Corners {
     /// Returns the energy of a state on the sides on which the motion was last, J.
     pub fn energy(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Option<f64> {
         let functions = self.functions(at, inputs);
-        let known = self.sides.iter().zip(functions);
-        let sides: Vec<f64> = known
-            .map(|(side, function)| side.or(side_of(function)).unwrap_or(0.0))
-            .collect();
+        let sides = self.last_sides(&functions);
         Some(self.point(at, inputs, &sides).values()?.energy)
     }
 
@@ -144,6 +141,14 @@ impl Corners {
         !self.find_crossed(before, at, inputs).crossed.is_empty()
     }
 
+    /// Returns the sides on which the motion was last; those of surfaces that it has not been off follow from `functions`.
+    fn last_sides(&self, functions: &[f64]) -> Vec<f64> {
+        let known = self.sides.iter().zip(functions);
+        known
+            .map(|(side, function)| side.or(side_of(*function)).unwrap_or(0.0))
+            .collect()
+    }
+
     fn find_crossed(
         &mut self,
         before: (f64, &[f64]),
@@ -152,15 +157,8 @@ impl Corners {
     ) -> Crossed {
         let near = self.functions(before, inputs_before);
         let beyond = self.functions(at, inputs);
-        let known = self.sides.iter().zip(&near);
-        let from: Vec<f64> = known
-            .map(|(side, near)| side.or_else(|| side_of(*near)).unwrap_or(0.0))
-            .collect();
-        let to: Vec<f64> = beyond
-            .iter()
-            .zip(&from)
-            .map(|(value, side)| side_of(*value).unwrap_or(*side))
-            .collect();
+        let from = self.last_sides(&near);
+        let to = sides_at(&beyond, &from);
         let crossed = (0..to.len()).filter(|place| to[*place] != from[*place]);
         Crossed {
             crossed: crossed.collect(),
@@ -181,17 +179,8 @@ impl Corners {
             return None;
         }
         let values = self.functions((t, state), inputs);
-        let known: Vec<f64> = self
-            .sides
-            .iter()
-            .zip(&values)
-            .map(|(side, value)| side.or(side_of(*value)).unwrap_or(0.0))
-            .collect();
-        let to: Vec<f64> = values
-            .iter()
-            .zip(&known)
-            .map(|(value, side)| side_of(*value).unwrap_or(*side))
-            .collect();
+        let known = self.last_sides(&values);
+        let to = sides_at(&values, &known);
         let mut near = self.point((t, state), inputs_before, &known);
         let before = near.balance()?.values;
         let mut far = self.point((t, state), inputs, &to);
@@ -402,6 +391,14 @@ impl Outcome {
         let is_near = entries.all(|(a, b)| (a - b).abs() <= ORDER_AGREEMENT * size);
         is_near && self.sides == other.sides
     }
+}
+
+/// Returns the sides at these values of the functions; on a surface that of `otherwise`.
+fn sides_at(functions: &[f64], otherwise: &[f64]) -> Vec<f64> {
+    let sides = functions.iter().zip(otherwise);
+    sides
+        .map(|(function, side)| side_of(*function).unwrap_or(*side))
+        .collect()
 }
 
 fn side_of(value: f64) -> Option<f64> {
