@@ -1,6 +1,7 @@
 //! Certificates as JSON and as summaries.
 
 use eomgen_validate::certificate::{Certificate, Check, SkipKind, Verdict};
+use eomgen_validate::meaning::describe;
 use eomgen_validate::rounding::Bounds;
 
 use crate::error::{Error, Result};
@@ -12,18 +13,17 @@ pub fn document(certificate: &Certificate) -> Result<String> {
     Ok(text + "\n")
 }
 
-/// Returns one line per check, coverage and verdict.
+/// Returns one line per kind of check, coverage and verdict.
 pub fn summary(certificate: &Certificate) -> String {
     let mut text = format!("{}, order {}\n", certificate.model, certificate.order);
-    let width = certificate
-        .checks
-        .iter()
-        .map(|check| check.name.len())
-        .max()
-        .unwrap_or(0);
-    for check in &certificate.checks {
-        text.push_str(&format!("  {:width$}  {}\n", check.name, verdict(check)));
+    let (skipped, applicable): (Vec<&Check>, Vec<&Check>) =
+        (certificate.checks.iter()).partition(|check| is_not_applicable(check));
+    let groups = applicable
+        .chunk_by(|one, next| one.passed && next.passed && are_of_same_kind(&one.name, &next.name));
+    for group in groups {
+        text.push_str(&format!("  {}\n", describe_result(group)));
     }
+    text.push_str(&describe_skipped(&skipped));
     if let Some(coverage) = &certificate.coverage {
         text.push_str(&format!("coverage: {}\n", coverage.sentence()));
     }
@@ -67,20 +67,88 @@ fn bounds_table(bounds: &Bounds) -> String {
     text
 }
 
-fn verdict(check: &Check) -> String {
-    let detail = if check.detail.is_empty() {
-        String::new()
-    } else {
-        format!("  ({})", check.detail)
-    };
-    match check.skipped.as_ref().map(|skip| skip.kind) {
-        Some(SkipKind::NotApplicable) => return format!("not applicable{detail}"),
-        Some(SkipKind::NotRun) => return format!("NOT RUN{detail}"),
-        None => {}
+/// Returns true if two checks have the same statement in different regimes.
+pub fn are_of_same_kind(one: &str, other: &str) -> bool {
+    let kind = |name: &str| name.split(' ').next().map(str::to_owned);
+    kind(one) == kind(other) && kind(one).as_deref() != Some("reference")
+}
+
+/// Returns the statement of a check as a sentence.
+pub fn statement(name: &str) -> String {
+    describe(name).unwrap_or_else(|| name.replace('_', " "))
+}
+
+fn is_not_applicable(check: &Check) -> bool {
+    let skipped = check.skipped.as_ref();
+    skipped.is_some_and(|skip| skip.kind == SkipKind::NotApplicable)
+}
+
+/// Describes the result of checks of one kind, of which all passed, or of a single check.
+fn describe_result(group: &[&Check]) -> String {
+    let first = group[0];
+    let sentence = statement(&first.name);
+    if first.passed {
+        return format!("passed   {sentence}{}", describe_size(group));
     }
-    let value = check
-        .value
-        .map_or("not finite".to_owned(), |value| format!("{value:.1e}"));
-    let word = if check.passed { "passed" } else { "FAILED" };
-    format!("{word}   {value} of {:.0e}{detail}", check.tolerance)
+    match &first.skipped {
+        Some(_) => format!("NOT RUN  {sentence} ({}: {})", first.name, first.detail),
+        None => format!(
+            "FAILED   {sentence} ({}: {}; {})",
+            first.name,
+            describe_deviation(first.value, first.tolerance),
+            first.detail
+        ),
+    }
+}
+
+/// Describes what passed checks compared, and their largest deviation.
+fn describe_size(group: &[&Check]) -> String {
+    let first = group[0];
+    let mut parts = Vec::new();
+    let count = first.detail.split(", ").next().unwrap_or_default();
+    match group.len() {
+        1 if count.starts_with(|letter: char| letter.is_ascii_digit()) => {
+            parts.push(count.to_owned());
+        }
+        1 => {}
+        regimes => parts.push(format!("{regimes} regimes")),
+    }
+    if first.tolerance > 0.0 {
+        let worst = group
+            .iter()
+            .filter_map(|check| check.value)
+            .reduce(f64::max);
+        parts.push(describe_deviation(worst, first.tolerance));
+    }
+    match parts.is_empty() {
+        true => String::new(),
+        false => format!(" ({})", parts.join("; ")),
+    }
+}
+
+fn describe_deviation(value: Option<f64>, tolerance: f64) -> String {
+    let value = match value {
+        Some(0.0) => "0".to_owned(),
+        Some(value) => format!("{value:.1e}"),
+        None => "not finite".to_owned(),
+    };
+    match tolerance > 0.0 {
+        true => format!("deviation {value} of at most {tolerance:.0e}"),
+        false => format!("deviation {value}, none is allowed"),
+    }
+}
+
+/// Counts the checks that do not apply, with their reasons.
+fn describe_skipped(skipped: &[&Check]) -> String {
+    let mut reasons: Vec<&str> = Vec::new();
+    for check in skipped {
+        if !reasons.contains(&check.detail.as_str()) {
+            reasons.push(&check.detail);
+        }
+    }
+    match skipped.len() {
+        0 => String::new(),
+        1 => format!("  1 check does not apply: {}\n", reasons.join("; ")),
+        count => format!("  {count} checks do not apply: {}\n", reasons.join("; ")),
+    }
 }

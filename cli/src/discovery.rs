@@ -4,6 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use eomgen_discover::{Specification, StopRequest, catalogue, discover_until};
+use eomgen_model_spec::model::Model;
 use eomgen_records::dataset::Dataset;
 use eomgen_records::feedback::open_loop;
 use eomgen_records::read_dataset;
@@ -26,12 +27,12 @@ pub struct Task<'a> {
 /// Compares a model with records and writes `comparison.json` and `report.html`. Returns the document.
 pub fn compare(task: &Task<'_>) -> Result<Value> {
     let begin = Instant::now();
-    let (text, order, dataset) = inputs(task)?;
+    let (model, order, dataset) = inputs(task)?;
     check_outputs(task, &["comparison.json", "report.html"])?;
     let path = task.spec.display().to_string();
     let specification = Specification {
         path: &path,
-        text: &text,
+        text: &model.source.text,
         order,
     };
     let found = eomgen_discover::compare(specification, &dataset, task.seed, &warn);
@@ -47,13 +48,13 @@ pub fn compare(task: &Task<'_>) -> Result<Value> {
 /// `limit` is in s; `effects` is a file with additional effects. Returns the document.
 pub fn discover(task: &Task<'_>, limit: Option<f64>, effects: Option<&Path>) -> Result<Value> {
     let begin = Instant::now();
-    let (text, order, dataset) = inputs(task)?;
+    let (model, order, dataset) = inputs(task)?;
     check_outputs(task, &["extended.toml", "report.html", "discovery.json"])?;
     let effects = catalogue::load_effects(effects).map_err(Error::Specification)?;
     let path = task.spec.display().to_string();
     let specification = Specification {
         path: &path,
-        text: &text,
+        text: &model.source.text,
         order,
     };
     let stop = match limit {
@@ -67,12 +68,28 @@ pub fn discover(task: &Task<'_>, limit: Option<f64>, effects: Option<&Path>) -> 
     document["seconds"] = json!(begin.elapsed().as_secs_f64());
     let out = task.out;
     write_file(&out.join("extended.toml"), found.extended.as_bytes())?;
+    copy_tables(&model, task)?;
     write_file(&out.join("report.html"), found.to_html().as_bytes())?;
     for experiment in &found.experiments {
         write_file(&out.join(&experiment.name), experiment.text.as_bytes())?;
     }
     write_json(&out.join("discovery.json"), &document)?;
     Ok(document)
+}
+
+/// Copies the tables of mode shapes to the folder of the extended specification, unless it is that of the original.
+fn copy_tables(model: &Model, task: &Task<'_>) -> Result {
+    let folder = task.spec.parent().unwrap_or(Path::new(""));
+    let tables = model.fields.iter().filter_map(|field| field.basis.table());
+    for table in tables {
+        let [from, to] = [folder, task.out].map(|folder| folder.join(&table.file));
+        let read = |path: &Path| std::fs::read(path);
+        let text = read(&from).map_err(|error| Error::file("read", &from, &error))?;
+        if read(&to).ok().as_ref() != Some(&text) {
+            write_file(&to, &text)?;
+        }
+    }
+    Ok(())
 }
 
 /// Checks before the work that the output files can be written.
@@ -91,18 +108,17 @@ fn seconds(limit: f64) -> Result<Duration> {
         .ok_or_else(|| Error::input(format!("--limit {limit:?}: expected a time in s above 0")))
 }
 
-/// Reads the specification's text, the truncation order and the dataset.
-fn inputs(task: &Task<'_>) -> Result<(String, Option<usize>, Dataset)> {
+/// Reads the specification, the truncation order and the dataset.
+fn inputs(task: &Task<'_>) -> Result<(Model, Option<usize>, Dataset)> {
     let model = load(task.spec)?.model;
     let (model, open_loop) = open_loop(model, task.dataset).map_err(Error::records)?;
-    let text = model.source.text.to_string();
     orders(&model, task.order)?;
     let order = task.order.and_then(|order| order.trim().parse().ok());
     let dataset = read_dataset(task.dataset, &model).map_err(Error::records)?;
     for note in open_loop.iter().chain(&dataset.notes) {
         warn(&format!("note: {note}"));
     }
-    Ok((text, order, dataset))
+    Ok((model, order, dataset))
 }
 
 fn write_json(path: &Path, document: &Value) -> Result {

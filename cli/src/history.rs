@@ -1,6 +1,7 @@
 //! Figure (SVG) of a motion over time: coordinates, first-order states and observables. Quantities of the same kind and
 //! unit share a panel, unless one of them would be a flat line in it.
 
+use eomgen_codegen::program::Quantity;
 use eomgen_compiled_model::CompiledModel;
 use eomgen_plot::{Panel, Series, TimeHistory, time_history};
 
@@ -19,11 +20,18 @@ const MIN_RANGE_FRACTION: f64 = 0.05;
 /// Draws a table of states and observables, without rates.
 pub fn figure(compiled: &CompiledModel, table: &Table) -> Result<String> {
     let times = table.column("t").unwrap_or_default();
+    let program = compiled.program();
+    let described = [
+        &program.coordinates,
+        &program.first_order,
+        &program.observables,
+    ];
+    let described: Vec<Quantity> = described.into_iter().flatten().cloned().collect();
     let mut panels: Vec<Panel<'_>> = Vec::new();
-    for (names, what) in [
-        (coordinates(compiled), "Coordinates"),
-        (first_order(compiled), "First-order states"),
-        (observables(compiled), "Observables"),
+    for names in [
+        coordinates(compiled),
+        first_order(compiled),
+        observables(compiled),
     ] {
         let mut group: Vec<Panel<'_>> = Vec::new();
         for (name, unit) in names {
@@ -51,7 +59,7 @@ pub fn figure(compiled: &CompiledModel, table: &Table) -> Result<String> {
         }
         for panel in &mut group {
             let names: Vec<&str> = panel.series.iter().map(|curve| &curve.label[..]).collect();
-            panel.title = format!("{what}: {}", names.join(", "));
+            panel.title = title(&described, &names);
         }
         panels.extend(group);
     }
@@ -66,6 +74,20 @@ pub fn figure(compiled: &CompiledModel, table: &Table) -> Result<String> {
         panels,
     };
     time_history(&history).map_err(|error| Error::input(format!("--plot: {error}")))
+}
+
+/// Returns the title of a panel: the description of its only quantity, if it has one, and the names.
+fn title(described: &[Quantity], names: &[&str]) -> String {
+    let mut known = described.iter();
+    let doc = match names {
+        [only] => known.find(|quantity| quantity.name == *only),
+        _ => None,
+    };
+    let mut letters = doc.map_or("", |quantity| &quantity.doc).chars();
+    match letters.next() {
+        Some(first) => format!("{}{}: {}", first.to_uppercase(), letters.as_str(), names[0]),
+        None => names.join(", "),
+    }
 }
 
 /// Returns true if all curves of the panel and the new one are visible in it together.
@@ -126,6 +148,23 @@ mod tests {
             values,
             ..Series::default()
         }
+    }
+
+    #[test]
+    fn title_describes_a_single_quantity() {
+        let observable = |name: &str, doc: &str| Quantity {
+            name: name.to_owned(),
+            unit: "J".to_owned(),
+            doc: doc.to_owned(),
+        };
+        let described = [
+            observable("energy", "kinetic plus potential energy"),
+            observable("work", ""),
+        ];
+        let title = |names: &[&str]| title(&described, names);
+        assert_eq!(title(&["energy"]), "Kinetic plus potential energy: energy");
+        assert_eq!(title(&["work"]), "work");
+        assert_eq!(title(&["energy", "work"]), "energy, work");
     }
 
     #[test]

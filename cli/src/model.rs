@@ -18,7 +18,7 @@ use crate::input_file::register_input;
 pub fn read(path: &Path) -> Result<Checked> {
     eomgen_model_spec::load(path).map_err(|found| match is_dataset(&found) {
         true => Error::input(format!(
-            "{0} is a dataset file; the specification comes first: eomgen compare SPEC.toml {0} --out DIR",
+            "{} is a dataset file: give it to `compare` or `discover` after the specification",
             path.display()
         )),
         false => Error::Specification(found),

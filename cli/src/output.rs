@@ -48,6 +48,21 @@ impl Destination {
         Self::for_output(path, json)
     }
 
+    /// Returns the destination of a page in `--out`.
+    ///
+    /// # Errors
+    /// Those of [`Destination::for_output`], and another format than HTML.
+    pub fn for_page(path: &Path, json: bool) -> Result<Self> {
+        let ending = path.extension().filter(|_| !is_device(path));
+        if ending.is_some_and(|ending| !ending.eq_ignore_ascii_case("html")) {
+            return Err(Error::input(format!(
+                "--out {}: a page is an HTML file: give a name that ends in .html",
+                path.display()
+            )));
+        }
+        Self::for_output(path, json)
+    }
+
     /// Returns the destination of `--plot`. `output` is the path of `--out`.
     ///
     /// # Errors

@@ -397,9 +397,6 @@ pub const SAMPLING_JITTER: f64 = 0.1;
 /// Difference for the quotient by a parameter, as a fraction of its scale.
 pub const PARAMETER_QUOTIENT_IN_SCALES: f64 = 0.01;
 
-/// Maximum relative error of tangent vectors that are integrated with a motion, without impacts.
-pub const MAX_TANGENT_ERROR: f64 = 0.1;
-
 /// Difference for a central quotient, as a fraction of the scale of a parameter or the range of a
 /// state: far above rounding. Its error decreases with the square.
 pub const CENTRAL_QUOTIENT_IN_SCALES: f64 = 0.001;
@@ -563,6 +560,10 @@ pub const MAX_UNKNOWNS_ABOVE_FLOOR: usize = 3;
 /// Maximum gap of a channel for a correct model, in noise floors. Noise differs in each record.
 pub const MAX_FLOORS_OF_CORRECT_MODEL: f64 = 1.5;
 
+/// Deviation of a nuisance from its prior, in standard deviations, that is noted: one in twenty is larger by chance. A
+/// constant force of 1 N on an axis with a spring left a bias of 2.5.
+pub const MIN_NOTED_PRIOR_DEVIATION: f64 = 2.0;
+
 /// Fraction of `MAX_PRIOR_DEVIATION` above which a nuisance is at its bound, because estimates end
 /// within rounding of it.
 pub const BOUND_FRACTION: f64 = 0.99;
@@ -573,6 +574,9 @@ pub const MIN_DELAY_RATIO: f64 = 0.9;
 /// Lead of a channel, in sample intervals, that held inputs explain: half an interval, with its
 /// uncertainty.
 pub const HALF_INTERVAL_LEAD: std::ops::Range<f64> = 0.35..0.65;
+
+/// Minimum lead of a channel, in its standard deviations.
+pub const MIN_LEAD_DEVIATIONS: f64 = 3.0;
 
 /// Minimum fraction of samples at which an input changes, of an input that changes continuously.
 pub const MIN_CHANGING_FRACTION: f64 = 0.5;

@@ -86,6 +86,11 @@ impl Function {
         )
     }
 
+    /// Returns true if the value of the function jumps: at its surface, or at the cut of an angle.
+    pub fn has_jump(self) -> bool {
+        matches!(self, Self::Sign | Self::Contact | Self::Above | Self::Atan2)
+    }
+
     fn entry(self) -> Option<&'static (&'static str, Self, &'static [&'static str])> {
         FUNCTIONS.iter().find(|(_, function, _)| *function == self)
     }

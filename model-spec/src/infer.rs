@@ -146,12 +146,19 @@ impl Inference<'_> {
         let missing = expected.divide(inferred)?;
         let factor = format!("a factor in {missing} would correct the unit");
         let mut found = Vec::new();
-        let with_unit = wrong.iter().filter(|_| !expected.is_dimensionless());
-        for expr in with_unit {
+        let with_unit = || wrong.iter().filter(|_| !expected.is_dimensionless());
+        for expr in with_unit() {
             self.list_without_unit(expr, &mut found);
         }
+        let is_number = inferred.is_dimensionless();
+        let number = with_unit().find_map(|expr| find_measured_number(expr, is_number));
         Some(match &found[..] {
-            [] => factor,
+            [] => match number {
+                Some(number) => format!(
+                    "{factor}; {number} has no unit, so declare it in [parameters] with one"
+                ),
+                None => factor,
+            },
             [name] => format!("{factor}; `{name}` has no unit"),
             several => format!("{factor}; `{}` have no unit", several.join("`, `")),
         })
@@ -344,4 +351,22 @@ fn rational_exponent(expr: &Expr) -> Option<Exponent> {
 fn unit_overflow_error(span: Span) -> Diagnostic {
     Diagnostic::error("an exponent in the unit of this expression overflows")
         .with_span(span, "exponent too large")
+}
+
+/// Returns a number in an expression that probably has a unit: one that is not a multiple of 1/2, or any but 1 if the
+/// whole expression `is_number`.
+fn find_measured_number(expr: &Expr, is_number: bool) -> Option<f64> {
+    let mut found = None;
+    expr.visit(&mut |part| {
+        if let ExprKind::Number(value) = part.kind {
+            let is_factor = match is_number {
+                true => value.abs() == 1.0,
+                false => (2.0 * value).fract() == 0.0,
+            };
+            if !is_factor && value != 0.0 {
+                found = found.or(Some(value));
+            }
+        }
+    });
+    found
 }

@@ -239,6 +239,13 @@ pub struct Input {
     pub span: Span,
 }
 
+impl Input {
+    /// Returns true for a prescribed motion, but not for its rates.
+    pub fn is_prescribed(&self) -> bool {
+        self.rate.is_some() && self.rate_of.is_none()
+    }
+}
+
 /// First-order state z, with dz/dt = `rate`: a filter, an actuator, a current.
 #[derive(Clone, Debug)]
 pub struct State {
@@ -666,6 +673,12 @@ pub struct Expr {
 }
 
 impl Model {
+    /// Returns the index of each prescribed motion among the inputs. Its rate and its second rate follow it.
+    pub fn prescribed_inputs(&self) -> impl Iterator<Item = usize> {
+        let inputs = self.inputs.iter().enumerate();
+        inputs.filter_map(|(place, input)| input.is_prescribed().then_some(place))
+    }
+
     /// Returns true if an expression contains the time, and otherwise only numbers, parameters and
     /// definitions of these.
     pub fn is_function_of_time(&self, expr: &Expr) -> bool {

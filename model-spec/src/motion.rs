@@ -342,7 +342,10 @@ impl Checker<'_, '_> {
             self.found.push(
                 Diagnostic::error("multipliers and residuals are allowed only in [observables]")
                     .with_span(place, "this is the multiplier or residual of a constraint")
-                    .with_help("they follow from the motion, so the motion cannot depend on them"),
+                    .with_help(
+                        "they follow from the motion, so the motion cannot depend on them; for friction proportional to \
+                         the force of a guide, replace its constraint by two [impacts] with `friction`",
+                    ),
             );
         }
         motion

@@ -59,7 +59,7 @@ impl ShapeTable {
             return Err(refused(format!(
                 "the table \"{name}\" cannot be found: the specification was given as text, without a folder"
             ))
-            .with_help("give the specification as a file; `compare`, `discover`, sections in a macro and specifications given as text do not support tables"));
+            .with_help("give the specification as a file; sections in a macro and specifications given as text do not support tables"));
         };
         let text = adjacent_file::read(folder, name).map_err(|error| {
             refused(format!("the table \"{name}\" {}", error.0)).with_help(error.1)

@@ -132,7 +132,7 @@ const RAISED: [(char, char); 11] = [
 ];
 
 /// Units outside SI, with their cure.
-const OUTSIDE_SI: [(&[&str], &str); 9] = [
+const OUTSIDE_SI: [(&[&str], &str); 10] = [
     (
         &["rpm", "RPM"],
         "give the speed in rad/s: 1 rpm is 2 pi/60 rad/s",
@@ -148,6 +148,10 @@ const OUTSIDE_SI: [(&[&str], &str); 9] = [
     (
         &["lb", "lbs", "lbm"],
         "give the mass in kg: 1 lb is 0.45359237 kg",
+    ),
+    (
+        &["t", "ton", "tonne"],
+        "give the mass in Mg: 1 t is 1 Mg, 1000 kg",
     ),
     (&["lbf"], "give the force in N: 1 lbf is 4.4482216152605 N"),
     (&["psi"], "give the pressure in Pa: 1 psi is 6894.757 Pa"),

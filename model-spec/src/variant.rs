@@ -209,7 +209,7 @@ impl Model {
     pub fn typical_inputs(&self, without_range: f64) -> Result<Vec<f64>, ModelError> {
         let ranges = self.input_ranges()?;
         let typical = self.inputs.iter().zip(ranges).map(|(input, range)| {
-            match (input.rate.is_some() && input.rate_of.is_none(), range) {
+            match (input.is_prescribed(), range) {
                 (true, Some((low, high))) => 0.5 * (low + high),
                 (true, None) => without_range,
                 (false, _) => 0.0,

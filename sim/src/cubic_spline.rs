@@ -34,14 +34,21 @@ impl CubicSpline {
 
     /// Returns the value and its first and second derivative at a time, s.
     pub fn evaluate(&self, t: f64) -> [f64; 3] {
+        let [value, rate, second, _] = self.evaluate_piece(t, t);
+        [value, rate, second]
+    }
+
+    /// Returns the value and its first three derivatives at a time, on the cubic of another time, both in s.
+    pub fn evaluate_piece(&self, t: f64, piece: f64) -> [f64; 4] {
         let last = self.times.len() - 1;
-        if t < self.times[0] {
-            return [self.values[0], 0.0, 0.0];
+        if piece < self.times[0] {
+            return [self.values[0], 0.0, 0.0, 0.0];
         }
-        if t > self.times[last] || last == 0 {
-            return [self.values[last], 0.0, 0.0];
+        if piece > self.times[last] || last == 0 {
+            return [self.values[last], 0.0, 0.0, 0.0];
         }
-        let after = self.times.partition_point(|time| *time <= t).clamp(1, last);
+        let after = self.times.partition_point(|time| *time <= piece);
+        let after = after.clamp(1, last);
         let (a, b) = (after - 1, after);
         let h = self.times[b] - self.times[a];
         let (left, right) = ((self.times[b] - t) / h, (t - self.times[a]) / h);
@@ -53,6 +60,7 @@ impl CubicSpline {
             left * y_a + right * y_b + bend(left) * m_a + bend(right) * m_b,
             (y_b - y_a) / h - slope(left) * m_a + slope(right) * m_b,
             left * m_a + right * m_b,
+            (m_b - m_a) / h,
         ]
     }
 }
@@ -187,6 +195,17 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn third_derivative_is_that_of_the_given_piece() {
+        let of = |t: f64| 1.0 - 2.0 * t + 0.5 * t * t - 0.7 * t * t * t;
+        let spline = spline(&[0.0, 0.3, 0.5, 1.1], of);
+        for piece in [0.1, 0.4, 1.0] {
+            let [value, _, _, third] = spline.evaluate_piece(0.3, piece);
+            assert!((value - of(0.3)).abs() < 1e-12 && (third + 4.2).abs() < 1e-11);
+        }
+        assert_eq!(spline.evaluate_piece(0.0, -0.1), [1.0, 0.0, 0.0, 0.0]);
     }
 
     #[test]

@@ -89,7 +89,7 @@ pub fn decide_with_discs(
         let own = rows(&s, &disc.rows);
         let length = own.norm();
         let rate = rows(&u, &disc.rows).norm();
-        let size = rows(&rates.c, &disc.rows).norm() + rate;
+        let size = rows(&rates.c, &disc.rows).norm() + problem.own(disc).norm();
         let is_sliding = length >= 1.0 - CONVERGED_CHANGE && rate > RATE_ROUNDING * size;
         match is_sliding || disc.exceeds_limit || !problem.may_hold(disc) {
             true => DiscVerdict::Slides((own / length).iter().copied().collect()),
@@ -166,9 +166,9 @@ impl Problem<'_> {
             .into_owned()
     }
 
-    /// Returns true if friction of the disc opposes sliding.
+    /// Returns true if friction of the disc does not drive sliding.
     fn may_hold(&self, disc: &DiscArrival) -> bool {
-        self.own(disc).trace() < 0.0
+        self.own(disc).trace() <= 0.0
     }
 
     fn solve_disc(&self, s: &DVector<f64>, disc: &DiscArrival) -> DVector<f64> {
@@ -178,9 +178,13 @@ impl Problem<'_> {
         }
         let all = &self.rates.c + &self.rates.w * s;
         let free = rows(&all, &disc.rows) - &own * rows(s, &disc.rows);
+        if own.amax() == 0.0 {
+            // Contacts stop the sliding, or move it.
+            return free.clone() / free.norm().max(f64::MIN_POSITIVE);
+        }
         let held = solve_least_squares(&own, -free.clone());
         let rest = (&free + &own * &held).norm();
-        if held.norm() <= 1.0 && rest <= RATE_ROUNDING * free.norm() {
+        if held.norm() <= 1.0 && rest <= RATE_ROUNDING * (free.norm() + own.norm()) {
             return held;
         }
         // u = k s with |s| = 1 and k > 0: (k - W) s = c.

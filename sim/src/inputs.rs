@@ -192,6 +192,24 @@ impl HeldInputs {
         Cow::Owned(self.complete(held.to_vec(), t, after))
     }
 
+    /// Returns the inputs at a time (s), in the order of the model, where those that are held have given values.
+    pub fn evaluate_with_held<'h>(&self, t: f64, held: &'h [f64]) -> Cow<'h, [f64]> {
+        match self.is_time_varying() {
+            true => Cow::Owned(self.complete(held.to_vec(), t, t)),
+            false => Cow::Borrowed(held),
+        }
+    }
+
+    /// Returns the prescribed motion from index `place` on and its first three derivatives at a time, on the cubic of
+    /// another time, both in s. A motion without samples rests.
+    pub fn evaluate_prescribed(&self, place: usize, t: f64, piece: f64) -> [f64; 4] {
+        let mut prescribed = self.prescribed.iter();
+        match prescribed.find(|(first, _)| *first == place) {
+            Some((_, spline)) => spline.evaluate_piece(t, piece),
+            None => [self.last_sample(piece)[place], 0.0, 0.0, 0.0],
+        }
+    }
+
     /// Returns the inputs just before a time (s), in the order of the model, where those that are held have given values.
     pub fn evaluate_before(&self, t: f64, held: &[f64]) -> Vec<f64> {
         let before = if self.is_jump(t) { t.next_down() } else { t };

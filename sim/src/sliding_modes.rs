@@ -6,8 +6,10 @@
 //! friction, W is -J M^-1 J^T times the friction levels, and the rates that solve the problem are
 //! unique.
 
+use std::ops::Range;
+
 use eomgen_analysis::qr_iteration;
-use eomgen_codegen::independence::vectors::max_magnitude;
+use eomgen_codegen::independence::vectors::dot;
 use nalgebra::{DMatrix, DVector};
 
 /// Rates below this fraction of their terms count as rounding.
@@ -15,6 +17,10 @@ pub(crate) const RATE_ROUNDING: f64 = 1e-10;
 
 /// Singular values below this fraction of the largest belong to dependent surfaces.
 pub const MIN_SINGULAR_VALUE_FRACTION: f64 = 1e-10;
+
+/// Increase of the effect of a row on itself for values beyond limits, relative to that effect. It is small
+/// compared with [`RATE_ROUNDING`], so that an error that is no rounding gives a value far beyond its limit.
+const OWN_EFFECT_EXCESS: f64 = 1e-13;
 
 /// Error of a row of a solved system, in roundings of its terms.
 const ROW_ROUNDINGS: f64 = 64.0;
@@ -119,9 +125,10 @@ impl Rates {
         let free = &self.c + &self.w * &s;
         let right = DVector::from_iterator(held.len(), held.iter().map(|i| -free[*i]));
         let w = DMatrix::from_fn(held.len(), held.len(), |r, c| self.w[(held[r], held[c])]);
-        let mut values = solve_least_squares(&w, right);
-        if self.sharing == Sharing::LeastMaximum {
-            reduce_largest(&w, values.as_mut_slice());
+        let (mut values, can_hold) = solve_holding(&w, &right);
+        if can_hold && self.sharing == Sharing::LeastMaximum {
+            let groups: Vec<Range<usize>> = (0..values.len()).map(|row| row..row + 1).collect();
+            reduce_largest(&w, values.as_mut_slice(), &groups);
         }
         for (i, value) in held.iter().zip(&values) {
             s[*i] = *value;
@@ -162,13 +169,21 @@ impl Rates {
         let held = held_surfaces(sides);
         let verdict = |i: usize| match sides[i] {
             None => Verdict::Holds(s[i].clamp(-1.0, 1.0)),
-            Some(side) if self.is_dependent(&held, i) => Verdict::AtLimit(side),
+            Some(side) if self.is_at_rest(s, i) && self.is_dependent(&held, i) => {
+                Verdict::AtLimit(side)
+            }
             Some(side) => Verdict::Releases(side),
         };
         (0..sides.len()).map(verdict).collect()
     }
 
-    /// Returns true if the rate of a surface vanishes whenever those of the held surfaces do.
+    /// Returns true if the rate of a surface is rounding at the values s.
+    fn is_at_rest(&self, s: &DVector<f64>, i: usize) -> bool {
+        let (rate, size) = self.rate(s, i);
+        rate.abs() <= RATE_ROUNDING * size
+    }
+
+    /// Returns true if the forces change the rate of a surface only with those of the held surfaces.
     fn is_dependent(&self, held: &[usize], i: usize) -> bool {
         if held.is_empty() {
             return false;
@@ -233,6 +248,37 @@ pub fn solve_least_squares(w: &DMatrix<f64>, b: DVector<f64>) -> DVector<f64> {
     }
 }
 
+/// Returns values x that hold surfaces, W x = b, the smallest if surfaces depend on each other, and true. If such surfaces
+/// move apart, so that no values within limits hold all of them, returns values beyond their limits, and false.
+pub fn solve_holding(w: &DMatrix<f64>, b: &DVector<f64>) -> (DVector<f64>, bool) {
+    let values = solve_least_squares(w, b.clone());
+    if b.len() <= 1 {
+        return (values, true);
+    }
+    let errors = w * &values - b;
+    let is_held = |(row, error): (usize, &f64)| {
+        let largest: f64 = w.row(row).iter().map(|entry| entry.abs()).sum();
+        error.abs() <= RATE_ROUNDING * largest
+    };
+    if errors.iter().enumerate().all(is_held) {
+        return (values, true);
+    }
+    match solve_beyond_limits(w, b) {
+        Some(beyond) => (beyond, false),
+        None => (values, true),
+    }
+}
+
+/// Returns a solution of W x = b with a little more effect of each row on itself, which makes it finite if rows contradict
+/// each other. It is then far beyond the limits of forces.
+pub(crate) fn solve_beyond_limits(w: &DMatrix<f64>, b: &DVector<f64>) -> Option<DVector<f64>> {
+    let (mut divided, sizes) = divide_rows(w);
+    for own in 0..w.nrows() {
+        divided[(own, own)] *= 1.0 + OWN_EFFECT_EXCESS;
+    }
+    divided.lu().solve(&b.component_div(&sizes))
+}
+
 /// Returns the smallest least-squares solution; 0 if there is none. A step of refinement makes the error of each row a
 /// rounding of its own terms (R. D. Skeel, Math. Comp. 35 (1980) 817-832).
 fn solve_refined(w: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
@@ -265,8 +311,8 @@ const MAX_PASSES: usize = 20;
 const MIN_REDUCTION: f64 = 1e-3;
 
 /// Reduces the largest magnitude of the values s while W s stays the same: surfaces that depend on each other share their
-/// forces, and all of them hold as long as they can.
-pub fn reduce_largest(w: &DMatrix<f64>, s: &mut [f64]) {
+/// forces, and all of them hold as long as they can. Each of the `groups` of rows is a vector, which counts by its length.
+pub fn reduce_largest(w: &DMatrix<f64>, s: &mut [f64], groups: &[Range<usize>]) {
     if s.len() <= 1 {
         return;
     }
@@ -277,47 +323,95 @@ pub fn reduce_largest(w: &DMatrix<f64>, s: &mut [f64]) {
     let Some(rows) = v.v_t else { return };
     let null = v.singular_values.iter().enumerate();
     let null = null.filter(|(_, value)| **value <= MIN_SINGULAR_VALUE_FRACTION * most);
-    let directions: Vec<Vec<f64>> = null
-        .map(|(row, _)| rows.row(row).iter().copied().collect())
-        .collect();
+    let null: Vec<DVector<f64>> = null.map(|(row, _)| rows.row(row).transpose()).collect();
     for _ in 0..MAX_PASSES {
-        let before = max_magnitude(&*s);
-        for direction in &directions {
-            let step = find_best_step(s, direction);
-            let entries = s.iter_mut().zip(direction);
+        let before = largest_length(s, groups);
+        for own in groups {
+            let direction = project_group(&null, (&*s, own));
+            let squares = squares_along(s, &direction, groups);
+            let step = find_best_step(&squares);
+            let entries = s.iter_mut().zip(&direction);
             entries.for_each(|(entry, part)| *entry += step * part);
         }
-        if directions.len() <= 1 || max_magnitude(&*s) > before * (1.0 - MIN_REDUCTION) {
+        if null.len() <= 1 || largest_length(s, groups) > before * (1.0 - MIN_REDUCTION) {
             return;
         }
     }
 }
 
-/// Returns the largest magnitude of `values` after a step along a direction.
-fn largest_after(values: &[f64], direction: &[f64], step: f64) -> f64 {
-    let entries = values.iter().zip(direction);
-    entries.fold(0.0, |most, (value, part)| {
-        most.max((value + step * part).abs())
-    })
+/// Returns the projection of the vector of one group of rows onto the directions in which W s does not change. Other
+/// axes of the group give the same projection.
+fn project_group(null: &[DVector<f64>], (s, own): (&[f64], &Range<usize>)) -> Vec<f64> {
+    let mut projection = vec![0.0; s.len()];
+    for direction in null {
+        let part = dot(&direction.as_slice()[own.clone()], &s[own.clone()]);
+        let entries = projection.iter_mut().zip(direction.iter());
+        entries.for_each(|(entry, along)| *entry += part * along);
+    }
+    projection
 }
 
-/// Returns the step along a direction after which the largest magnitude of `values` is least: two magnitudes are equal
-/// there.
-fn find_best_step(values: &[f64], direction: &[f64]) -> f64 {
-    let mut best = (0.0, max_magnitude(values));
-    for (i, a) in direction.iter().enumerate() {
-        for (j, b) in direction.iter().enumerate().skip(i) {
-            let sums = [
-                (values[i] + values[j], a + b),
-                (values[i] - values[j], a - b),
+fn largest_length(s: &[f64], groups: &[Range<usize>]) -> f64 {
+    let squares = groups
+        .iter()
+        .map(|rows| dot(&s[rows.clone()], &s[rows.clone()]));
+    squares.fold(0.0, f64::max).sqrt()
+}
+
+/// Square of the length of a vector a + x b, as a function of the step x.
+struct SquareAlong {
+    /// b b
+    second: f64,
+    /// a b
+    first: f64,
+    /// a a
+    constant: f64,
+}
+
+impl SquareAlong {
+    fn evaluate(&self, step: f64) -> f64 {
+        (self.second * step + 2.0 * self.first) * step + self.constant
+    }
+}
+
+/// Returns the squares of all vectors along a direction.
+fn squares_along(values: &[f64], direction: &[f64], groups: &[Range<usize>]) -> Vec<SquareAlong> {
+    let squares = groups.iter().map(|rows| {
+        let (a, b) = (&values[rows.clone()], &direction[rows.clone()]);
+        SquareAlong {
+            second: dot(b, b),
+            first: dot(a, b),
+            constant: dot(a, a),
+        }
+    });
+    squares.collect()
+}
+
+fn largest_square_after(squares: &[SquareAlong], step: f64) -> f64 {
+    let after = squares.iter().map(|square| square.evaluate(step));
+    after.fold(0.0, f64::max)
+}
+
+/// Returns the step after which the largest square is least: one square has its minimum there, or two are equal.
+fn find_best_step(squares: &[SquareAlong]) -> f64 {
+    let mut best = (0.0, largest_square_after(squares, 0.0));
+    for (i, a) in squares.iter().enumerate() {
+        let minimum = -a.first / a.second;
+        let equal = squares[i + 1..].iter().flat_map(|b| {
+            let [second, first, constant] = [
+                a.second - b.second,
+                a.first - b.first,
+                a.constant - b.constant,
             ];
-            for (value, slope) in sums {
-                let step = -value / slope;
-                if step.is_finite() {
-                    let largest = largest_after(values, direction, step);
-                    if largest < best.1 {
-                        best = (step, largest);
-                    }
+            let root = (first * first - second * constant).max(0.0).sqrt();
+            let sum = -(first + root.copysign(first));
+            [sum / second, constant / sum]
+        });
+        for step in std::iter::once(minimum).chain(equal) {
+            if step.is_finite() {
+                let largest = largest_square_after(squares, step);
+                if largest < best.1 {
+                    best = (step, largest);
                 }
             }
         }
@@ -397,5 +491,30 @@ mod tests {
             let found = decide(&rates, &[Arrival { side, ..UP }]).expect("an answer");
             assert_eq!(found, [Verdict::Releases(side)]);
         }
+    }
+
+    #[test]
+    fn discs_share_a_force_by_length_in_every_direction() {
+        // Two discs with the levels 3 and 1 under the same velocity in a plane.
+        let w = -DMatrix::from_fn(4, 4, |row, column| {
+            let level = if column < 2 { 3.0 } else { 1.0 };
+            level * f64::from(u8::from(row % 2 == column % 2))
+        });
+        for angle in [0.0_f64, 0.4, 2.1, 3.9] {
+            let load = DVector::from_fn(4, |row, _| [angle.cos(), angle.sin()][row % 2]);
+            let mut s = solve_least_squares(&w, -load.clone());
+            reduce_largest(&w, s.as_mut_slice(), &[0..2, 2..4]);
+            assert!((&w * &s + &load).amax() < 1e-12, "{angle}: {s}");
+            for disc in [0..2, 2..4] {
+                let length = dot(&s.as_slice()[disc.clone()], &s.as_slice()[disc]).sqrt();
+                assert!((length - 0.25).abs() < 1e-9, "{angle}: {s}");
+            }
+        }
+        // Along a wall, a contact bears the force across it.
+        let along = DVector::from_vec(vec![0.8, 0.6]);
+        let w = -(&along * along.transpose());
+        let mut s = &along * 0.7;
+        reduce_largest(&w, s.as_mut_slice(), std::slice::from_ref(&(0..2)));
+        assert!((&s - &along * 0.7).amax() < 1e-12, "{s}");
     }
 }

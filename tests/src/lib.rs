@@ -1,7 +1,8 @@
 //! Shared code of the integration tests: shipped specifications with their derived variants
 //! ([`models`]), generated models with their motions ([`motions`]) or certificates ([`certified`]),
 //! random correct models ([`smooth_models`]), the built program ([`program`]), commands printed in
-//! the docs ([`pages`]), synthetic records ([`measured`], with [`logistic_noise`]) and the arm
+//! the docs ([`pages`]), synthetic records ([`measured`], with [`logistic_noise`], and [`moving_base`] with
+//! [`moving_machines`]) and the arm
 //! integrated in extended precision ([`taylor`]).
 
 pub mod certified;
@@ -9,6 +10,8 @@ pub mod logistic_noise;
 pub mod measured;
 pub mod models;
 pub mod motions;
+pub mod moving_base;
+pub mod moving_machines;
 pub mod pages;
 pub mod piecewise;
 pub mod program;

@@ -12,3 +12,28 @@ impl Numbers {
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
     }
 }
+
+/// Normal numbers (Box and Muller 1958) from a multiplicative generator (Park and Miller 1988).
+pub struct NormalNumbers(u64);
+
+impl NormalNumbers {
+    /// Starts with a seed other than 0. The first numbers, which are close to each other for close seeds, are skipped.
+    pub fn new(seed: u64) -> Self {
+        let mut numbers = Self(seed);
+        for _ in 0..20 {
+            numbers.uniform();
+        }
+        numbers
+    }
+
+    fn uniform(&mut self) -> f64 {
+        self.0 = self.0 * 48_271 % 2_147_483_647;
+        self.0 as f64 / 2_147_483_647.0
+    }
+
+    /// Returns the next number, of mean 0 and variance 1.
+    pub fn draw(&mut self) -> f64 {
+        let (a, b) = (self.uniform(), self.uniform());
+        (-2.0 * a.ln()).sqrt() * (2.0 * std::f64::consts::PI * b).cos()
+    }
+}

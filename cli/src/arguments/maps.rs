@@ -44,6 +44,7 @@ pub struct Sweep {
     /// Quantities to compute. `lyapunov`: the largest Lyapunov exponent. `poincare` or `poincare:NAME`: the
     /// first or another coordinate or rate, once per forcing period or on --section. `max:NAME`, `rms:NAME`,
     /// `final:NAME`: maximum, RMS or final value of an observable, coordinate or rate over the entire motion.
+    /// The maximum is signed. The largest magnitude is the maximum of an observable such as `abs(theta)`.
     #[arg(
         long,
         value_name = "NAME[,NAME...]",

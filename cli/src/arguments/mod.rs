@@ -26,7 +26,12 @@ pub use shared::{ModelFile, ParameterValues, Solver};
 
 /// Generates fast, checked equations of motion in Rust and C from the energies of a mechanical system.
 #[derive(Parser)]
-#[command(name = "eomgen", version, arg_required_else_help = true)]
+#[command(
+    name = "eomgen",
+    version,
+    arg_required_else_help = true,
+    after_help = "Example, in a clone of the repository:\n  eomgen simulate model-spec/models/pendulum.toml --until 10 --out swing.csv --plot swing.svg\n`eomgen COMMAND --help` prints the options of a command and examples.\nDocumentation: docs/ in the repository, beginning with docs/first_machine.md; docs/commands.md describes the commands."
+)]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
@@ -121,22 +126,22 @@ pub enum Command {
     Generate(Generate),
     /// Emit and certify all variants that a file lists, with a manifest.
     #[command(
-        after_help = "Examples:\n  eomgen family slew_family.toml --out models\n  eomgen family slew_family.toml --out models --check\ndocs/families.md describes the file."
+        after_help = "Examples:\n  eomgen family generated/family.toml --out models\n  eomgen family generated/family.toml --out models --check\ndocs/families.md describes the file."
     )]
     Family(Family),
     /// Compile an emitted source as it is and repeat the checks of its certificate on it.
     #[command(
-        after_help = "Examples:\n  eomgen verify models/slew_1/mod.rs models/slew_1/certificate.json\n  eomgen verify models/slew_1/slew_1.c models/slew_1/certificate.json \\\n      --cc \"gcc -O2 -ffp-contract=off\""
+        after_help = "Examples:\n  eomgen verify generated/src/variants/planetary_arm_rigid/mod.rs \\\n      generated/src/variants/planetary_arm_rigid/certificate.json\n  eomgen generate model-spec/models/pendulum.toml --target c99 --certify --out pendulum\n  eomgen verify pendulum/pendulum.c pendulum/certificate.json \\\n      --cc \"gcc -O2 -ffp-contract=off\""
     )]
     Verify(Verify),
     /// List the emitted variants in an object file, a library or a firmware image.
     #[command(
-        after_help = "Examples:\n  eomgen identify firmware.elf\n  eomgen identify firmware.bin --certificates models"
+        after_help = "Example:\n  eomgen generate model-spec/models/pendulum.toml --target c99 --certify --out pendulum\n  cc -c pendulum/pendulum.c -o pendulum.o\n  eomgen identify pendulum.o --certificates pendulum"
     )]
     Identify(Identify),
     /// Bound the executed instructions and the stack of each function of a C file, compiled for a Cortex-M4F or Cortex-M7.
     #[command(
-        after_help = "Example:\n  eomgen instructions arm4/planetary_arm.c \\\n      --cc \"arm-none-eabi-gcc -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard -std=c99 -O2 -Dplanetary_arm_REAL=float\"\nA function with a loop whose number of iterations is not proven has no bound; the reason is printed, and the status is 1."
+        after_help = "Example:\n  eomgen generate model-spec/models/planetary_arm.toml --order 4 --target c99 --out arm4\n  eomgen instructions arm4/planetary_arm.c \\\n      --cc \"arm-none-eabi-gcc -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 \\\n      -mfloat-abi=hard -std=c99 -O2 -Dplanetary_arm_REAL=float\"\nA function with a loop whose number of iterations is not proven has no bound; the reason is printed, and the status is 1."
     )]
     Instructions(Instructions),
     /// Check the derived equations against independent ones and write a certificate.
@@ -166,26 +171,28 @@ pub enum Command {
     Trim(Trim),
     /// Propose a dataset file for a record: number format, columns and noise, with guesses marked.
     #[command(
-        after_help = "Example:\n  eomgen dataset train.csv my_machine.toml --out proposed.toml\nA comment after each key explains its guess; docs/discovery.md describes all keys."
+        after_help = "Example:\n  eomgen dataset examples/measured/first.csv examples/measured/stage.toml \\\n      --out proposed.toml\nA comment after each key explains its guess; docs/discovery.md describes all keys."
     )]
     Dataset(Dataset),
     /// Report when and in which channels a model disagrees with its records.
     #[command(
-        after_help = "Example:\n  eomgen compare my_machine.toml dataset.toml --out compared"
+        after_help = "Example:\n  eomgen compare examples/measured/stage.toml examples/measured/dataset.toml --out compared"
     )]
     Compare(Compare),
     /// Find the effects that a model lacks, add them, and report the remaining residual.
     #[command(
-        after_help = "Examples:\n  eomgen discover my_machine.toml dataset.toml --out found --seed 1\n  eomgen discover my_machine.toml dataset.toml --out found --limit 60\nIf the records cannot separate two effects, found/experiment.csv is an input that does: apply it to the machine, add its record to the dataset file, and run the command again. Its bounds are described in docs/discovery.md."
+        after_help = "Example:\n  eomgen discover examples/measured/stage.toml examples/measured/dataset.toml \\\n      --out found --limit 60\nIf the records cannot separate two effects, found/experiment.csv is an input that does: apply it to the machine, add its record to the dataset file, and run the command again. Its bounds are described in docs/discovery.md."
     )]
     Discover(Discover),
     /// Measure the motion over a grid or over random samples of parameters.
     #[command(
-        after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml \\\n      --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 \\\n      --measure lyapunov,poincare --out map\n  eomgen sweep SPEC --vary b_sp,b_pr=0:100e-6:200 --vary omega=10:40:200 \\\n      --measure poincare --out DIR --shard 2/3\n  eomgen sweep SPEC --vary k=10:1e5:50:log --measure max:tip,rms:tip \\\n      --until 2 --out DIR\n  eomgen sweep SPEC --vary k=1:9:200 --measure poincare:y_dot \\\n      --section x=0:up --until 500 --out DIR\n  eomgen sweep SPEC --vary omega=10:40:1000 --measure poincare --out DIR \\\n      --engine slurm --shards 100\n  eomgen sweep SPEC --samples 1000 --seed 1 --measure max:tip --until 2 \\\n      --out DIR\nShards may run one after another or at the same time, into one folder, or into several folders whose `parts` are collected in\none folder afterwards. Then run `eomgen merge DIR`."
+        after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml \\\n      --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 \\\n      --measure lyapunov,poincare --out map\n  eomgen sweep model-spec/models/hub_beam_tip_mass.toml --vary M_t=0.01:1:50:log \\\n      --state theta_dot=1 --measure max:tip,rms:tip --until 2 --out tip\n  eomgen sweep model-spec/models/double_pendulum.toml --vary l_1=0.5:1:20 \\\n      --measure poincare:theta_2_dot --section theta_1=0:up \\\n      --transient 5 --periods 10 --until 60 --out section\n  eomgen sweep model-spec/models/planetary_arm.toml --vary omega=10:40:100 \\\n      --measure poincare --out shards --shard 2/3\n  eomgen sweep model-spec/models/planetary_arm.toml --vary omega=10:40:1000 \\\n      --measure poincare --out cluster --engine slurm --shards 100\nShards may run one after another or at the same time, into one folder, or into several folders whose `parts` are collected in one folder afterwards. Then run `eomgen merge DIR`."
     )]
     Sweep(Sweep),
     /// Combine the shards of a sweep; fails if shards are missing.
-    #[command(after_help = "Example:\n  eomgen merge map")]
+    #[command(
+        after_help = "Example:\n  eomgen sweep model-spec/models/pendulum.toml --vary k=1e-4:1e-3:20 \\\n      --measure rms:theta --until 5 --out friction --shard 1/2\n  eomgen sweep model-spec/models/pendulum.toml --vary k=1e-4:1e-3:20 \\\n      --measure rms:theta --until 5 --out friction --shard 2/2\n  eomgen merge friction"
+    )]
     Merge(Merge),
     /// Reproduce the paper: its numerical studies and its claims.
     #[command(

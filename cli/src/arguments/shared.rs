@@ -21,7 +21,7 @@ pub fn seconds(text: &str) -> Result<f64, String> {
 /// Modal truncation order.
 #[derive(Args)]
 pub struct Order {
-    /// Modal truncation order of every field, a whole number from 0 to 128. Default: the orders in the
+    /// Number of modes of every field (modal truncation order), a whole number from 0 to 128. Default: the orders in the
     /// specification.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     order: Option<String>,

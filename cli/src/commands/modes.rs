@@ -70,7 +70,7 @@ fn record(mode: &NaturalMode) -> Value {
 fn describe_rigid_motions(modes: &[NaturalMode]) -> String {
     let limits = modes.iter().filter_map(NaturalMode::frequency_limit);
     match limits.reduce(f64::max) {
-        Some(limit) => format!("frequency 0 means less than {limit:.1e} Hz\n"),
+        Some(limit) => format!("frequency 0: below the accuracy of {limit:.1e} Hz\n"),
         None => String::new(),
     }
 }

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use crate::arguments::Page;
 use crate::document::SCHEMA;
-use crate::error::{Result, print_json};
+use crate::error::{Result, print_json, print_text};
 use crate::model::{derive, load, orders};
 use crate::motion::note_moved;
 use crate::operating_point::initial_state;
@@ -13,7 +13,7 @@ use crate::page::interactive_page;
 use crate::settings::with_settings;
 
 pub fn run(options: &Page) -> Result {
-    let destination = Destination::for_output(&options.out, options.output.json)?;
+    let destination = Destination::for_page(&options.out, options.output.json)?;
     let model = with_settings(load(&options.model.spec)?.model, &options.parameters.set)?;
     let orders = orders(&model, options.model.order.text())?;
     let compiled = derive(model, &orders)?;
@@ -34,5 +34,11 @@ pub fn run(options: &Page) -> Result {
         });
         return print_json(&document);
     }
-    destination.summarise(&format!("open {}\n", options.out.display()))
+    match destination {
+        Destination::Stdout => Ok(()),
+        _ => print_text(&format!(
+            "{}: open it in a browser\n",
+            options.out.display()
+        )),
+    }
 }

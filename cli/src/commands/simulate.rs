@@ -110,8 +110,7 @@ fn driven_model(
         Solver::Fixed => Some(InputRole::Held),
         _ => is_controlled.then_some(InputRole::Measured),
     };
-    let may_hold = options.inputs.record.is_none()
-        && (role.is_some() || matches!(options.integration.solver, Solver::Auto | Solver::Exact));
+    let may_hold = options.inputs.record.is_none();
     let prescribed = split_assignments("--input", &options.inputs.input)?;
     let settings = settings(&declared, &options.parameters.set)?;
     let settings = as_borrowed(&settings);
@@ -180,13 +179,13 @@ fn summary(
     motion: &Motion,
     audited: &AuditResult<'_>,
 ) -> String {
-    let file = options.out.display();
+    let file = options.out.display().to_string();
     let (rows, switches) = (table.rows(), motion.trajectory.events.len());
     let work = motion.trajectory.statistics;
     if options.output.json {
         let document = json!({
             "schema": SCHEMA,
-            "file": file.to_string(),
+            "file": file,
             "solver": motion.solver.name(),
             "rows": rows,
             "switches": switches,
@@ -202,8 +201,12 @@ fn summary(
         return format!("{document:#}\n");
     }
     let how = describe_work(motion);
+    let place = match file.as_str() {
+        "-" => "stdout",
+        file => file,
+    };
     format!(
-        "{file}: {}, {}, {how}\n",
+        "{place}: {}, {}, {how}\n",
         count(rows, "row"),
         count(switches, "switch")
     )

@@ -37,7 +37,7 @@ fn summary(json: bool, result: &TourResult) -> String {
     }
     let verdict = if passed { "passed" } else { "FAILED" };
     format!(
-        "{} {verdict}, {} simulated\nopen {page}\n",
+        "{} {verdict}, {} simulated\n{page}: open it in a browser\n",
         count(checks, "check"),
         count(switches, "switch")
     )

@@ -173,6 +173,12 @@ impl Variant {
 /// Reads and checks a family file.
 pub fn read(path: &Path) -> Result<Family> {
     let source = toml_file::source(path, MAX_SIZE).map_err(Error::Specification)?;
+    if is_specification(&source.text) {
+        return Err(Error::input(format!(
+            "{} is a specification; a family file begins with [family] and lists variants of specifications",
+            path.display()
+        )));
+    }
     let family = toml_file::read(&source, |top, found| {
         let mut reader = Reader {
             path,
@@ -182,6 +188,12 @@ pub fn read(path: &Path) -> Result<Family> {
         reader.family(top)
     });
     family.map_err(Error::Specification)
+}
+
+/// Returns true if a text has the table `model` of a specification and no table of a family file.
+fn is_specification(text: &str) -> bool {
+    let has = |table: &str| text.lines().any(|line| line.trim_end().starts_with(table));
+    has("[model]") && !has("[family]") && !has("[[variant]]")
 }
 
 struct Reader<'r> {

@@ -13,7 +13,7 @@ mod tests;
 pub use play::{InteractivePart, interactive_page};
 
 use eomgen_codegen::report::Report;
-use eomgen_page::{Figure, equations};
+use eomgen_page::{Figure, equations, prose};
 use maud::{Markup, html};
 
 /// Content of the tour's page.
@@ -120,10 +120,10 @@ impl Tour<'_> {
                 h1 { (self.title) }
                 p.lead {
                     "From the Lagrangian in one file to a running simulation, and from records to the missing term. "
-                    strong { (self.found) }
+                    strong { (prose(self.found)) }
                 }
                 (self.arm.body)
-                p.note {
+                p.note.scripted {
                     "The arm on its reducer, computed on this page with the derived equations. The deflection of the arm "
                     "is drawn enlarged; the short lines are a tooth of the sun and of a planet."
                 }

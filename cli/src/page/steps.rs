@@ -1,6 +1,6 @@
 //! Sections of the tour's page, except the equations.
 
-use eomgen_page::{aligned, collapsible_file, figure, stacked_table, table};
+use eomgen_page::{aligned, collapsible_file, figure, prose, stacked_table, table};
 use maud::{Markup, html};
 
 use super::{CheckRow, Hidden, NextCommand, Simulation, Source, Specification, StepDuration};
@@ -25,7 +25,7 @@ pub(super) fn specification(specification: &Specification<'_>) -> Markup {
 pub(super) fn source(source: &Source<'_>) -> Markup {
     html! {
         p {
-            code { (source.path) } " contains the model in " (source.text.lines().count())
+            (file(source.path)) " contains the model in " (source.text.lines().count())
             " lines of Rust. It compiles on its own, without the standard library, allocation or other "
             "crates."
         }
@@ -34,6 +34,11 @@ pub(super) fn source(source: &Source<'_>) -> Markup {
         }
         (collapsible_file("Whole file", source.text, false))
     }
+}
+
+/// Returns a link to a file or folder in the folder of the page.
+fn file(path: &str) -> Markup {
+    html! { a href=(path) { code { (path) } } }
 }
 
 /// Extracts the function `rates` with its documentation from formatted source.
@@ -101,7 +106,7 @@ fn check_row(check: &CheckRow, value: &Markup, tolerance: &Markup) -> Markup {
 
 pub(super) fn simulation(simulation: &Simulation<'_>) -> Markup {
     html! {
-        p { (simulation.summary) " Every sample is in " code { (simulation.path) } "." }
+        p { (simulation.summary) " Every sample is in " (file(simulation.path)) "." }
         @for drawn in &simulation.figures { (figure(*drawn)) }
     }
 }
@@ -120,12 +125,12 @@ pub(super) fn hidden(hidden: &Hidden<'_>) -> Markup {
     html! {
         p {
             "The records are simulated positions of a positioning stage with a dry friction that its specification "
-            "lacks. Records and results are in " code { (hidden.path) } "."
+            "lacks. Records and results are in " (file(hidden.path)) "."
         }
         dl.values {
             @for (name, fact) in &hidden.facts {
                 dt { (name) }
-                dd { (fact) }
+                dd { (prose(fact)) }
             }
         }
         (page("Report of the comparison", before, false))

@@ -16,9 +16,9 @@ use eomgen_model_spec::source::Source;
 use eomgen_page::Figure;
 use eomgen_plot::{FigureWidth, Panel, Reference, Series, TimeHistory, time_history_at};
 use eomgen_validate::certificate::{Certificate, Check};
-use eomgen_validate::meaning::describe;
 use eomgen_validate::model_certificate::certify_model;
 
+use crate::certification::{are_of_same_kind, statement};
 use crate::count::count;
 use crate::emitted_files::CERTIFICATE;
 use crate::error::{Error, Result};
@@ -279,8 +279,7 @@ fn page_text(compiled: &CompiledModel, parts: &Parts<'_>, watch: &Stopwatch) -> 
 /// Returns a row for each kind of check: checks of the same kind in different regimes have one row with the largest
 /// deviation.
 fn check_rows(checks: &[Check]) -> Vec<page::CheckRow> {
-    let kind = |check: &Check| check.name.split(' ').next().unwrap_or_default().to_owned();
-    let groups = checks.chunk_by(|one, next| kind(one) == kind(next) && kind(one) != "reference");
+    let groups = checks.chunk_by(|one, next| are_of_same_kind(&one.name, &next.name));
     let row = |group: &[Check]| {
         let failed = group.iter().find(|check| !check.passed);
         let worst = group.iter().filter_map(|check| check.value);
@@ -289,9 +288,8 @@ fn check_rows(checks: &[Check]) -> Vec<page::CheckRow> {
             1 => String::new(),
             count => format!(" {count} regimes."),
         };
-        let sentence = describe(&first.name).unwrap_or_else(|| first.name.replace('_', " "));
         page::CheckRow {
-            sentence: sentence + &regimes,
+            sentence: statement(&first.name) + &regimes,
             value: worst.reduce(f64::max),
             tolerance: first.tolerance,
             passed: failed.is_none(),

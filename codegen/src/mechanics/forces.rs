@@ -204,11 +204,29 @@ pub(crate) fn depends_on_motion(graph: &Graph, id: NodeId) -> bool {
 }
 
 /// Returns true if a switching function can be constant in a whole regime: if it contains a piecewise
-/// function, or depends only on inputs, which can be constant.
+/// function, or depends only on inputs, which can be constant. A continuous term without the state, such as the speed of
+/// a belt, does not count if there are terms with it.
 pub(crate) fn can_be_constant(graph: &Graph, id: NodeId) -> bool {
     if !depends_on_motion(graph, id) {
         return true;
     }
+    let (own, others) = split_by_state(graph, id);
+    let others_jump =
+        (others.iter()).any(|term| has_piecewise(graph, *term) && can_jump(graph, *term));
+    match own.is_empty() || others_jump {
+        true => has_piecewise(graph, id),
+        false => own.iter().any(|term| has_piecewise(graph, *term)),
+    }
+}
+
+/// Returns true if a term of a switching function can jump with time, and not with the state.
+pub(crate) fn jumps_with_time(graph: &Graph, id: NodeId) -> bool {
+    let (_, others) = split_by_state(graph, id);
+    (others.iter()).any(|term| has_discontinuity(graph, *term))
+}
+
+/// Returns true if a node contains a piecewise function that switches with the motion.
+fn has_piecewise(graph: &Graph, id: NodeId) -> bool {
     graph.reachable(&[id]).into_iter().any(|part| {
         let switches = match graph.operation(part) {
             Operation::Select { is_switch, .. } => {
@@ -219,4 +237,56 @@ pub(crate) fn can_be_constant(graph: &Graph, id: NodeId) -> bool {
         };
         switches && !graph.dependence(part).is_parameter_only()
     })
+}
+
+/// Returns true if a node contains a function that jumps, or a quotient, whose jump depends on its operands.
+fn can_jump(graph: &Graph, id: NodeId) -> bool {
+    let varies = |part: NodeId| !graph.dependence(part).is_parameter_only();
+    has_discontinuity(graph, id)
+        || graph
+            .reachable(&[id])
+            .into_iter()
+            .any(|part| match graph.operation(part) {
+                Operation::Product(factors) => {
+                    (factors.iter()).any(|(factor, exponent)| *exponent < 0 && varies(*factor))
+                }
+                Operation::Select { .. } => varies(part),
+                _ => false,
+            })
+}
+
+/// Returns true if a node contains a function of the motion that jumps.
+fn has_discontinuity(graph: &Graph, id: NodeId) -> bool {
+    graph.reachable(&[id]).into_iter().any(|part| {
+        let Operation::Call(function, _) = graph.operation(part) else {
+            return false;
+        };
+        function.has_jump() && !graph.dependence(part).is_parameter_only()
+    })
+}
+
+/// Returns the terms of nested sums that depend on the state, and the others. A factor of parameters is left out.
+fn split_by_state(graph: &Graph, id: NodeId) -> (Vec<NodeId>, Vec<NodeId>) {
+    let state = Dependence::COORDINATE
+        .join(Dependence::RATE)
+        .join(Dependence::STATE);
+    let (mut own, mut others) = (Vec::new(), Vec::new());
+    let mut parts = vec![id];
+    while let Some(part) = parts.pop() {
+        match graph.operation(part) {
+            Operation::Sum(terms) => parts.extend(terms.iter().map(|(_, term)| *term)),
+            Operation::Product(factors) => {
+                let mut varying = (factors.iter())
+                    .filter(|(factor, _)| !graph.dependence(*factor).is_parameter_only());
+                match (varying.next(), varying.next()) {
+                    (Some((factor, 1)), None) => parts.push(*factor),
+                    _ if graph.dependence(part).has(state) => own.push(part),
+                    _ => others.push(part),
+                }
+            }
+            _ if graph.dependence(part).has(state) => own.push(part),
+            _ => others.push(part),
+        }
+    }
+    (own, others)
 }

@@ -58,7 +58,7 @@ impl Sides {
                 continue;
             }
             let jumps = match graph.operation(id) {
-                Operation::Call(function, _) => jumps(*function),
+                Operation::Call(function, _) => function.has_jump(),
                 _ => true,
             };
             let parameter = |graph: &mut Graph, surface: NodeId| {
@@ -164,14 +164,6 @@ impl Sides {
     fn replace_in(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
         substitute(graph, id, &|_, _| None, &mut self.known)
     }
-}
-
-/// Returns true for a function whose value jumps at its surface.
-fn jumps(function: Function) -> bool {
-    !matches!(
-        function,
-        Function::Abs | Function::Max | Function::Min | Function::Deadzone
-    )
 }
 
 fn opposite_side(graph: &mut Graph, side: NodeId) -> NodeId {

@@ -24,7 +24,7 @@ use eomgen_model_spec::model::Function;
 
 use crate::mechanics::discs::{divides_by_speed, find_discs};
 use crate::mechanics::equations::Equations;
-use crate::mechanics::forces::{can_be_constant, depends_on_motion};
+use crate::mechanics::forces::{can_be_constant, depends_on_motion, jumps_with_time};
 use crate::mechanics::guard::Guard;
 use crate::mechanics::outputs::{Side, SlidingSurface, guard_rate};
 use crate::mechanics::rows::RowNodes;
@@ -109,7 +109,12 @@ pub(crate) fn add_side_inputs(equations: &mut Equations, may_hold: bool) -> Opti
         .collect();
     let rates: Vec<NodeId> = functions
         .iter()
-        .map(|function| guard_rate(equations, function.value))
+        .map(|function| {
+            // Piecewise functions of time keep their side, too.
+            let graph = &mut equations.graph;
+            let value = substitute(graph, function.value, &|_, _| None, &mut known);
+            guard_rate(equations, value)
+        })
         .collect();
     let graph = &mut equations.graph;
     let accelerations = &equations.accelerations.rows;
@@ -179,9 +184,15 @@ fn add_unit_vectors(
     let mut place = lengths.sum();
     let mut count = 0;
     let rates = equations.rate_nodes();
+    let inputs = equations.inputs;
     for disc in find_discs(&mut equations.graph, &rates) {
         let first = first_side + functions.len();
         let graph = &mut equations.graph;
+        // Guards are evaluated without sides.
+        let is_side = |part: NodeId| matches!(graph.operation(part), Operation::Input(id) if id.index() >= inputs);
+        if graph.reachable(&disc.components).into_iter().any(is_side) {
+            continue;
+        }
         let unit: Vec<NodeId> = (0..disc.components.len())
             .map(|component| graph.intern(Operation::Input(InputId::new(first + component))))
             .collect();
@@ -222,6 +233,7 @@ fn guards_that_may_hold(equations: &Equations) -> Vec<(usize, usize)> {
         is_single
             && graph.dependence(guard.value).has(moves)
             && !can_be_constant(graph, guard.value)
+            && !jumps_with_time(graph, guard.value)
     });
     found
 }

@@ -77,6 +77,8 @@ pub struct AffineEvaluator {
     evaluator: Evaluator,
     layout: AffineLayout,
     parameters: Vec<f64>,
+    /// Index of each prescribed motion among the inputs, followed by its rate and its second rate.
+    prescribed: Vec<usize>,
 }
 
 impl AffineEvaluator {
@@ -87,7 +89,21 @@ impl AffineEvaluator {
             evaluator: Evaluator::new(program.program),
             layout: program.layout,
             parameters,
+            prescribed: Vec::new(),
         }
+    }
+
+    /// Makes prescribed motions states, each with its rate and second rate after the other states. `prescribed`:
+    /// their indices among the inputs. The input of a second rate becomes the third rate.
+    #[must_use]
+    pub fn with_prescribed_states(mut self, prescribed: Vec<usize>) -> Self {
+        self.prescribed = prescribed;
+        self
+    }
+
+    /// Returns the indices of the prescribed motions that are states.
+    pub fn prescribed_states(&self) -> &[usize] {
+        &self.prescribed
     }
 
     /// Returns the number of switching surfaces.
@@ -113,6 +129,11 @@ impl AffineEvaluator {
 
     /// Returns the number of states.
     pub fn states(&self) -> usize {
+        self.model_states() + 3 * self.prescribed.len()
+    }
+
+    /// Returns the number of states without prescribed motions.
+    pub fn model_states(&self) -> usize {
         self.evaluator.program().states()
     }
 
@@ -147,8 +168,8 @@ impl AffineEvaluator {
         AffineSystem {
             states: self.states(),
             degrees: self.degrees_of_freedom(),
-            rates: self.rates(),
-            guards: self.guards(),
+            rates: self.add_prescribed_rates(self.add_prescribed_columns(self.rates())),
+            guards: self.add_prescribed_columns(self.guards()),
             phases: self
                 .layout
                 .phases
@@ -172,7 +193,7 @@ impl AffineEvaluator {
     fn rates(&self) -> AffineRows {
         let program = self.evaluator.program();
         let degrees = program.degrees_of_freedom();
-        let states = self.states();
+        let states = self.model_states();
         let mut rows = self.zero_rows(states);
         for row in 0..degrees {
             rows.state[row * states + degrees + row] = 1.0;
@@ -200,11 +221,48 @@ impl AffineEvaluator {
         rows
     }
 
+    /// Moves the factors of prescribed motions from the inputs to the state.
+    fn add_prescribed_columns(&self, mut rows: AffineRows) -> AffineRows {
+        if self.prescribed.is_empty() {
+            return rows;
+        }
+        let (own, inputs) = (self.model_states(), self.layout.inputs);
+        let mut state = Vec::with_capacity(rows.rows * self.states());
+        for row in 0..rows.rows {
+            state.extend_from_slice(&rows.state[row * own..(row + 1) * own]);
+            for first in &self.prescribed {
+                let factors = &mut rows.inputs[row * inputs + first..][..3];
+                state.extend_from_slice(factors);
+                factors.fill(0.0);
+            }
+        }
+        AffineRows { state, ..rows }
+    }
+
+    /// Adds the rates of prescribed motions.
+    fn add_prescribed_rates(&self, mut rows: AffineRows) -> AffineRows {
+        let (states, inputs) = (self.states(), self.layout.inputs);
+        let phases = self.layout.phases.len();
+        rows.state.resize(states * states, 0.0);
+        rows.inputs.resize(states * inputs, 0.0);
+        rows.sines.resize(states * phases, 0.0);
+        rows.cosines.resize(states * phases, 0.0);
+        rows.constant.resize(states, 0.0);
+        rows.rows = states;
+        for (number, first) in self.prescribed.iter().enumerate() {
+            let place = self.model_states() + 3 * number;
+            rows.state[place * states + place + 1] = 1.0;
+            rows.state[(place + 1) * states + place + 2] = 1.0;
+            rows.inputs[(place + 2) * inputs + first + 2] = 1.0;
+        }
+        rows
+    }
+
     fn zero_rows(&self, rows: usize) -> AffineRows {
         let phases = self.layout.phases.len();
         AffineRows {
             rows,
-            state: vec![0.0; rows * self.states()],
+            state: vec![0.0; rows * self.model_states()],
             inputs: vec![0.0; rows * self.layout.inputs],
             sines: vec![0.0; rows * phases],
             cosines: vec![0.0; rows * phases],
@@ -215,7 +273,7 @@ impl AffineEvaluator {
     fn fill(&self, rows: &mut AffineRows, row: usize, values: &AffineRowValues, element: usize) {
         let program = self.evaluator.program();
         let degrees = program.degrees_of_freedom();
-        let states = self.states();
+        let states = self.model_states();
         let state = &mut rows.state[row * states..(row + 1) * states];
         let (positions, rest) = state.split_at_mut(degrees);
         let (velocities, first_order) = rest.split_at_mut(degrees);

@@ -96,7 +96,7 @@ impl Report {
 
     fn write_sentences(&self, out: &mut String) -> std::fmt::Result {
         let linearity = match &self.linearity.formula {
-            Some(formula) => format!("{}: {}.", self.linearity.text, in_text(&formula.latex())),
+            Some(formula) => format!("{} {}.", self.linearity.text, in_text(&formula.latex())),
             None => self.linearity.to_string(),
         };
         write!(

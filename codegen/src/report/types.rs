@@ -99,14 +99,14 @@ pub struct CoefficientLine {
 pub struct Sentence {
     /// Text without a full stop.
     pub text: &'static str,
-    /// Formula, if there is one.
+    /// Formula after the text, if there is one.
     pub formula: Option<Formula>,
 }
 
 impl std::fmt::Display for Sentence {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match &self.formula {
-            Some(formula) => write!(f, "{}: {formula}.", self.text),
+            Some(formula) => write!(f, "{} {formula}.", self.text),
             None => write!(f, "{}.", self.text),
         }
     }

@@ -49,12 +49,13 @@ impl Writer<'_> {
                 None,
             ),
             Linearity::Corners(node) => (
-                "Rates jump by the corner conditions where the energies jump, first where this is zero",
+                "Rates jump by the corner conditions where the energies jump, first where this is zero:",
                 Some(self.reader.formula(node)),
             ),
-            Linearity::Nonlinear(node) => {
-                ("The model is not linear", Some(self.reader.formula(node)))
-            }
+            Linearity::Nonlinear(node) => (
+                "The model is not linear because of",
+                Some(self.reader.formula(node)),
+            ),
         };
         Sentence { text, formula }
     }

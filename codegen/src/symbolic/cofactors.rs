@@ -186,10 +186,7 @@ impl Graph {
         let operands = self.operands(&operation);
         let is_continuous = match operation {
             Operation::Sum(_) | Operation::Product(_) | Operation::Power(..) => true,
-            Operation::Call(function, _) => !matches!(
-                function,
-                Function::Sign | Function::Above | Function::Contact | Function::Atan2
-            ),
+            Operation::Call(function, _) => !function.has_jump(),
             _ => operands.is_empty(),
         };
         let is_continuous = is_continuous

@@ -27,18 +27,18 @@ pub fn emit(
 ) -> Result<Vec<EmittedFile>> {
     let program = &variant.program;
     let name = &program.name;
-    if target.has_casadi_functions()
-        && let Some(controller) = model.controllers.first()
-    {
+    let controllers: Vec<String> = (model.controllers.iter())
+        .map(|controller| format!("`{}`", controller.name))
+        .collect();
+    let controllers = controllers.join(", ");
+    if target.has_casadi_functions() && !controllers.is_empty() {
         warn(&format!(
-            "note: the functions for CasADi do not sample the controllers of the model (`{}`): they are those of the machine alone",
-            controller.name
+            "note: the functions for CasADi do not sample the controllers of the model ({controllers}): they are those of the machine without them"
         ));
     }
-    if let (Target::Fmu2 | Target::Fmu3, Some(controller)) = (target, model.controllers.first()) {
+    if matches!(target, Target::Fmu2 | Target::Fmu3) && !controllers.is_empty() {
         warn(&format!(
-            "note: the unit supports co-simulation only: it samples the controllers of the model (`{}`) in its own steps",
-            controller.name
+            "note: the unit supports co-simulation only: it samples the controllers of the model ({controllers}) in its own steps"
         ));
     }
     match target {

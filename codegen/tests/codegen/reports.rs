@@ -81,6 +81,14 @@ fn short_reports_have_no_shared_lines() {
 }
 
 #[test]
+fn coefficients_precede_varying_factors() {
+    let text = report(&shipped("crane")).text();
+    for product in ["-c*dot(x)", "-m*g*l*sin(theta) - c*l*cos(theta)*dot(x)"] {
+        assert!(text.contains(product), "{text}");
+    }
+}
+
+#[test]
 fn shared_lines_use_only_lines_before_them() {
     for model in [lever_mass(), model(&chain_of_pendulums(12))] {
         let report = report(&model);

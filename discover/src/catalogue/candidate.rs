@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 
 use eomgen_model_spec::edit::{self, Edit, EditError, NewParameter, NewValue, SetParameter};
 use eomgen_model_spec::model::{Model, Parameter, ParameterValue};
-use eomgen_model_spec::source::Source;
 
 use crate::catalogue::effect::{Change, Effect, SiteKind};
 use crate::catalogue::loads::{Load, find_loads};
@@ -19,7 +18,7 @@ use crate::interval::Interval;
 use crate::model::estimation_model::is_linear;
 use crate::model::input_faults::InputFault;
 use crate::model::problem::EstimationProblem;
-use crate::model::specification_texts::SpecificationTexts;
+use crate::model::specification_texts::{SpecificationTexts, edited_source};
 use crate::model::unknowns::{UnknownKind, bounds_with_sign};
 use crate::thresholds;
 
@@ -206,7 +205,7 @@ impl Candidate {
             .map(|(parameter, value)| parameter.edit(*value, source))
             .collect();
         edits.extend(changes.iter().cloned());
-        edit::apply(&Source::new(name, text), &edits)
+        edit::apply(&edited_source(name, text), &edits)
     }
 
     /// Returns the specification and its linear part with the effect at these values.

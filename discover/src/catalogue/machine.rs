@@ -50,8 +50,8 @@ struct Mass<'m> {
 }
 
 /// Returns the machine as a site of its weight; `None` if the position of a mass is unknown, if the
-/// model has an acceleration of gravity, which may be a shifted parameter, or if the weight acts on
-/// a single coordinate like a force or an unbalance there.
+/// model has an acceleration of gravity, which may be a shifted parameter, or if the weight along each
+/// direction acts on a single coordinate like a force or an unbalance there.
 pub(super) fn find_machine(model: &Model) -> Option<Site> {
     if has_weight(model) {
         return None;
@@ -59,7 +59,7 @@ pub(super) fn find_machine(model: &Model) -> Option<Site> {
     let terms = model.kinetic.iter().map(|term| &term.value);
     let summands: Vec<&Expr> = terms.flat_map(split_sum).collect();
     let mut moments: [Vec<String>; 3] = Default::default();
-    let (mut count, mut moving) = (0, BTreeSet::new());
+    let mut moving: [BTreeSet<String>; 3] = Default::default();
     for summand in summands {
         let mass = find_mass(model, summand)?;
         let first = mass.velocities.first()?;
@@ -71,7 +71,8 @@ pub(super) fn find_machine(model: &Model) -> Option<Site> {
         if dimension != Dimension::LENGTH {
             return None;
         }
-        for (moment, position) in moments.iter_mut().zip(find_positions(model, &mass)?) {
+        let positions = find_positions(model, &mass)?;
+        for (moment, position) in moments.iter_mut().zip(&positions) {
             let [before, after] = &mass.around;
             let product = format!("{before}({position}){after}");
             moment.push(match product.strip_prefix("1/2*") {
@@ -79,24 +80,36 @@ pub(super) fn find_machine(model: &Model) -> Option<Site> {
                 None => format!("2*{product}"),
             });
         }
-        count += 1;
-        mass.velocities.iter().for_each(|velocity| {
-            velocity.visit(&mut |part| {
-                if let ExprKind::Dot(of) = &part.kind {
-                    moving.insert(format_expression(model, of));
-                }
-            });
-        });
+        let turns = mass.velocities.len() < positions.len();
+        for (place, velocity) in mass.velocities.iter().enumerate() {
+            match turns {
+                true => moving[..2]
+                    .iter_mut()
+                    .for_each(|found| list_moving(model, velocity, found)),
+                false => list_moving(model, velocity, &mut moving[place]),
+            }
+        }
     }
     let along = MOMENTS.iter().zip(moments);
     let along = along.filter(|(_, moment)| !moment.is_empty());
-    (count > 1 && moving.len() > 1).then(|| Site {
+    moving.iter().any(|found| found.len() > 1).then(|| Site {
         kind: SiteKind::Machine,
         name: MACHINE.to_owned(),
         arguments: (along.map(|(key, moment)| (*key, moment.join(" + ")))).collect(),
         terms: Vec::new(),
         dampers: Vec::new(),
     })
+}
+
+/// Adds the coordinates and the field in an expression, also in its definitions.
+fn list_moving(model: &Model, expr: &Expr, found: &mut BTreeSet<String>) {
+    expr.visit(&mut |part| match part.kind {
+        ExprKind::Coordinate(_) | ExprKind::Field(_) | ExprKind::ModeCoordinate(_) => {
+            found.insert(format_expression(model, part));
+        }
+        ExprKind::Definition(id) => list_moving(model, &model.definitions[id].value, found),
+        _ => {}
+    });
 }
 
 /// Returns true if a potential energy contains an acceleration among its parameters.
@@ -390,6 +403,10 @@ mod tests {
         let found = moments_of("a = \"1/2*m*dot(x)^2\"\nb = \"m*(dot(x) - dot(y))^2/2\"");
         let x = "m*(x) + 2*m*(x - y)/2".to_owned();
         assert_eq!(found, Some(vec![("moment_x", x)]));
+        let found = moments_of("a = \"1/2*m*((dot(x) + dot(y))^2 + dot(y)^2)\"");
+        let moments = [("moment_x", "m*(x + y)"), ("moment_y", "m*(y)")];
+        let moments = moments.map(|(key, moment)| (key, moment.to_owned()));
+        assert_eq!(found, Some(moments.to_vec()));
     }
 
     #[test]
@@ -398,6 +415,8 @@ mod tests {
             // One mass, or two on one coordinate.
             "a = \"1/2*m*dot(x)^2\"",
             "a = \"1/2*m*dot(x)^2\"\nb = \"1/2*m*(2*dot(x))^2\"",
+            // Each direction has a different coordinate.
+            "a = \"1/2*m*dot(x)^2\"\nb = \"1/2*m*(dot(x)^2 + dot(y)^2)\"",
             // Three masses around an axis.
             "a = \"3/2*m*(l*dot(theta))^2\"\nb = \"1/2*m*dot(x)^2\"",
             // The direction of x relative to the line is unknown.

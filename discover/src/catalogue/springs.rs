@@ -103,18 +103,19 @@ fn spring<'m>(model: &Model, product: &'m Expr) -> Option<Spring<'m>> {
     (!spring.parameters.is_empty() && is_deflection(model, base)).then_some(spring)
 }
 
-/// Returns true if an expression is a position: a sum of coordinates with constant factors.
+/// Returns true if an expression is a position: a sum of coordinates and prescribed motions with constant factors.
 pub(super) fn is_deflection(model: &Model, expr: &Expr) -> bool {
     is_position(model, expr, &mut BTreeSet::new())
 }
 
-/// Returns true if an expression is a position: sums of coordinates, times what is fixed. `read`: definitions
+/// Returns true if an expression is a position: sums of such, times what is fixed. `read`: definitions
 /// that were read before, each but once.
 fn is_position(model: &Model, expr: &Expr, read: &mut BTreeSet<DefinitionId>) -> bool {
     match &expr.kind {
         ExprKind::Coordinate(_) | ExprKind::Parameter(_) | ExprKind::Number(_) | ExprKind::Pi => {
             true
         }
+        ExprKind::Input(id) => model.inputs[*id].is_prescribed(),
         ExprKind::Definition(id) => {
             !read.insert(*id) || is_position(model, &model.definitions[*id].value, read)
         }
@@ -133,6 +134,7 @@ pub(super) fn dimension(model: &Model, expr: &Expr) -> Option<Dimension> {
     match &expr.kind {
         ExprKind::Coordinate(id) => Some(model.coordinates[*id].unit.dimension),
         ExprKind::Parameter(id) => Some(model.parameters[*id].unit.dimension),
+        ExprKind::Input(id) => Some(model.inputs[*id].unit.dimension),
         ExprKind::Number(_) | ExprKind::Pi => Some(Dimension::DIMENSIONLESS),
         ExprKind::Definition(id) => Some(model.definitions[*id].unit.dimension),
         ExprKind::Position(_) => Some(Dimension::LENGTH),

@@ -1,13 +1,12 @@
 //! Check of a user's effects at the sites of a specification. The result must be a valid
 //! specification, and effects without a site are reported.
 
-use eomgen_model_spec::source::Source;
-
 use crate::catalogue::candidate::{CandidateParameter, list_candidates};
 use crate::catalogue::effect::Effect;
 use crate::catalogue::sites::find_sites;
 use crate::catalogue::usual_motion::UsualMotion;
 use crate::error::DiscoverError;
+use crate::model::specification_texts::edited_source;
 
 /// Writes each effect of the user into a specification at each of its sites. Returns the effects
 /// without a site.
@@ -20,7 +19,7 @@ pub fn check_user_effects(
     path: &str,
     text: &str,
 ) -> Result<Vec<String>, DiscoverError> {
-    let Ok(checked) = eomgen_model_spec::check(Source::new(path, text)) else {
+    let Ok(checked) = eomgen_model_spec::check(edited_source(path, text)) else {
         // Reading the specification reports its errors.
         return Ok(Vec::new());
     };

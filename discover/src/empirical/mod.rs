@@ -117,6 +117,7 @@ fn add_empirical(
         Err(reason) => found.rejected.push(RejectedCandidate {
             reason: format!("{}: {reason}", candidate.term),
             candidate,
+            best_reduction: None,
             is_untestable: false,
             p_value: None,
         }),

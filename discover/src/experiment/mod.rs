@@ -43,7 +43,8 @@ use crate::thresholds;
 /// Proposes the next experiments for the result of a search. `context`: context of the search.
 pub fn propose_experiments(context: RoundContext<'_>, found: &SearchResult) -> Experiments {
     let problem = context.problem;
-    let inputs = &found.null_fit.model.specification().inputs;
+    let model = found.null_fit.model.specification();
+    let inputs = &model.inputs;
     let units = inputs.iter();
     let units = units.map(|input| Unit::coherent(input.unit.dimension).text);
     let units: Vec<String> = units.collect();
@@ -52,6 +53,9 @@ pub fn propose_experiments(context: RoundContext<'_>, found: &SearchResult) -> E
     let times = bounds.sample_times();
     let impossible = match problem.dataset.gives_motion() {
         true => Some("no experiment is computed for a given motion".to_owned()),
+        false if model.prescribed_inputs().next().is_some() => {
+            Some("no experiment is computed for a prescribed motion".to_owned())
+        }
         false => bounds.explain_too_short(problem.dataset.window),
     };
     let family = match impossible {

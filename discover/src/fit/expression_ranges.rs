@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_model_spec::edit::{self, Edit, NewTerm, Section};
-use eomgen_model_spec::source::Source;
 
 use crate::fit::fit_result::Fit;
 use crate::fit::shooting::Shooting;
@@ -12,6 +11,7 @@ use crate::ids::{ObservableId, WindowId};
 use crate::interval::Interval;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
+use crate::model::specification_texts::edited_source;
 use crate::thresholds;
 
 /// Returns the smallest and largest value of each expression along the training windows of a fit,
@@ -45,7 +45,7 @@ pub fn compute_ranges(
             let point = Point {
                 t: *t,
                 state: &state,
-                inputs: inputs.last_sample(*t),
+                inputs: &inputs.evaluate(*t),
             };
             evaluator.observables(point, &mut observables);
             for (travel, observable) in found.iter_mut().zip(&shown) {
@@ -77,7 +77,7 @@ fn with_observables(
         })
     });
     let edits: Vec<Edit> = edits.collect();
-    let source = Source::new(problem.path.as_str(), fit.texts.full.as_str());
+    let source = edited_source(&problem.path, &fit.texts.full);
     let text = edit::apply(&source, &edits).ok()?;
     let model = EstimationModel::derive_equations(&text, &problem.path, problem.order, &[]).ok()?;
     if model.states != fit.model.states {

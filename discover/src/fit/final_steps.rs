@@ -1,14 +1,13 @@
 //! Final steps of a fit to the minimum of the cost with a wide prior of the initial states.
 //! Derivatives are exact if the model is linear between switches. For other models central
-//! differences of whole motions are used if the records hardly determine one direction of the
-//! unknowns.
+//! differences of whole motions are used. The errors of forward differences and of linearised
+//! motions would move the fit along directions that the records hardly determine.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::fit::gauss_newton::{
     Estimate, compute_derivatives, correct_initial_states, evaluate_cost, step_with_correction,
 };
-use crate::fit::information::compute_window_factor;
 use crate::fit::initial_states::update_carried_prior;
 use crate::fit::jump_free_quotients::limit_quotient;
 use crate::fit::prior::InitialStatePrior;
@@ -20,21 +19,6 @@ use crate::thresholds;
 
 /// States that do not move may start so far from where they are, in parts of their range.
 const LEAST_RANGE: f64 = 1e-6;
-
-/// Returns whether unknowns share a direction along which derivatives that are off by
-/// [`thresholds::MAX_TANGENT_ERROR`] tell more than the records do.
-fn is_ill_conditioned(
-    shooting: &Shooting<'_>,
-    prior: &InitialStatePrior,
-    initial_states: &[Vec<f64>],
-    linear: &[Option<WindowDerivatives>],
-) -> bool {
-    let factor = compute_window_factor(shooting.unknowns.len(), prior, initial_states, linear);
-    let shown = factor.column_iter().filter(|column| column.norm() > 0.0);
-    let columns: Vec<DVector<f64>> = shown.map(|column| column.normalize()).collect();
-    !columns.is_empty()
-        && DMatrix::from_columns(&columns).singular_values().min() < thresholds::MAX_TANGENT_ERROR
-}
 
 /// Returns rows that transform the deviation of a state from its mean along the motions of the
 /// windows to unit covariance. The ends of a stiff spring move together, and so must their initial
@@ -80,18 +64,15 @@ pub(crate) fn run_final_steps(
     prior: &mut InitialStatePrior,
     from: Estimate,
 ) -> (Estimate, Vec<Option<WindowDerivatives>>) {
-    let (estimate, linear) = steps(shooting, prior, from, compute_derivatives);
-    let values = shooting.parameter_values(&estimate.theta);
+    let values = shooting.parameter_values(&from.theta);
     let simulation = shooting.model.create_simulation(&values);
-    if simulation.is_ok_and(|simulation| simulation.has_exact_derivatives())
-        || !is_ill_conditioned(shooting, prior, &estimate.initial_states, &linear)
-    {
-        return (estimate, linear);
+    if simulation.is_ok_and(|simulation| simulation.has_exact_derivatives()) {
+        return steps(shooting, prior, from, compute_derivatives);
     }
-    let differences = |shooting: &Shooting<'_>, estimate: &Estimate| {
-        central_differences(shooting, estimate, &linear)
-    };
-    steps(shooting, prior, estimate, differences)
+    let near = compute_derivatives(shooting, &from);
+    steps(shooting, prior, from, |shooting, estimate| {
+        central_differences(shooting, estimate, &near)
+    })
 }
 
 /// Takes Gauss-Newton steps by these derivatives, until what they gain is less than the priors can

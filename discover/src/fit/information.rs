@@ -26,19 +26,6 @@ pub(crate) fn compute_information_factor(
         let sd = unknown.prior.map_or(f64::INFINITY, |prior| prior.sd);
         rows[(row, row)] = shooting.prior_weight.sqrt() / sd;
     }
-    compute_triangular_factor(
-        &compute_window_factor(count, prior, initial_states, linear),
-        &rows,
-    )
-}
-
-/// Returns the same factor without the priors of the unknowns, of which there are `count`.
-pub(crate) fn compute_window_factor(
-    count: usize,
-    prior: &InitialStatePrior,
-    initial_states: &[Vec<f64>],
-    linear: &[Option<WindowDerivatives>],
-) -> DMatrix<f64> {
     let mut factor = DMatrix::zeros(count + 1, count + 1);
     for (window, linear) in WindowId::first(linear.len()).zip(linear) {
         if let Some(linear) = linear {
@@ -46,7 +33,8 @@ pub(crate) fn compute_window_factor(
             factor = compute_triangular_factor(&factor, &block.reduced_columns());
         }
     }
-    factor.view((0, 0), (count, count)).into_owned()
+    let factor = factor.view((0, 0), (count, count)).into_owned();
+    compute_triangular_factor(&factor, &rows)
 }
 
 /// Returns the information factor of the training windows of a fit, reduced according to its

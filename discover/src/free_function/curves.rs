@@ -175,11 +175,14 @@ fn list_pairs(equations: &EquationSet, fit: &Fit) -> (Vec<Named<Direction>>, Vec
         });
     }
     for (number, input) in model.inputs.iter().enumerate() {
-        directions.push(Named {
-            of: Direction::Input(number),
-            name: input.name.clone(),
-            unit: input.unit.text.clone(),
-        });
+        // A prescribed motion cannot be changed without its rates.
+        if input.rate.is_none() && input.rate_of.is_none() {
+            directions.push(Named {
+                of: Direction::Input(number),
+                name: input.name.clone(),
+                unit: input.unit.text.clone(),
+            });
+        }
         variables.push(Named {
             of: Variable::Input(number),
             name: input.name.clone(),

@@ -91,7 +91,7 @@ impl DrivenModel {
                 let point = Point {
                     t: record.times[sample],
                     state: &record.states[sample],
-                    inputs: &record.inputs[sample],
+                    inputs: &record.inputs[sample][0],
                 };
                 let mut values = Vec::with_capacity(channels);
                 let evaluator = &mut self.evaluator;
@@ -155,7 +155,9 @@ impl DrivenModel {
             state[*place] = 0.5 * (a + b);
         }
         let t = 0.5 * (begin.t + end.t);
-        let inputs = begin.inputs;
+        let pairs = begin.inputs.iter().zip(end.inputs);
+        let inputs: Vec<f64> = pairs.map(|(a, b)| 0.5 * (a + b)).collect();
+        let inputs = &inputs[..];
         for k in 0..self.added.len() {
             let place = self.added[k];
             let old = state[place];

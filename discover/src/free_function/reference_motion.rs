@@ -31,8 +31,8 @@ pub(crate) struct ReferenceMotion {
 pub(crate) struct ReferenceRecord {
     /// Times of the samples, s.
     pub times: Vec<f64>,
-    /// Inputs of each sample, held until the next one.
-    pub inputs: Vec<Vec<f64>>,
+    /// Inputs at the beginning and the end of the interval after each sample. Held ones are those of the sample.
+    pub inputs: Vec<[Vec<f64>; 2]>,
     /// States at the samples, SI.
     pub states: Vec<Vec<f64>>,
     /// Steps from each sample to the next.
@@ -111,13 +111,13 @@ impl ReferenceMotion {
 }
 
 impl ReferenceRecord {
-    /// Returns the point at the beginning or, with the same inputs, at the end of a step.
+    /// Returns the point at the beginning or, with the same held inputs, at the end of a step.
     pub fn end_point(&self, step: usize, is_end: bool) -> Point<'_> {
         let sample = step + usize::from(is_end);
         Point {
             t: self.times[sample],
             state: &self.states[sample],
-            inputs: &self.inputs[step],
+            inputs: &self.inputs[step][usize::from(is_end)],
         }
     }
 }
@@ -164,7 +164,7 @@ impl<'a> ScaledModel<'a> {
         let windows = shooting.windows.windows.iter();
         for (window, state) in windows.zip(&fit.train.estimate.initial_states) {
             let t = window.times[0];
-            let inputs = shooting.windows.inputs(window).last_sample(t);
+            let inputs = &shooting.windows.inputs(window).evaluate(t);
             evaluator.rates(Point { t, state, inputs }, &mut rates);
             let pairs = squares.iter_mut().zip(&rates[first..]);
             pairs.for_each(|(sum, rate)| *sum += rate * rate);
@@ -278,7 +278,7 @@ impl<'a> ScaledModel<'a> {
             None => start,
         };
         let middle_time = times[0] + 0.5 * length;
-        let inputs = used.record.inputs.last_sample(middle_time);
+        let inputs = &used.record.inputs.evaluate(middle_time);
         let point = Point {
             t: middle_time,
             state: &middle,
@@ -350,7 +350,7 @@ impl<'a> ScaledModel<'a> {
         state: &DVector<f64>,
     ) -> Option<LocalOutputs> {
         let t = used.times[sample];
-        let inputs = used.record.inputs.last_sample(t);
+        let inputs = &used.record.inputs.evaluate(t);
         let own = self.unscale(state);
         let expected = self.measure(Point {
             t,
@@ -423,7 +423,9 @@ impl<'a> ScaledModel<'a> {
             let next = used.times.get(sample + 1).unwrap_or(&used.times[sample]);
             // Half a step on, so that rounding of a sample's time does not decide.
             let middle = 0.5 * (used.times[sample] + next);
-            used.record.inputs.last_sample(middle).to_vec()
+            let inputs = &used.record.inputs;
+            let held = inputs.last_sample(middle);
+            [used.times[sample], *next].map(|t| inputs.evaluate_with_held(t, held).into_owned())
         });
         Some(ReferenceRecord {
             times: used.times.to_vec(),

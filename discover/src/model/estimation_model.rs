@@ -8,7 +8,6 @@ use eomgen_compiled_model::{CompiledModel, Error, ExportedModel, Orders};
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::{Model, Parameter, ParameterValue};
-use eomgen_model_spec::source::Source;
 
 use crate::error::SimulationError;
 use crate::ids::ParameterId;
@@ -20,6 +19,7 @@ use crate::model::nonlinear_remainder::NonlinearRemainder;
 use crate::model::observed_rates::add_observed_rates;
 use crate::model::output_times::OutputRate;
 use crate::model::simulation::Simulation;
+use crate::model::specification_texts::edited_source;
 use crate::model::stop::StopRequest;
 use crate::model::unknowns::ExpectedSensor;
 use crate::model::work::WorkLimit;
@@ -111,7 +111,7 @@ impl EstimationModel {
         order: Option<usize>,
         channels: &[Channel],
     ) -> Result<Self, Error> {
-        let Checked { mut model, .. } = eomgen_model_spec::check(Source::new(name, text))?;
+        let Checked { mut model, .. } = eomgen_model_spec::check(edited_source(name, text))?;
         let rates = add_observed_rates(&mut model, channels);
         let compiled =
             CompiledModel::derive(model, order.map_or(Orders::Declared, Orders::Uniform))?;
@@ -353,9 +353,11 @@ impl EstimationModel {
         let exact = linear
             .piecewise_linear()
             .map_err(|error| SimulationError::Propagator(error.clone()))?;
-        let integrator =
-            ExponentialIntegrator::new(exact.evaluator(&own), self.sample, self.refinement)
-                .map(|integrator| integrator.with_typical_sizes(self.typical_sizes()));
+        let prescribed: Vec<usize> = linear.model().prescribed_inputs().collect();
+        let moves_by_inputs = !prescribed.is_empty();
+        let affine = exact.evaluator(&own).with_prescribed_states(prescribed);
+        let integrator = ExponentialIntegrator::new(affine, self.sample, self.refinement)
+            .map(|integrator| integrator.with_typical_sizes(self.typical_sizes()));
         match (integrator, self.is_linear()) {
             // A part that moves that much faster than the samples show is no longer seen to move.
             (Err(UnsupportedModel::TooManySteps(steps)), _)
@@ -363,6 +365,8 @@ impl EstimationModel {
             {
                 return Err(SimulationError::TooFast);
             }
+            // The exact propagator holds all inputs.
+            (Err(_), _) if moves_by_inputs => self.add_sticking(&mut simulation, values),
             (Err(_), true) => {
                 let exact = exact
                     .propagator_at(values)
@@ -450,7 +454,8 @@ fn can_hold_more(whole: &CompiledModel, part: &CompiledModel) -> bool {
 
 /// The model of a text.
 fn compile_model(text: &str, name: &str, order: Option<usize>) -> Result<CompiledModel, Error> {
-    CompiledModel::from_text(name, text, order.map_or(Orders::Declared, Orders::Uniform))
+    let Checked { model, .. } = eomgen_model_spec::check(edited_source(name, text))?;
+    CompiledModel::derive(model, order.map_or(Orders::Declared, Orders::Uniform))
 }
 
 #[cfg(test)]

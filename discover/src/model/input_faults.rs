@@ -6,10 +6,10 @@
 
 use eomgen_model_spec::edit::{self, Edit, EditError, NewParameter, NewValue};
 use eomgen_model_spec::model::Input;
-use eomgen_model_spec::source::Source;
 use eomgen_records::dataset::{InputPriors, PriorInSi};
 
 use crate::model::input_occurrences::replace_input;
+use crate::model::specification_texts::edited_source;
 
 /// Effect name of an input with an additional delay.
 pub const INPUT_DELAY_EFFECT: &str = "input_delay";
@@ -123,7 +123,7 @@ pub fn add_declared_faults(
             let Some(expected) = fault.prior(priors) else {
                 continue;
             };
-            let source = Source::new(path, text.as_str());
+            let source = edited_source(path, &text);
             let Ok(checked) = eomgen_model_spec::check(source.clone()) else {
                 // The derivation reports errors in a text.
                 return Ok(text);

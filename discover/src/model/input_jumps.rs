@@ -111,7 +111,7 @@ fn compute_gains(
     (state, changes): (&[f64], &[Vec<f64>]),
 ) -> Vec<Gains> {
     let (t, states, degrees) = (record.times[0], state.len(), model.degrees_of_freedom());
-    let inputs = record.inputs.last_sample(t).to_vec();
+    let inputs = record.inputs.evaluate(t).into_owned();
     let mut rates = |inputs: &[f64]| {
         let mut rates = vec![0.0; states];
         evaluator.rates(Point { t, state, inputs }, &mut rates);

@@ -11,6 +11,13 @@ pub fn list_replaceable(model: &Model) -> impl Iterator<Item = &Input> {
     inputs.filter(|input| input.rate.is_none() && input.rate_of.is_none())
 }
 
+/// Returns the input of a model that has one, whose rates may be inputs too.
+pub fn find_only_input(model: &Model) -> Option<&Input> {
+    let mut inputs = model.inputs.iter().filter(|input| input.rate_of.is_none());
+    let first = inputs.next();
+    first.filter(|_| inputs.next().is_none())
+}
+
 /// An entry of a specification.
 struct Written<'m> {
     section: Section,

@@ -3,13 +3,12 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use eomgen_model_spec::source::Source;
-
 use crate::error::DiscoverError;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::first_state;
 use crate::model::input_jumps::compute_jump_errors;
 use crate::model::output_times::OutputRate;
+use crate::model::specification_texts::edited_source;
 use crate::model::stop::StopRequest;
 use crate::model::work::WorkLimit;
 use crate::thresholds;
@@ -79,7 +78,7 @@ impl<'d> EstimationProblem<'d> {
     /// Prepares the problem of a dataset and of a specification.
     pub fn new(dataset: &'d Dataset, order: Option<usize>, path: &str, text: &str) -> Self {
         let states = || {
-            let model = eomgen_model_spec::check(Source::new(path, text))
+            let model = eomgen_model_spec::check(edited_source(path, text))
                 .ok()?
                 .model;
             Some(model.state_names(&model.orders(order).ok()?))

@@ -22,7 +22,6 @@ use crate::model::work::WorkLimit;
 use crate::thresholds;
 use eomgen_sim::exponential::{
     Directions, DrivingAccelerations, ExponentialIntegrator, Force, MovedParameters, Options,
-    Tangents,
 };
 use eomgen_sim::ode::runge_kutta::RungeKutta;
 
@@ -212,8 +211,7 @@ impl<'m> Simulation<'m> {
         let linear_outputs = self.linear_outputs.as_ref()?;
         let integrator = self.integrator.as_mut()?;
         let n = initial.len();
-        let mut tangents = Tangents::new(
-            (n, integrator.degrees_of_freedom()),
+        let mut tangents = integrator.create_tangents(
             Directions {
                 has_state_vectors: by_state,
                 parameter_count: by_parameter,
@@ -355,7 +353,7 @@ impl<'m> Simulation<'m> {
     }
 
     /// The states at the samples by classical Runge-Kutta steps, none of them longer than the longest; none
-    /// if they do not stay finite. Inputs are looked at once per step.
+    /// if they do not stay finite. Held inputs are looked at once per step.
     fn by_runge_kutta(
         &mut self,
         initial: &[f64],
@@ -375,8 +373,9 @@ impl<'m> Simulation<'m> {
             for step in 0..steps {
                 let begin = pair[0] + step as f64 * h;
                 // Half a step on, so that rounding of a sample's time does not decide.
-                let inputs = inputs.last_sample(begin + 0.5 * h);
+                let held = inputs.last_sample(begin + 0.5 * h);
                 method.step(&mut state, (begin, h), |_, t, state, rates| {
+                    let inputs = &inputs.evaluate_with_held(t, held);
                     evaluator.rates(Point { t, state, inputs }, rates);
                 });
             }
@@ -502,7 +501,7 @@ impl<'m> Simulation<'m> {
             linear_outputs.append(state, values);
             return;
         }
-        let inputs = inputs.last_sample(t);
+        let inputs = &inputs.evaluate(t);
         let evaluator = self.evaluator.get_mut();
         let required = match &mut self.given {
             None => None,

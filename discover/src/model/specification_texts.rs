@@ -1,5 +1,9 @@
 //! Text of a specification and of its linear part.
 
+use std::path::Path;
+
+use eomgen_model_spec::source::Source;
+
 /// Two texts of one specification.
 #[derive(Clone, Debug)]
 pub struct SpecificationTexts {
@@ -17,4 +21,11 @@ impl SpecificationTexts {
             linear: text.to_owned(),
         }
     }
+}
+
+/// Returns the source of an edited specification. `path`: path of the original file, in whose folder the tables of mode
+/// shapes are.
+pub fn edited_source(path: &str, text: &str) -> Source {
+    let folder = Path::new(path).parent().unwrap_or(Path::new(""));
+    Source::new(path, text).in_folder(folder)
 }

@@ -1,11 +1,11 @@
 //! Checks of the equations of an extended specification.
 
 use eomgen_compiled_model::Error;
-use eomgen_model_spec::source::Source;
 use eomgen_validate::certificate::Verdict;
 use eomgen_validate::model_certificate::certify_specification;
 
 use super::result::{Discovery, Validation};
+use crate::model::specification_texts::edited_source;
 
 impl Discovery {
     /// Certifies the extended specification and keeps the result. `path` is the path of the given specification and
@@ -14,7 +14,7 @@ impl Discovery {
     /// # Errors
     /// An extended specification that cannot be read or derived.
     pub fn certify(&mut self, path: &str, order: Option<usize>) -> Result<(), Error> {
-        let extended = Source::new(path, self.extended.as_str());
+        let extended = edited_source(path, &self.extended);
         let certificate = certify_specification(extended, order)?;
         self.validation = certificate.map(|certificate| Validation {
             has_passed: certificate.verdict != Verdict::Failed,

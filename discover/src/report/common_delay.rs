@@ -3,6 +3,7 @@
 
 use crate::fit::fit_result::Fit;
 use crate::ids::UnknownId;
+use crate::model::input_occurrences::find_only_input;
 use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{NormalPrior, Unknown, UnknownKind};
 use crate::thresholds;
@@ -15,10 +16,7 @@ pub(crate) fn note_common_delay(problem: &EstimationProblem<'_>, fit: &Fit) -> O
     {
         return None;
     }
-    let input = match &fit.model.specification().inputs[..] {
-        [only] => &only.name,
-        _ => return None,
-    };
+    let input = &find_only_input(fit.model.specification())?.name;
     let delays = fit
         .unknowns()
         .filter(|(_, unknown)| matches!(unknown.kind, UnknownKind::Delay(_)));

@@ -1,6 +1,7 @@
 //! Check for a lag of the drive that could also be a lag of the sensors.
 
 use crate::fit::fit_result::Fit;
+use crate::model::input_occurrences::find_only_input;
 use crate::search::search_result::AcceptedEffect;
 
 /// Effect of a drive with a first-order lag.
@@ -12,10 +13,7 @@ pub(crate) fn note_common_lag(fit: &Fit, accepted: &[AcceptedEffect]) -> Option<
     if !accepted.iter().any(|found| found.candidate.effect == LAG) || !fit.model.is_linear() {
         return None;
     }
-    let input = match &fit.model.specification().inputs[..] {
-        [only] => &only.name,
-        _ => return None,
-    };
+    let input = &find_only_input(fit.model.specification())?.name;
     Some(format!(
         "the same low-pass in every sensor gives the same records as the lag of `{input}`, because the model is linear: \
          before a controller relies on it, measure the output of the drive, or the motion with a sensor of another kind"

@@ -1,6 +1,5 @@
 //! Results from the fits and the search.
 
-use crate::ids::{ChannelId, UnknownId};
 use std::collections::BTreeMap;
 
 use eomgen_records::dataset::Channel;
@@ -10,6 +9,7 @@ use crate::empirical::EMPIRICAL_EFFECT;
 use crate::experiment::next_experiment::{Experiments, NextExperiment};
 use crate::fit::fit_result::Fit;
 use crate::fit::noise_floor::NoiseFloor;
+use crate::ids::{ChannelId, UnknownId};
 use crate::model::input_faults::{find_declared, find_delayed_input};
 use crate::model::problem::{EstimationProblem, TestCounter};
 use crate::model::unknowns::{Unknown, UnknownKind};
@@ -19,6 +19,7 @@ use crate::report::result::{
     SearchStep, SensorEstimate, ShaftOrder, TrainTest,
 };
 use crate::search::search_result::{AcceptedEffect, RejectedCandidate, SearchResult};
+use crate::thresholds;
 
 /// Computes the gap of each channel before and after the search.
 pub(crate) fn compute_gap(
@@ -100,6 +101,7 @@ pub(crate) fn list_rejected(
             order: None,
         },
         reason: reason(of),
+        best_reduction: of.best_reduction,
         experiment: of.candidate.experiment.clone(),
         next_experiment: next.clone(),
         p_values: of.p_value.map(|p| (p, judged.adjust_p_value(p))),
@@ -254,22 +256,27 @@ pub(crate) fn list_nuisances(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<
     fit.unknowns().filter_map(of).collect()
 }
 
-/// Returns notes on nuisances at their bounds.
-pub(crate) fn describe_bounds(nuisances: &[Nuisance]) -> Vec<String> {
-    let at_bound = nuisances.iter().filter(|of| of.is_at_bound());
+/// Returns notes on nuisances that are far from their declared values.
+pub(crate) fn describe_deviations(nuisances: &[Nuisance]) -> Vec<String> {
+    let far = nuisances
+        .iter()
+        .filter(|of| of.deviations_from_prior().abs() >= thresholds::MIN_NOTED_PRIOR_DEVIATION);
     let note = |of: &Nuisance| {
         let (mean, sd) = of.declared;
         let unit = &of.estimate.unit;
+        let consequence = match of.is_at_bound() {
+            true => ", at the bound of the fit: another effect may be missing",
+            false => ": a missing effect may be the cause",
+        };
         format!(
-            "{} is {}, {:.1} standard deviations from the declared value ({}), at the bound of the fit: another \
-             effect may be missing",
+            "{} is {}, {:.1} standard deviations from the declared value ({}){consequence}",
             of.full_name(),
             format_quantity(of.estimate.value, 4, unit),
             of.deviations_from_prior().abs(),
             format_estimate(mean, sd, unit),
         )
     };
-    at_bound.map(note).collect()
+    far.map(note).collect()
 }
 
 /// Returns the name of an unknown of the null model, the number of its units in one SI unit, and

@@ -7,19 +7,19 @@ use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::UnknownKind;
 use crate::thresholds;
 
-/// Returns a note if all channels lead by about half the interval of inputs that change at most samples. A
-/// held value is on average half an interval older than the smooth input that the machine receives.
+/// Returns a note if all channels lead by about half the interval of inputs that change at most samples, and
+/// each lead is significant. A held value is on average half an interval older than the smooth input that the
+/// machine receives.
 pub(crate) fn note_held_input(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<String> {
     let record = problem.dataset.train.first()?;
     let interval = typical_step(&record.times);
     let delays = fit
         .unknowns()
         .filter(|(_, unknown)| matches!(unknown.kind, UnknownKind::Delay(_)))
-        .map(|(id, _)| fit.train.estimate.theta[id]);
-    let delays: Vec<f64> = delays.collect();
-    let mean = delays.iter().sum::<f64>() / delays.len() as f64;
-    let is_half =
-        (delays.iter()).all(|delay| thresholds::HALF_INTERVAL_LEAD.contains(&(-delay / interval)));
+        .map(|(id, _)| (fit.train.estimate.theta[id], fit.sd[id]));
+    let delays: Vec<(f64, f64)> = delays.collect();
+    let mean = delays.iter().map(|(delay, _)| delay).sum::<f64>() / delays.len() as f64;
+    let is_half = (delays.iter()).all(|(delay, sd)| is_half_interval_lead(*delay, *sd, interval));
     let is_smooth = !record.input_columns.is_empty()
         && record
             .input_columns
@@ -37,6 +37,12 @@ pub(crate) fn note_held_input(problem: &EstimationProblem<'_>, fit: &Fit) -> Opt
     })
 }
 
+/// Returns true if a delay is a lead of about half an interval and differs from 0 significantly.
+fn is_half_interval_lead(delay: f64, sd: f64, interval: f64) -> bool {
+    thresholds::HALF_INTERVAL_LEAD.contains(&(-delay / interval))
+        && -delay > thresholds::MIN_LEAD_DEVIATIONS * sd
+}
+
 /// Returns the fraction of the samples that differ from the one before.
 fn changing_fraction(column: &[f64]) -> f64 {
     let changes = column.windows(2).filter(|pair| pair[0] != pair[1]);
@@ -45,7 +51,15 @@ fn changing_fraction(column: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::changing_fraction;
+    use super::{changing_fraction, is_half_interval_lead};
+
+    #[test]
+    fn lead_within_three_standard_deviations_of_zero_is_no_lead() {
+        assert!(is_half_interval_lead(-2.5e-3, 0.8e-3, 5e-3));
+        assert!(!is_half_interval_lead(-2.5e-3, 0.9e-3, 5e-3));
+        assert!(!is_half_interval_lead(2.5e-3, 0.1e-3, 5e-3));
+        assert!(!is_half_interval_lead(-0.5e-3, 0.1e-3, 5e-3));
+    }
 
     #[test]
     fn steps_change_at_few_samples() {

@@ -155,7 +155,14 @@ fn write_site(of: &EffectSite) -> Value {
 /// Writes a rejected effect. `files` are the experiments for effects that the records cannot show.
 fn write_rejected(of: &RejectedEffect, files: Option<&[ExperimentFile]>) -> Value {
     let mut entry = write_site(&of.at);
-    entry["reason"] = json!(of.reason);
+    entry["reason"] = match of.best_reduction {
+        Some(best) => json!(format!(
+            "{}, the best effect of the same round by {:.1} %",
+            of.reason,
+            100.0 * best
+        )),
+        None => json!(of.reason),
+    };
     entry["p_value"] = json!(of.p_values.map(|(own, _)| own));
     entry["p_value_adjusted"] = json!(of.p_values.map(|(_, all)| all));
     let Some(files) = files else { return entry };

@@ -71,7 +71,7 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
             );
         }
         Some(SpectralPeak::BelowResolution) => {
-            text += " Most of it is below the frequency resolution of windows of this length.";
+            text += " Most of it is slower than three periods per window.";
         }
         None => {}
     }

@@ -1,7 +1,7 @@
 //! Figures of a page: residuals of the test record and the residual force.
 
 use eomgen_analysis::spectrum::PowerSpectrum;
-use eomgen_page::{Figure, figure, table};
+use eomgen_page::{Figure, figure, quantity_symbol, table};
 use eomgen_plot::{
     FigureWidth, FrequencyAxis, Panel, PlotError, Series, SeriesRole, Spectrum, TimeHistory,
     scaled_unit, spectrum_at, time_history_at,
@@ -23,7 +23,7 @@ pub(crate) fn draw_force_section(force: &ResidualForce, after: Option<&ResidualF
     let rows = html! {
         @for ranking in &force.ranking {
             tr {
-                td { (force.equations[ranking.equation].name) }
+                td { (quantity_symbol(&force.equations[ranking.equation].name)) }
                 td { (percent(ranking.fraction_by_state)) }
                 td { (percent(ranking.fraction_by_time)) }
             }
@@ -31,8 +31,8 @@ pub(crate) fn draw_force_section(force: &ResidualForce, after: Option<&ResidualF
     };
     let headings = [
         "a force on",
-        "explained fraction of the squares, over rate or position",
-        "explained fraction, free in each window",
+        "explained fraction of the squares, by a force that depends on speed or position",
+        "explained fraction, by a force that depends on time",
     ];
     html! {
         (table(&headings, &rows))

@@ -101,6 +101,6 @@ impl RemainingGap {
 fn format_floors(floors: f64) -> String {
     match floors < 10.0 {
         true => format!("{floors:.1}"),
-        false => format_number(floors, 2),
+        false => format_number(floors, 3),
     }
 }

@@ -60,7 +60,7 @@ pub struct SensorEstimate {
 /// Results of both a comparison and a search.
 #[derive(Clone, Debug)]
 pub struct CommonResult {
-    /// Title of the dataset; may be empty.
+    /// Title of the dataset, or of the model if that has none.
     pub title: String,
     /// Gap of each channel, by its name.
     pub gap: BTreeMap<String, ChannelGap>,
@@ -274,6 +274,9 @@ pub struct RejectedEffect {
     pub at: EffectSite,
     /// Reason of the rejection.
     pub reason: String,
+    /// Fraction of the squared residual by which the best effect of the same round would reduce it, if the reason
+    /// is a predicted reduction.
+    pub best_reduction: Option<f64>,
     /// Experiment that shows the effect.
     pub experiment: String,
     /// Proposed input for that experiment, if it was computed.

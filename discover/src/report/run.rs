@@ -22,7 +22,7 @@ use crate::model::unknowns::note_input_delay;
 use crate::report::common_delay::note_common_delay;
 use crate::report::common_lag::note_common_lag;
 use crate::report::discovery::{
-    Certainty, compute_closure, compute_gap, describe_bounds, list_nuisances, list_refitted,
+    Certainty, compute_closure, compute_gap, describe_deviations, list_nuisances, list_refitted,
     list_rejected, list_sensors, list_steps, summarise_effects,
 };
 use crate::report::experiment::draw_experiments;
@@ -88,7 +88,7 @@ pub fn compare(
         }),
     };
     let nuisances = list_nuisances(&problem, &fit);
-    let mut notes = [dataset.notes.clone(), describe_bounds(&nuisances)].concat();
+    let mut notes = [dataset.notes.clone(), describe_deviations(&nuisances)].concat();
     notes.extend(note_input_delay(&dataset.inputs, fit.model.specification()));
     notes.extend(note_common_delay(&problem, &fit));
     notes.extend(note_held_input(&problem, &fit));
@@ -101,7 +101,7 @@ pub fn compare(
     Ok(Comparison {
         has_gap: !fit.is_at_floor(floor.rms),
         compared: CommonResult {
-            title: dataset.title.clone(),
+            title: title(dataset, &fit),
             gap: compute_gap(&problem, &fit, None, &floor),
             refitted: list_refitted(&fit, &[]),
             sensors: list_sensors(&problem, &fit),
@@ -186,7 +186,7 @@ pub fn discover_until(
         location += &format!(" {}", describe_remaining_force(after));
     }
     stop.check_not_stopped()?;
-    let extended = write_extended(&problem, text, best, &found.accepted)?;
+    let extended = write_extended(&problem, text, best, &found.accepted, floor.rms)?;
     let context = RoundContext {
         problem: &problem,
         fit: null,
@@ -212,7 +212,11 @@ pub fn discover_until(
     };
     let gap = compute_gap(&problem, null, Some(best), &floor);
     let nuisances = list_nuisances(&problem, best);
-    let mut notes = [problem.dataset.notes.clone(), describe_bounds(&nuisances)].concat();
+    let mut notes = [
+        problem.dataset.notes.clone(),
+        describe_deviations(&nuisances),
+    ]
+    .concat();
     notes.extend(note_input_delay(
         &problem.dataset.inputs,
         null.model.specification(),
@@ -278,7 +282,7 @@ pub fn discover_until(
         original: original.to_owned(),
         extended,
         compared: CommonResult {
-            title: problem.dataset.title.clone(),
+            title: title(problem.dataset, best),
             gap,
             refitted: list_refitted(best, &found.accepted),
             sensors: list_sensors(&problem, best),
@@ -289,6 +293,14 @@ pub fn discover_until(
             pictures,
         },
     })
+}
+
+/// Returns the title of a dataset, or of the model of a fit if it has none.
+fn title(dataset: &Dataset, fit: &Fit) -> String {
+    match dataset.title.as_str() {
+        "" => fit.model.specification().title.clone(),
+        title => title.to_owned(),
+    }
 }
 
 /// Describes a hypothesis that training records support and held-out records do not. Later

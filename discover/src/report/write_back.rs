@@ -3,17 +3,19 @@
 
 use crate::ids::{ChannelId, UnknownId};
 use eomgen_model_spec::edit::{self, Edit, SetParameter, SetSensor};
-use eomgen_model_spec::source::Source;
 
 use crate::error::DiscoverError;
 use crate::fit::fit_result::Fit;
 use crate::model::input_faults::find_delayed_input;
 use crate::model::problem::EstimationProblem;
+use crate::model::specification_texts::edited_source;
 use crate::model::unknowns::UnknownKind;
+use crate::report::quantity::format_number;
 use crate::search::search_result::AcceptedEffect;
 use crate::thresholds;
 
-/// Returns the text with the effects and numbers of a fit.
+/// Returns the text with the effects and numbers of a fit. `floor`: noise floor in standard deviations of the
+/// noise.
 ///
 /// # Errors
 ///
@@ -23,6 +25,7 @@ pub fn write_extended(
     text: &str,
     fit: &Fit,
     accepted: &[AcceptedEffect],
+    floor: f64,
 ) -> Result<String, DiscoverError> {
     let source = provenance(problem);
     let theta = &fit.train.estimate.theta;
@@ -45,8 +48,7 @@ pub fn write_extended(
     let mut edits = Vec::new();
     for (id, unknown) in fit.unknowns() {
         if let UnknownKind::Parameter(name) = &unknown.kind
-            && has_moved(fit, id, !accepted.is_empty())
-            && !added.contains(&id)
+            && (added.contains(&id) || has_moved(fit, id, !accepted.is_empty()))
             && let Some(parameter) = fit
                 .model
                 .specification()
@@ -54,18 +56,20 @@ pub fn write_extended(
                 .iter()
                 .find(|p| p.name == *name)
         {
+            let sd = match added.contains(&id) {
+                true => fit.sd_with_misfit(id, floor),
+                false => fit.sd[id],
+            };
+            let sd = format_number(parameter.unit.from_si(sd), 2);
             edits.push(Edit::SetParameter(SetParameter {
                 name: name.clone(),
                 value: parameter.unit.from_si(theta[id]),
-                source: source.clone(),
+                source: format!("{source}; standard deviation {sd} {}", parameter.unit),
             }));
         }
     }
     edits.extend(sensors(problem, fit, !accepted.is_empty()));
-    Ok(edit::apply(
-        &Source::new(problem.path.as_str(), text.as_str()),
-        &edits,
-    )?)
+    Ok(edit::apply(&edited_source(&problem.path, &text), &edits)?)
 }
 
 /// Describes the source of the numbers.

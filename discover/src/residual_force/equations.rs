@@ -5,7 +5,6 @@
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::edit::{self, Edit, NewForce, NewParameter, NewTerm, NewValue, Section};
 use eomgen_model_spec::model::{Expr, ExprKind, Model};
-use eomgen_model_spec::source::Source;
 
 use crate::catalogue::effect::SiteKind;
 use crate::catalogue::sites::find_sites;
@@ -14,6 +13,7 @@ use crate::fit::shooting::Shooting;
 use crate::ids::{ObservableId, ParameterId};
 use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
+use crate::model::specification_texts::edited_source;
 
 /// An equation of motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -146,7 +146,7 @@ impl EquationSet {
                 }));
             }
         }
-        let source = Source::new(problem.path.as_str(), fit.texts.full.as_str());
+        let source = edited_source(&problem.path, &fit.texts.full);
         let text = edit::apply(&source, &edits).ok()?;
         let model =
             EstimationModel::derive_equations(&text, &problem.path, problem.order, &[]).ok()?;

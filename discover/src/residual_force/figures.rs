@@ -20,6 +20,8 @@ struct Picture {
     axes: Axes,
     /// True if points belong to a line.
     is_line: bool,
+    /// True for amplitudes, whose bars end at 0.
+    is_amplitude: bool,
     /// True if the force is free in every window, and small where they do not show it.
     by_window: bool,
     of: fn(&ResidualForce) -> &Profile,
@@ -40,7 +42,15 @@ pub fn draw_profiles(
         .map(|picture| {
             let of = |(role, force): &(SeriesRole, &ResidualForce)| {
                 let most = largest_sd((picture.of)(before));
-                (*role, points((picture.of)(force), picture.is_line, most))
+                let lowest = if picture.is_amplitude {
+                    0.0
+                } else {
+                    f64::NEG_INFINITY
+                };
+                (
+                    *role,
+                    points((picture.of)(force), picture.is_line, (lowest, most)),
+                )
             };
             (picture, forces.iter().map(of).collect::<Vec<_>>())
         })
@@ -93,11 +103,24 @@ fn pictures(equation: &Equation) -> [Picture; 6] {
         "rad" => ("angle", "over the angle"),
         _ => ("position", "over the position"),
     };
+    let (rate, over_rate, along_rate) = match equation.unit {
+        "m" => (
+            "speed",
+            "over the speed",
+            "along the speed, over the largest speed of each window",
+        ),
+        _ => (
+            "rate",
+            "over the rate",
+            "along the rate, over the largest rate of each window",
+        ),
+    };
     [
         Picture {
-            title: "over the rate",
-            axes: over("rate", equation.rate_unit()),
+            title: over_rate,
+            axes: over(rate, equation.rate_unit()),
             is_line: true,
+            is_amplitude: false,
             by_window: false,
             of: |force| &force.rate,
         },
@@ -106,6 +129,7 @@ fn pictures(equation: &Equation) -> [Picture; 6] {
             axes: over(position, equation.unit),
             // A force that does not depend on the position scatters over it.
             is_line: false,
+            is_amplitude: false,
             by_window: false,
             of: |force| &force.position,
         },
@@ -113,13 +137,15 @@ fn pictures(equation: &Equation) -> [Picture; 6] {
             title: "over time, record train[0]",
             axes: Axes::Time,
             is_line: true,
+            is_amplitude: false,
             by_window: true,
             of: |force| &force.time,
         },
         Picture {
-            title: "along the rate, over the largest rate of each window",
-            axes: over("rate", equation.rate_unit()),
+            title: along_rate,
+            axes: over(rate, equation.rate_unit()),
             is_line: false,
+            is_amplitude: false,
             by_window: false,
             of: |force| &force.amplitude,
         },
@@ -127,6 +153,7 @@ fn pictures(equation: &Equation) -> [Picture; 6] {
             title: "amplitude over the frequency",
             axes: over("f", "Hz"),
             is_line: true,
+            is_amplitude: true,
             by_window: true,
             of: |force| &force.frequency,
         },
@@ -134,6 +161,7 @@ fn pictures(equation: &Equation) -> [Picture; 6] {
             title: "amplitude over the order, per turn",
             axes: over("order", ""),
             is_line: false,
+            is_amplitude: true,
             by_window: false,
             of: |force| &force.order,
         },
@@ -174,8 +202,9 @@ fn is_known(sd: f64, most: f64) -> bool {
     sd > 0.0 && sd < most
 }
 
-/// A profile with its bars as one curve that goes up and down at each point, or as crosses.
-fn points(profile: &Profile, is_line: bool, most: f64) -> Points {
+/// A profile with its bars as one curve that goes up and down at each point, or as crosses. `lowest` is the end of the
+/// bars, `most` the largest standard deviation to draw.
+fn points(profile: &Profile, is_line: bool, (lowest, most): (f64, f64)) -> Points {
     let (Some(first), Some(last)) = (profile.arguments.first(), profile.arguments.last()) else {
         return Points::default();
     };
@@ -188,7 +217,7 @@ fn points(profile: &Profile, is_line: bool, most: f64) -> Points {
     };
     for (number, at) in profile.arguments.iter().enumerate() {
         let (value, sd) = (profile.values[number], profile.sd[number]);
-        let bar = [value, value - sd, value + sd, value].map(|value| (0.0, value));
+        let bar = [value, (value - sd).max(lowest), value + sd, value].map(|value| (0.0, value));
         let drawn = match is_known(sd, most) {
             true if is_line => bar.to_vec(),
             true => {
@@ -223,12 +252,25 @@ mod tests {
             ..Profile::default()
         };
         for is_line in [true, false] {
-            let (over, values) = points(&profile, is_line, 1.0);
+            let (over, values) = points(&profile, is_line, (f64::NEG_INFINITY, 1.0));
             assert!(over.is_sorted(), "{over:?}");
             assert_eq!(over.len(), values.len());
             let drawn = |wanted: f64| values.iter().filter(|v| **v == wanted).count();
             assert_eq!((drawn(2.0), drawn(3.0)), (if is_line { 2 } else { 4 }, 0));
             assert!(values[0].is_nan() && over[0] < 0.0 && over[over.len() - 1] > 5.0);
         }
+    }
+
+    #[test]
+    fn bars_of_an_amplitude_end_at_zero() {
+        let profile = Profile {
+            arguments: vec![0.0, 1.0],
+            values: vec![1.0, 2.0],
+            sd: vec![1.5, 0.5],
+            ..Profile::default()
+        };
+        let (_, values) = points(&profile, true, (0.0, 2.0));
+        assert!(!values.iter().any(|value| *value < 0.0), "{values:?}");
+        assert!(values.contains(&0.0) && values.contains(&1.5), "{values:?}");
     }
 }

@@ -25,7 +25,7 @@ pub(crate) struct SteppedWindow<'s> {
     longest_step: LongestStep,
 }
 
-/// A step: the time in its middle, which decides what its inputs are, and the times and states
+/// A step: the time in its middle, which decides what its held inputs are, and the times and states
 /// where it begins, is half way and ends.
 struct Step {
     middle: f64,
@@ -123,7 +123,8 @@ impl<'s> SteppedWindow<'s> {
         let mut squares = vec![0.0; rates.len() - first];
         for step in &own.steps {
             for (t, state) in &step.points {
-                let (t, inputs) = (*t, inputs.last_sample(step.middle));
+                let (t, held) = (*t, inputs.last_sample(step.middle));
+                let inputs = &inputs.evaluate_with_held(t, held);
                 self.evaluator.rates(Point { t, state, inputs }, &mut rates);
                 for (square, rate) in squares.iter_mut().zip(&rates[first..]) {
                     *square += rate * rate;
@@ -144,7 +145,8 @@ impl<'s> SteppedWindow<'s> {
         let mut all = vec![0.0; driven.count * forced];
         for step in &own.steps {
             for (t, state) in &step.points {
-                let inputs = inputs.last_sample(step.middle);
+                let held = inputs.last_sample(step.middle);
+                let inputs = &inputs.evaluate_with_held(*t, held);
                 driven.drives.write_differences(*t, state, inputs, &mut all);
                 for (force, now) in found.iter_mut().zip(all.chunks_exact(forced)) {
                     force.in_steps.extend_from_slice(now);
@@ -158,7 +160,7 @@ impl<'s> SteppedWindow<'s> {
         for (t, state) in times.iter().zip(&own.states) {
             driven
                 .drives
-                .write_differences(*t, state, inputs.last_sample(*t), &mut all);
+                .write_differences(*t, state, &inputs.evaluate(*t), &mut all);
             for (force, now) in found.iter_mut().zip(all.chunks_exact(forced)) {
                 force.at_times.extend_from_slice(now);
             }
@@ -221,12 +223,8 @@ impl<'s> SteppedWindow<'s> {
                 let mut points = [const { (0.0, Vec::new()) }; 3];
                 method.step(&mut state, (begin, h), |stage, t, state, rates| {
                     let point = POINTS[stage];
-                    let at = Point {
-                        t,
-                        state,
-                        inputs: held,
-                    };
-                    self.evaluator.rates(at, rates);
+                    let inputs = &inputs.evaluate_with_held(t, held);
+                    self.evaluator.rates(Point { t, state, inputs }, rates);
                     if let Some((size, force)) = force {
                         let first = (3 * number + point) * forced;
                         let added = rates[degrees..].iter_mut().zip(&force.in_steps[first..]);
@@ -244,7 +242,7 @@ impl<'s> SteppedWindow<'s> {
             let at = Point {
                 t: *t,
                 state: &state,
-                inputs: inputs.last_sample(*t),
+                inputs: &inputs.evaluate(*t),
             };
             let added = force.map(|(size, force)| (size, force.derivatives_at(place, forced)));
             self.measure(at, added, &mut measured);

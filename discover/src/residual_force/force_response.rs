@@ -162,7 +162,7 @@ pub fn compute_operating_points(
             let point = Point {
                 t: *t,
                 state: &state,
-                inputs: inputs.last_sample(*t),
+                inputs: &inputs.evaluate(*t),
             };
             evaluator.append_operating_points(point, &mut operating_points);
             for operating_point in &mut operating_points {

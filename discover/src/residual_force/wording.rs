@@ -76,9 +76,7 @@ fn describe_shape(force: &ResidualForce, kind: &ForceKind) -> String {
                             "{text}, most of it near {} Hz",
                             in_resolution(frequencies.arguments[peak], frequencies.arguments[0])
                         ),
-                        false => format!(
-                            "{text}, most of it below the frequency resolution of windows of this length"
-                        ),
+                        false => format!("{text}, most of it slower than three periods per window"),
                     }
                 }
                 _ => text,

@@ -43,6 +43,7 @@ pub fn eliminate_backwards(
         found.rejected.push(RejectedCandidate {
             candidate,
             reason,
+            best_reduction: None,
             is_untestable: false,
             p_value: None,
         });

@@ -1,13 +1,12 @@
 //! Parts of the motions used for screening.
 
 use eomgen_model_spec::edit::{self, Edit, SetParameter};
-use eomgen_model_spec::source::Source;
 
 use crate::catalogue::meshes::find_play_parameters;
 use crate::fit::fit_result::Fit;
 use crate::fit::full_fit;
 use crate::model::problem::EstimationProblem;
-use crate::model::specification_texts::SpecificationTexts;
+use crate::model::specification_texts::{SpecificationTexts, edited_source};
 use crate::thresholds;
 
 /// Part of the motions used for screening.
@@ -47,7 +46,7 @@ pub fn fit_without_play(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Fi
     if edits.is_empty() {
         return None;
     }
-    let closed = |text: &str| edit::apply(&Source::new(problem.path.as_str(), text), &edits).ok();
+    let closed = |text: &str| edit::apply(&edited_source(&problem.path, text), &edits).ok();
     let texts = SpecificationTexts {
         full: closed(&fit.texts.full)?,
         linear: closed(&fit.texts.linear)?,

@@ -46,7 +46,7 @@ pub fn run_preliminary_fits(
     let fitted = |hypothesis: Hypothesis| {
         let preliminary = hypothesis::fit_preliminary(pool, &hypothesis);
         let left = match &preliminary {
-            Ok(fit) => format!("{:.1} % of the {of} remains", 100.0 * fit.cost / alone),
+            Ok(fit) => describe_remaining(fit.cost / alone, of),
             Err(error) => describe_failure(error),
         };
         let label = hypothesis::describe_hypothesis(pool, &hypothesis);
@@ -80,6 +80,14 @@ pub fn run_full_fits(
         tested.ok()
     };
     preliminaries.into_par_iter().filter_map(fitted).collect()
+}
+
+/// Describes the remaining fraction of a residual. Above 1 the fit is worse than none.
+fn describe_remaining(fraction: f64, of: &str) -> String {
+    match fraction <= 1.0 {
+        true => format!("{:.1} % of the {of} remains", 100.0 * fraction),
+        false => format!("its fit did not converge; more than the whole {of} remains"),
+    }
 }
 
 /// Describes a failed fit in one line, without the place in the candidate's specification.
@@ -135,6 +143,23 @@ impl fmt::Display for FittedHypothesis {
         match &self.verdict {
             Ok(_) => write!(f, "accepted"),
             Err(rejection) => write!(f, "{rejection}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::describe_remaining;
+
+    #[test]
+    fn fits_worse_than_none_have_no_percentage() {
+        let of = "initial-segment residual";
+        assert_eq!(
+            describe_remaining(0.178, of),
+            "17.8 % of the initial-segment residual remains"
+        );
+        for fraction in [1.2, 397189.317, f64::INFINITY, f64::NAN] {
+            assert!(!describe_remaining(fraction, of).contains('%'));
         }
     }
 }

@@ -225,6 +225,7 @@ impl Search<'_> {
             found.rejected.push(RejectedCandidate {
                 candidate,
                 reason: "a law that was found by a scan leaves less without it".to_owned(),
+                best_reduction: None,
                 is_untestable: false,
                 p_value: None,
             });

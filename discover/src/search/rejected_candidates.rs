@@ -11,6 +11,8 @@ use crate::thresholds;
 /// Reason of a rejection. A reason from a fit replaces one from screening.
 struct Reason {
     text: String,
+    /// Predicted reduction by the best candidate of the round, if the reason is a prediction.
+    best_reduction: Option<f64>,
     not_testable: bool,
     is_of_fit: bool,
     p_value: Option<f64>,
@@ -30,6 +32,7 @@ pub fn note_rejected(rejected: &mut Vec<RejectedCandidate>, round: &[TestedPool]
             rejected.push(RejectedCandidate {
                 candidate: candidate.clone(),
                 reason: reason.text,
+                best_reduction: reason.best_reduction,
                 is_untestable: reason.not_testable,
                 p_value: reason.p_value,
             });
@@ -63,6 +66,7 @@ fn reasons(tested: &TestedPool) -> Vec<(&Candidate, Reason)> {
         .map(|UnexcitedCandidate { candidate, reason }| {
             let reason = Reason {
                 text: reason.to_string(),
+                best_reduction: None,
                 not_testable: true,
                 is_of_fit: false,
                 p_value: None,
@@ -93,6 +97,7 @@ fn of_fit(fitted: &FittedHypothesis) -> Reason {
     };
     Reason {
         text,
+        best_reduction: None,
         not_testable: false,
         is_of_fit: true,
         p_value: fitted.p_value,
@@ -103,24 +108,26 @@ fn of_screening(tested: &TestedPool, id: ResponseId) -> Reason {
     let screening = &tested.screening;
     let response = &screening.responses[id];
     let not_testable = response.unexplained_fraction <= thresholds::MIN_UNEXPLAINED_FRACTION;
-    let text = if not_testable {
-        format!(
+    let (text, best_reduction) = if not_testable {
+        let text = format!(
             "initial states, refitted parameters and sensors together can produce {:.1} % of its response; the rest \
              is too small to test",
             100.0 * (1.0 - response.unexplained_fraction)
-        )
+        );
+        (text, None)
     } else {
         let alone = screening.predict(&[]).cost;
         let most = screening.responses.iter();
         let most = most.map(|other| other.cost_decrease).fold(0.0, f64::max);
-        format!(
-            "it would reduce the squared residual by {:.1} %, the best effect of the same round by {:.1} %",
-            100.0 * response.cost_decrease / alone,
-            100.0 * most / alone
-        )
+        let text = format!(
+            "it would reduce the squared residual by {:.1} %",
+            100.0 * response.cost_decrease / alone
+        );
+        (text, Some(most / alone))
     };
     Reason {
         text,
+        best_reduction,
         not_testable,
         is_of_fit: false,
         p_value: None,

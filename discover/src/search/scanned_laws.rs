@@ -156,6 +156,7 @@ fn reject_unfitted(candidate: Candidate, reason: String) -> RejectedCandidate {
     RejectedCandidate {
         candidate,
         reason,
+        best_reduction: None,
         is_untestable: false,
         p_value: None,
     }

@@ -38,6 +38,9 @@ pub struct RejectedCandidate {
     pub candidate: Candidate,
     /// Reason of the rejection.
     pub reason: String,
+    /// Fraction of the squared residual by which the best candidate of the same round would reduce it, for
+    /// comparison with a predicted reduction in the reason.
+    pub best_reduction: Option<f64>,
     /// True if the records cannot show the effect.
     pub is_untestable: bool,
     /// P-value of the test records; `None` if the candidate was not fitted.

@@ -176,13 +176,14 @@ fn points(
         };
         let samples = window.times.iter().zip(states).step_by(stride);
         for (t, state) in samples {
-            let rates = simulation.compute_rates(*t, &state, inputs.last_sample(*t));
+            let inputs = inputs.evaluate(*t);
+            let rates = simulation.compute_rates(*t, &state, &inputs);
             for (sum, rate) in points.squares.iter_mut().zip(&rates[first..]) {
                 *sum += rate * rate;
             }
             points.times.push(*t);
             points.states.push(state);
-            points.inputs.push(inputs.last_sample(*t).to_vec());
+            points.inputs.push(inputs.into_owned());
             points.rates.push(rates);
         }
     }

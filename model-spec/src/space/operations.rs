@@ -87,7 +87,7 @@ impl Reader<'_> {
                     .with_help("write the rotation before the vector: R*v"))
             }
             (left, right) => Err(operand_error(&left, &right)
-                .with_help("multiply a rotation by a vector, R*v, or by another rotation, R*S")),
+                .with_help("multiply a rotation by a vector, R*v, or by another rotation, R*S; a scalar stands before such a product, s*(R*v)")),
         }
     }
 

@@ -285,8 +285,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         };
         let (contacts, mut sliding) = (contacts.borrow(), sliding.borrow_mut());
         let closed = contacts.closed_modes();
-        let is_known = sliding.disc_count() == 0;
-        sliding.set_closed_contacts((is_known || closed.is_empty()).then_some(&closed))
+        sliding.set_closed_contacts(&closed)
     }
 
     /// Decides the effect of the surfaces anew if the closed contacts or their modes changed, and revises the modes of the
@@ -295,6 +294,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         let (Some(sliding), Some(contacts)) = (&self.sliding, &self.contacts) else {
             return;
         };
+        self.close_released((t, state), inputs);
         for _ in 0..MAX_REVISIONS {
             if self.update_closed_contacts() {
                 sliding.borrow_mut().decide_again((t, state), inputs);
@@ -307,6 +307,37 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
             });
         }
         contacts.borrow_mut().refuse_modes();
+    }
+
+    /// Closes the open contacts at bodies that decided surfaces no longer hold, if they then push: the bodies touch at rest,
+    /// so there is no impact. The force of a surface that a closed contact stops passes to the contact.
+    fn close_released(&self, (t, state): (f64, &[f64]), inputs: &[f64]) {
+        let (Some(sliding), Some(contacts)) = (&self.sliding, &self.contacts) else {
+            return;
+        };
+        if !sliding.borrow().has_decided() {
+            return;
+        }
+        let mut released = contacts.borrow().at_held_bodies();
+        released.retain(|place| !sliding.borrow_mut().keeps_distance(*place));
+        while !released.is_empty() {
+            let saved = sliding.borrow().save();
+            let state = &self.with_contacts(contacts, (t, state), |contacts, own, inputs| {
+                contacts.close_at_rest(own, Point { t, state, inputs }, &released)
+            });
+            self.update_closed_contacts();
+            sliding.borrow_mut().decide_again((t, state), inputs);
+            let pushing = self.with_contacts(contacts, (t, state), |contacts, own, inputs| {
+                contacts.find_pushing(own, Point { t, state, inputs }, &released)
+            });
+            if pushing.len() == released.len() {
+                return;
+            }
+            contacts.borrow_mut().reopen(&released);
+            self.update_closed_contacts();
+            sliding.borrow_mut().restore(saved);
+            released = pushing;
+        }
     }
 
     /// Notes the directions in which surfaces hold bodies that touch open contacts.
@@ -404,12 +435,9 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         });
         let states = self.sliding.as_ref().map(RefCell::borrow);
         let states = states.filter(|states| states.can_hold_motion());
-        let held_kind = match &states {
-            None => SurfaceKind::Speed,
-            Some(states) if self.contacts.is_some() && states.disc_count() > 0 => {
-                SurfaceKind::HeldWithoutContacts
-            }
-            Some(_) => SurfaceKind::HeldSpeed,
+        let held_kind = match states.is_some() {
+            true => SurfaceKind::HeldSpeed,
+            false => SurfaceKind::Speed,
         };
         let holding = states.map(|states| states.holding_guards());
         let holding = holding.unwrap_or_default();

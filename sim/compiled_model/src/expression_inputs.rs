@@ -1,6 +1,7 @@
 //! Inputs given by expressions of time and parameters. Those that are constant between steps, such as
-//! `0.2*above(t - 0.1)`, are held between these times, also by the exact solver.
+//! `0.2*above(t - 0.1)`, are held between these times by every solver.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use eomgen_model_spec::assignment::Assignment;
@@ -16,7 +17,7 @@ use crate::prescribed_inputs::{with_one_prescribed_input, with_prescribed_inputs
 
 /// Inputs that are constant between the times of their steps, at any parameter values.
 pub struct StepInputs {
-    /// One entry per input of the model, in its order; `None` if a controller drives it.
+    /// One entry per input of the model, in its order; `None` if no expression with steps drives it.
     inputs: Vec<Option<ExpressionInput>>,
 }
 
@@ -50,8 +51,8 @@ impl ExpressionInput {
 }
 
 impl StepInputs {
-    /// Returns the inputs that `given` prescribes, if it prescribes all inputs of the model that no controller
-    /// drives and each is constant between steps, one of them with a step at these parameter values.
+    /// Returns the model, and the inputs that `given` holds between steps. Other inputs of `given` become definitions of
+    /// the model. Returns `None` if nothing is to be held, because no input steps at these parameter values.
     ///
     /// # Errors
     /// Same as [`with_prescribed_inputs`](crate::with_prescribed_inputs).
@@ -59,38 +60,56 @@ impl StepInputs {
         model: &Model,
         given: &[Assignment],
         settings: &[(&str, f64)],
-    ) -> Result<Option<Self>, Error> {
+    ) -> Result<Option<(Model, Self)>, Error> {
         let mut found: Vec<Option<ExpressionInput>> = model.inputs.iter().map(|_| None).collect();
-        let mut has_step = false;
+        let (mut has_step, mut others) = (false, Vec::new());
         for given in given {
-            let Some((place, input)) = ExpressionInput::new(model, given)? else {
-                return Ok(None);
+            let input = ExpressionInput::new(model, given)?;
+            let steps = input.and_then(|(place, input)| {
+                let has_rate = model.inputs[place].rate.is_some();
+                let parameters = input.parameters(settings).ok().filter(|_| !has_rate)?;
+                Some((place, step_times(&input.value, &parameters)?, input))
+            });
+            let Some((place, times, input)) = steps else {
+                others.push(given.clone());
+                continue;
             };
-            let is_repeated = found[place].is_some();
-            let has_rate = model.inputs[place].rate.is_some();
-            let (Ok(parameters), false, false) =
-                (input.parameters(settings), has_rate, is_repeated)
-            else {
+            if found[place].is_some() {
                 return Ok(None);
-            };
-            let Some(times) = step_times(&input.value, &parameters) else {
-                return Ok(None);
-            };
+            }
             has_step |= !times.is_empty();
             found[place] = Some(input);
         }
-        let mut places = found.iter().enumerate();
-        let drives_all = places.all(|(place, input)| input.is_some() || model.is_controlled(place));
         // Controllers measure inputs, so that constant ones remain inputs too.
-        let is_held = has_step || !model.controllers.is_empty();
-        Ok((drives_all && is_held).then_some(Self { inputs: found }))
+        let is_held = has_step || (!model.controllers.is_empty() && others.is_empty());
+        if !is_held {
+            return Ok(None);
+        }
+        let driven = with_prescribed_inputs(model.clone(), &others)?;
+        let mut named: HashMap<&str, ExpressionInput> = (model.inputs.iter().zip(found))
+            .filter_map(|(input, found)| Some((input.name.as_str(), found?)))
+            .collect();
+        let inputs = driven.inputs.iter();
+        let inputs = inputs
+            .map(|input| named.remove(input.name.as_str()))
+            .collect();
+        Ok(Some((driven, Self { inputs })))
     }
 
-    /// Returns the inputs at parameter values in declared units, held between all steps.
+    /// Returns true if an expression with steps drives every input of the `declared` model that no controller drives.
+    fn drives_all(&self, declared: &Model, model: &Model) -> bool {
+        let mut places = self.inputs.iter().enumerate();
+        model.inputs.len() == declared.inputs.len()
+            && places.all(|(place, input)| input.is_some() || model.is_controlled(place))
+    }
+
+    /// Returns the inputs at parameter values in declared units, held between all steps. `others` holds the inputs that no
+    /// expression gives, which are constant.
     ///
     /// # Errors
     /// Inadmissible parameter values.
-    pub fn held(&self, settings: &[(&str, f64)]) -> Result<HeldInputs, Error> {
+    pub fn held(&self, settings: &[(&str, f64)], others: &HeldInputs) -> Result<HeldInputs, Error> {
+        let constant = others.last_sample(0.0);
         let parameters = self.inputs.iter().map(|input| match input {
             Some(input) => input.parameters(settings),
             None => Ok(Vec::new()),
@@ -102,9 +121,9 @@ impl StepInputs {
         times.sort_by(f64::total_cmp);
         times.dedup();
         let values = |t: f64| {
-            each().map(move |(input, own)| {
+            each().zip(constant).map(move |((input, own), other)| {
                 let input = input.as_ref();
-                input.map_or(0.0, |input| value_at(&input.value, t, own))
+                input.map_or(*other, |input| value_at(&input.value, t, own))
             })
         };
         let (Some(first), Some(last)) = (times.first().copied(), times.last().copied()) else {
@@ -202,8 +221,7 @@ pub enum InputRole {
 pub struct InputTreatment {
     /// The role for which they remain inputs.
     pub role: Option<InputRole>,
-    /// They may be held between their steps, because no record gives other inputs. Without a role they are held only if
-    /// every motion can be solved exactly then.
+    /// They may be held between their steps, because no record gives other inputs.
     pub may_hold: bool,
 }
 
@@ -232,11 +250,10 @@ impl ExpressionInputs {
             true => StepInputs::find(&declared, given, settings)?,
             false => None,
         };
-        if let Some(steps) = steps {
-            let model = derive(declared.clone())?;
-            if treatment.role.is_some() || model.piecewise_linear().is_ok() {
-                return Ok((model, Self::Steps(steps)));
-            }
+        if let Some((model, steps)) = steps
+            && (treatment.role.is_none() || steps.drives_all(&declared, &model))
+        {
+            return Ok((derive(model)?, Self::Steps(steps)));
         }
         if let Some(role) = treatment.role {
             let functions = FunctionInputs::new(&declared, given, role)?;
@@ -262,7 +279,7 @@ impl ExpressionInputs {
     ) -> Result<HeldInputs, E> {
         match self {
             Self::Definitions => others(),
-            Self::Steps(steps) => Ok(steps.held(settings)?),
+            Self::Steps(steps) => Ok(steps.held(settings, &others()?)?),
             Self::Functions(functions) => Ok(functions.add_to(others()?, settings)?),
         }
     }

@@ -29,6 +29,9 @@ const MIN_INDEPENDENT_FRACTION: f64 = 1e-9;
 /// Largest residual of a dependent constraint, relative to the terms of its rate of change, that counts as rounding.
 const MAX_RELATIVE_RESIDUAL: f64 = 1e-9;
 
+/// Rate, relative to the largest one or the typical size, that is rounding of the accelerations.
+const MAX_ROUNDING_FRACTION: f64 = 1e-12;
+
 /// Smallest coefficient of a constraint in a dependent combination, relative to the largest, at
 /// which an error names it.
 const MIN_NAMED_COEFFICIENT: f64 = 1e-6;
@@ -151,6 +154,8 @@ impl dyn MotionModel + '_ {
             return Err(Error::Request(reason));
         }
         self.check_redundancy(t, &found, inputs)?;
+        let degrees = own.program().degrees_of_freedom();
+        self.undo_rounding(state, &mut found, degrees);
         self.remove_rounding_overlap((t, until), &mut found, inputs)?;
         let Labels {
             state_names,
@@ -172,6 +177,19 @@ impl dyn MotionModel + '_ {
                 used: *to,
             });
         Ok((found.clone(), moved.collect()))
+    }
+
+    /// Restores rates of 0 that a correction changed by rounding, so that a body at rest stays at rest.
+    fn undo_rounding(&self, state: &[f64], found: &mut [f64], degrees: usize) {
+        let rates = degrees..2 * degrees;
+        let typical = self.labels().typical_sizes[rates.clone()].iter();
+        let entries = typical.chain(&found[rates.clone()]);
+        let largest = entries.fold(0.0_f64, |most, entry| most.max(entry.abs()));
+        for (to, from) in found[rates.clone()].iter_mut().zip(&state[rates]) {
+            if *from == 0.0 && to.abs() <= MAX_ROUNDING_FRACTION * largest {
+                *to = 0.0;
+            }
+        }
     }
 
     /// Returns the states before each correction that moves a state at a time (s) onto the constraints.

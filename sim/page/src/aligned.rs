@@ -2,14 +2,23 @@
 
 use maud::{Markup, html};
 
-use crate::number::rounded;
+use crate::number::{Notation, rounded};
 
 /// Returns numbers with `digits` digits after the first, each with a width that aligns the decimal points;
-/// a dash for a missing number.
+/// a dash for a missing number. If one has a power of ten, all do.
 pub fn aligned(values: &[Option<f64>], digits: usize) -> Vec<Markup> {
+    let notation = values
+        .iter()
+        .flatten()
+        .fold(Notation::Fixed, |notation, value| {
+            match rounded(*value, digits, notation).1 {
+                Some(_) => Notation::PowerOfTen,
+                None => notation,
+            }
+        });
     let numbers: Vec<Option<Parts>> = values
         .iter()
-        .map(|value| value.map(|value| Parts::new(value, digits)))
+        .map(|value| value.map(|value| Parts::new(value, digits, notation)))
         .collect();
     let widths = numbers.iter().flatten();
     let whole = widths.map(|number| number.whole.chars().count()).max();
@@ -34,8 +43,8 @@ struct Parts {
 }
 
 impl Parts {
-    fn new(value: f64, digits: usize) -> Self {
-        let (mantissa, exponent) = rounded(value, digits);
+    fn new(value: f64, digits: usize, notation: Notation) -> Self {
+        let (mantissa, exponent) = rounded(value, digits, notation);
         let at = mantissa.find('.').unwrap_or(mantissa.len());
         let (whole, rest) = mantissa.split_at(at);
         Self {
@@ -66,20 +75,37 @@ mod tests {
 
     #[test]
     fn points_are_at_the_same_distance_from_the_left() {
-        let values = [Some(-7427.43), Some(0.5), Some(-1.87482e8), None, Some(3.0)];
-        let column: Vec<String> = aligned(&values, 5)
-            .into_iter()
-            .map(Markup::into_string)
-            .collect();
+        let values = [Some(-7427.43), Some(0.5), Some(-187.482), None, Some(3.0)];
+        let column = set(&values);
         let whole = |text: &str| {
             format!(
                 "<span class=\"aligned\"><span class=\"whole\" style=\"min-width:5ch\">{text}</span>"
             )
         };
-        for (text, start) in column.iter().zip(["−7427", "0", "−1", "–", "3"]) {
+        for (text, start) in column.iter().zip(["−7427", "0", "−187", "–", "3"]) {
             assert!(text.starts_with(&whole(start)), "{text}");
         }
-        assert!(column[2].contains("·10<sup>8</sup>"), "{}", column[2]);
-        assert!(column[2].contains("</span>.87482·10"), "{}", column[2]);
+        assert!(column[2].contains("</span>.482"), "{}", column[2]);
+    }
+
+    #[test]
+    fn all_numbers_of_a_column_have_powers_of_ten_or_none() {
+        let column = set(&[Some(0.5), Some(-1.87482e8), Some(0.0)]);
+        assert!(
+            column[0].contains("5</span>·10<sup>−1</sup>"),
+            "{}",
+            column[0]
+        );
+        assert!(
+            column[1].contains("</span>.87482·10<sup>8</sup>"),
+            "{}",
+            column[1]
+        );
+        assert!(!column[2].contains("·10"), "{}", column[2]);
+    }
+
+    fn set(values: &[Option<f64>]) -> Vec<String> {
+        let column = aligned(values, 5).into_iter();
+        column.map(Markup::into_string).collect()
     }
 }

@@ -13,6 +13,9 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src dat
 const SCRIPT_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
                              script-src 'unsafe-inline' 'wasm-unsafe-eval'";
 
+/// Style without JavaScript: hides elements that only a script fills, and gives the controls their own height.
+const UNSCRIPTED_STYLE: &str = ".scripted { display: none; } .controls { contain: none; }";
+
 /// Returns a complete document without scripts and external resources; its content security policy
 /// forbids both. Control characters and characters that reverse the writing direction appear as
 /// escapes such as `\u{202e}`.
@@ -35,10 +38,13 @@ pub struct ScriptedDocument<'a> {
     pub script: &'a str,
 }
 
-/// Returns a document with a script; its content security policy forbids all loading.
+/// Returns a document with a script. Without JavaScript, elements of the class `scripted` are hidden. Its content security policy forbids all loading.
 pub fn scripted_document(parts: &ScriptedDocument<'_>) -> String {
     let data = data_text(parts.data);
-    let head = html! { style { (PreEscaped(parts.style)) } };
+    let head = html! {
+        style { (PreEscaped(parts.style)) }
+        noscript { style { (PreEscaped(UNSCRIPTED_STYLE)) } }
+    };
     let body = html! {
         (parts.body)
         script #model type="application/json" { (PreEscaped(data)) }

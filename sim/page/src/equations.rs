@@ -45,7 +45,7 @@ pub fn equations(report: &Report) -> Markup {
         (coefficients(&report.coefficients))
         (equation_section(&html! { "Accelerations" }, &report.accelerations, formula))
         (guards(&report.guards))
-        p { (sentence(&report.linearity)) }
+        div.wide { p { (sentence(&report.linearity)) } }
         (solution(&report.solution, has_modes))
     }
 }
@@ -92,7 +92,7 @@ fn comma_list<T>(items: &[T], set: impl Fn(&T) -> Markup) -> Markup {
 fn sentence(sentence: &Sentence) -> Markup {
     html! {
         (sentence.text)
-        @if let Some(of) = &sentence.formula { ": " (formula(of)) }
+        @if let Some(of) = &sentence.formula { " " (formula(of)) }
         "."
     }
 }

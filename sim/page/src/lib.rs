@@ -12,7 +12,7 @@
 //! ```
 //!
 //! Modules: `document` (head, style sheet, body), `parts` (sections, tables, figures, collapsible
-//! files), `number`, `aligned` (columns of numbers), [`mod@formula`] (formulas as MathML), `equations` (formulas of a report),
+//! files), `prose`, `number`, `aligned` (columns of numbers), [`mod@formula`] (formulas as MathML), `equations` (formulas of a report),
 //! [`mod@play`] (scripts of pages that compute).
 
 mod aligned;
@@ -22,10 +22,12 @@ pub mod formula;
 mod number;
 mod parts;
 pub mod play;
+mod prose;
 
 pub use aligned::aligned;
 pub use document::{ScriptedDocument, document, scripted_document};
 pub use equations::equations;
-pub use formula::{formula, name_letters};
+pub use formula::{formula, name_letters, quantity_symbol};
 pub use number::number;
-pub use parts::{Figure, collapsible_file, figure, prose, section, stacked_table, table};
+pub use parts::{Figure, collapsible_file, figure, section, stacked_table, table};
+pub use prose::prose;

@@ -9,24 +9,44 @@ pub fn number(value: f64, digits: usize) -> Markup {
     if !value.is_finite() {
         return html! { (value.to_string()) };
     }
-    let (mantissa, exponent) = rounded(value, digits);
+    let (mantissa, exponent) = rounded(value, digits, Notation::Fixed);
     html! { math { (power_of_ten(&mantissa, exponent.as_deref())) } }
 }
 
-/// Rounds a number to `digits` digits after the first. Returns its digits, and the exponent of ten of a very
-/// small or large number, both with minus signs.
-pub(crate) fn rounded(value: f64, digits: usize) -> (String, Option<String>) {
+/// Notation of a number other than 0.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Notation {
+    /// Without a power of ten, unless it is very small or large.
+    Fixed,
+    /// With a power of ten.
+    PowerOfTen,
+}
+
+/// Rounds a number to `digits` digits after the first. Returns its digits, and the exponent of ten if there is one,
+/// both with minus signs.
+pub(crate) fn rounded(value: f64, digits: usize, notation: Notation) -> (String, Option<String>) {
     let signed = |number: &str| number.replace('-', "\u{2212}");
     let text = format!("{value:.digits$e}");
     // Cannot fail: the text was formatted from a number.
     let rounded: f64 = text.parse().unwrap_or(value);
     let magnitude = rounded.abs();
-    if magnitude == 0.0 || !magnitude.is_finite() || (1e-3..1e5).contains(&magnitude) {
+    let is_fixed = matches!(notation, Notation::Fixed) && (1e-3..1e5).contains(&magnitude);
+    if magnitude == 0.0 || !magnitude.is_finite() || is_fixed {
         return (signed(&rounded.to_string()), None);
     }
     let shortest = format!("{rounded:e}");
     let (mantissa, exponent) = shortest.split_once('e').unwrap_or((&shortest, "0"));
-    (signed(mantissa), Some(signed(exponent)))
+    (
+        signed(mantissa),
+        (exponent != "0").then(|| signed(exponent)),
+    )
+}
+
+/// Returns a digit as a superscript; other characters are unchanged.
+pub(crate) fn raised_digit(letter: char) -> char {
+    let digit = letter.to_digit(10);
+    let raised = digit.and_then(|digit| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(digit as usize));
+    raised.unwrap_or(letter)
 }
 
 #[cfg(test)]

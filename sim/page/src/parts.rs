@@ -2,6 +2,8 @@
 
 use maud::{Markup, PreEscaped, html};
 
+use crate::prose::prose;
+
 /// Returns a section with a heading.
 pub fn section(heading: &str, content: &Markup) -> Markup {
     html! {
@@ -43,31 +45,6 @@ pub fn collapsible_file(summary: &str, text: &str, is_open: bool) -> Markup {
     }
 }
 
-/// Returns prose, with the parts between backticks and names with underscores as code. No line breaks before a percent
-/// sign.
-pub fn prose(text: &str) -> Markup {
-    html! {
-        @for (place, part) in text.split('`').enumerate() {
-            @if place % 2 == 1 { code { (part) } } @else { (named_words(&part.replace(" %", "\u{a0}%"))) }
-        }
-    }
-}
-
-/// Returns text, with names that contain an underscore as code.
-fn named_words(text: &str) -> Markup {
-    let is_letter = |c: char| c.is_alphanumeric() || c == '_';
-    let mut pieces: Vec<&str> = Vec::new();
-    let mut rest = text;
-    while let Some(first) = rest.chars().next() {
-        let is_word = is_letter(first);
-        let end = rest.find(|c| is_letter(c) != is_word);
-        let (piece, after) = rest.split_at(end.unwrap_or(rest.len()));
-        pieces.push(piece);
-        rest = after;
-    }
-    html! { @for piece in pieces { @if piece.contains('_') { code { (piece) } } @else { (piece) } } }
-}
-
 /// Figure with its caption.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure<'a> {
@@ -97,25 +74,5 @@ pub fn figure(figure: Figure<'_>) -> Markup {
             }
             @if !caption.is_empty() { figcaption { (prose(caption)) } }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::prose;
-
-    #[test]
-    fn names_and_backticks_become_code() {
-        let set = |text: &str| prose(text).into_string();
-        assert_eq!(set("run `a < b` now"), "run <code>a &lt; b</code> now");
-        assert_eq!(set("plain"), "plain");
-        assert_eq!(
-            set("by 8.2 %, `a % b`"),
-            "by 8.2\u{a0}%, <code>a % b</code>"
-        );
-        assert_eq!(
-            set("Found: T_c = 3 N, b."),
-            "Found: <code>T_c</code> = 3 N, b."
-        );
     }
 }

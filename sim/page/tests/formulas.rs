@@ -8,7 +8,7 @@ use eomgen_codegen::symbolic::formula::Formula;
 use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::models;
 use eomgen_model_spec::source::Source;
-use eomgen_page::formula;
+use eomgen_page::{formula, name_letters, quantity_symbol};
 
 fn report(text: &str) -> Report {
     let checked = eomgen_model_spec::check(Source::new("test.toml", text))
@@ -86,6 +86,36 @@ fn fractions_dots_and_indices_are_formatted() {
         "<math><mfrac><mrow><msub><mi>I</mi><mi>s</mi></msub></mrow><mrow><msup><mrow><msub><mi>r</mi><mi>s</mi></msub></mrow>\
          <mrow><mn>2</mn></mrow></msup></mrow></mfrac></math>"
     );
+}
+
+#[test]
+fn names_are_letters_with_subscripts_or_words() {
+    let set = |name: &str| quantity_symbol(name).into_string();
+    assert_eq!(
+        set("eps_0"),
+        "<math><msub><mi>ε</mi><mi>0</mi></msub></math>"
+    );
+    assert_eq!(
+        set("load_x"),
+        "<math><msub><mi>load</mi><mi>x</mi></msub></math>"
+    );
+    let words = "stabilisation\u{a0}rate";
+    assert_eq!(
+        set("stabilisation_rate"),
+        format!("<math><mi>{words}</mi></math>")
+    );
+    assert_eq!(
+        name_letters("stabilisation_rate"),
+        (words.to_owned(), String::new())
+    );
+    assert_eq!(name_letters("eps_0"), ("ε".to_owned(), "0".to_owned()));
+}
+
+#[test]
+fn closing_sentences_scroll_in_narrow_windows() {
+    let page = eomgen_page::equations(&report(models::DOUBLE_PENDULUM.text)).into_string();
+    let sentence = "<div class=\"wide\"><p>The model is not linear because of <math>";
+    assert!(page.contains(sentence), "{page}");
 }
 
 #[test]

@@ -11,7 +11,7 @@ use crate::units::parse_unit;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
 use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::foreign::read_rate;
-use eomgen_model_spec::model::{Model, ObservedRate, ParameterValue};
+use eomgen_model_spec::model::{Input, Model, ObservedRate, ParameterValue};
 use eomgen_model_spec::quantity::{Name, Number};
 use eomgen_model_spec::suggest::did_you_mean;
 use eomgen_model_spec::unit::Unit;
@@ -120,8 +120,9 @@ fn input_priors(
         column.gain.is_some() || column.bias.is_some() || column.delay.is_some()
     };
     for column in &description.inputs {
+        let own = model.inputs.iter().filter(|input| input.rate_of.is_none());
         // With several inputs, a delay of one input is not equivalent to a delay of the sensors.
-        if let (Some(delay), true) = (column.delay, model.inputs.len() > 1) {
+        if let (Some(delay), true) = (column.delay, own.count() > 1) {
             found.push(
                 Diagnostic::error("a delay of a single input is only estimated if the model has one input".to_owned())
                     .with_span(delay.sd.span, "the model has several inputs")
@@ -129,9 +130,30 @@ fn input_priors(
             );
         }
     }
-    let of = |column: &InputColumn| {
+    let find = |column: &InputColumn| {
         let mut inputs = model.inputs.iter();
-        let input = inputs.find(|input| input.name == column.name.text)?;
+        inputs.find(|input| input.name == column.name.text)
+    };
+    for column in &description.inputs {
+        let faults = [(column.gain, "gain"), (column.bias, "bias")];
+        let fault = faults
+            .into_iter()
+            .find_map(|(prior, name)| Some((prior?, name)));
+        if let Some((prior, fault)) = fault
+            && find(column).is_some_and(Input::is_prescribed)
+        {
+            found.push(
+                Diagnostic::error(format!(
+                    "the {fault} of `{}`, a prescribed motion, cannot be estimated",
+                    column.name.text
+                ))
+                .with_span(prior.sd.span, "its rates would have the same error")
+                .with_help("correct the column in the record"),
+            );
+        }
+    }
+    let of = |column: &InputColumn| {
+        let input = find(column)?;
         let own = parse_unit(&column.column.unit, &input.unit.text).ok()?;
         let one = Unit::coherent(Dimension::DIMENSIONLESS);
         Some(InputPriors {

@@ -43,7 +43,7 @@ pub fn check_records(
     let mut notes = Vec::new();
     for record in dataset.train.iter().chain(&dataset.test) {
         notes.extend(timing_note(record));
-        notes.extend(held_inputs_note(record, input_names(inputs)));
+        notes.extend(missing_inputs_notes(record, inputs));
         input_sizes(record, inputs)?;
         for (channel, column) in dataset.channels.iter().zip(&record.channels) {
             notes.extend(check_values(record, &channel.name, channel.noise, column)?);
@@ -106,28 +106,29 @@ fn timing_note(record: &Record) -> Option<String> {
     })
 }
 
-pub(crate) fn held_inputs_note<'n>(
-    record: &Record,
-    inputs: impl Iterator<Item = &'n str>,
-) -> Option<String> {
-    let gaps = inputs
-        .zip(&record.input_columns)
-        .filter_map(|(name, column)| {
+/// Returns notes on empty cells of held inputs and of prescribed motions.
+pub(crate) fn missing_inputs_notes(record: &Record, inputs: &[Input]) -> Vec<String> {
+    let note = |is_prescribed: bool, replacement: &str| {
+        let columns = inputs.iter().zip(&record.input_columns);
+        let gaps = columns.filter_map(|(input, column)| {
             let missing = describe_missing((&record.times, record.origin), column)?;
-            Some(format!("{missing} of `{name}`"))
+            let is_own = input.is_prescribed() == is_prescribed;
+            is_own.then(|| format!("{missing} of `{}`", input.name))
         });
-    let gaps: Vec<String> = gaps.collect();
-    (!gaps.is_empty()).then(|| {
-        format!(
-            "{}: missing: {}; the last known value is held",
-            record.name,
-            gaps.join(", ")
-        )
-    })
-}
-
-pub(crate) fn input_names(inputs: &[Input]) -> impl Iterator<Item = &str> {
-    inputs.iter().map(|input| input.name.as_str())
+        let gaps: Vec<String> = gaps.collect();
+        (!gaps.is_empty()).then(|| {
+            format!(
+                "{}: missing: {}; {replacement}",
+                record.name,
+                gaps.join(", ")
+            )
+        })
+    };
+    let notes = [
+        note(false, "the last known value is held"),
+        note(true, "the spline through the other samples is used"),
+    ];
+    notes.into_iter().flatten().collect()
 }
 
 /// Rejects inputs so large that their powers overflow.
@@ -315,14 +316,32 @@ fn is_shifted_copy(a: &[f64], b: &[f64], lag: isize, sign: f64, noise: f64) -> b
 mod tests {
     use std::path::PathBuf;
 
+    use eomgen_model_spec::source::Source;
     use eomgen_sim::inputs::HeldInputs;
 
-    use super::{held_inputs_note, is_shifted_copy};
+    use super::{is_shifted_copy, missing_inputs_notes};
     use crate::record::Record;
 
     #[test]
     fn missing_samples_of_inputs_are_named_with_their_time() {
-        let note = |input_columns: &[Vec<f64>]| {
+        let text = r#"[model]
+name = "stage"
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = 1, unit = "N/m" }
+[coordinates]
+x = { unit = "m" }
+[inputs]
+u = { unit = "N" }
+v = { unit = "N" }
+s = { unit = "m", rates = 2 }
+[kinetic]
+stage = "1/2*m*dot(x)^2"
+[forces]
+push = { on = "x", value = "u + v + k*s" }
+"#;
+        let checked = eomgen_model_spec::check(Source::new("stage.toml", text)).expect("a model");
+        let notes = |input_columns: &[Vec<f64>]| {
             let record = Record {
                 name: "train[0]".to_owned(),
                 path: PathBuf::new(),
@@ -333,19 +352,23 @@ mod tests {
                 channels: Vec::new(),
                 is_continued: false,
             };
-            held_inputs_note(&record, ["u", "v"].into_iter())
+            missing_inputs_notes(&record, &checked.model.inputs)
         };
         let (known, missing) = (vec![0.0, 1.0], vec![0.0, f64::NAN]);
-        assert_eq!(note(std::slice::from_ref(&known)), None);
-        let one = note(&[known, missing.clone()]).expect("a note");
-        assert!(
-            one.contains("missing: the sample at t = 1 s of `v`"),
-            "{one}"
+        assert_eq!(notes(std::slice::from_ref(&known)), [""; 0]);
+        assert_eq!(
+            notes(&[known, missing.clone()]),
+            ["train[0]: missing: the sample at t = 1 s of `v`; the last known value is held"]
         );
         let all = vec![f64::NAN, f64::NAN];
-        let two = note(&[all, missing]).expect("a note");
-        let expected = "missing: 2 samples from t = 0 s on of `u`, the sample at t = 1 s of `v`";
-        assert!(two.contains(expected), "{two}");
+        assert_eq!(
+            notes(&[all, missing.clone(), missing]),
+            [
+                "train[0]: missing: 2 samples from t = 0 s on of `u`, the sample at t = 1 s of `v`; the last known \
+                 value is held",
+                "train[0]: missing: the sample at t = 1 s of `s`; the spline through the other samples is used",
+            ]
+        );
     }
 
     #[test]

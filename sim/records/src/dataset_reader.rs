@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::Model;
 
 use crate::binding::bind_description;
@@ -28,9 +27,6 @@ use crate::samples::MIN_SAMPLES;
 /// Problems of the dataset file, or the first problem of a record, with its place.
 pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
     let description = Description::read(path, model)?;
-    if let Some(refused) = check_prescribed_columns(&description, model) {
-        return Err(Diagnostics::from_one(description.source.clone(), refused).into());
-    }
     if let Some(constraint) = model.constraints.first() {
         return Err(Refusal::Record(format!(
             "{}: the model has constraints (`{}`), which `compare` and `discover` do not support yet; \
@@ -116,23 +112,4 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         coverage::check_coverage(&dataset, &description)?;
     }
     Ok(dataset)
-}
-
-/// Rejects columns of prescribed motion, because `compare` and `discover` hold inputs constant.
-fn check_prescribed_columns(description: &Description, model: &Model) -> Option<Diagnostic> {
-    let is_prescribed = |name: &str| {
-        let mut inputs = model.inputs.iter();
-        inputs.any(|input| input.rate.is_some() && input.name == name)
-    };
-    let mut columns = description.inputs.iter();
-    let column = columns.find(|column| is_prescribed(&column.name.text))?;
-    let name = &column.name;
-    Some(
-        Diagnostic::error(format!(
-            "input `{}` is a prescribed motion (rates = 2), which `compare` and `discover` do not support",
-            name.text
-        ))
-        .with_span(name.span, "these commands hold inputs constant between samples")
-        .with_help("remove this section to keep the input at rest, or use `simulate --record`, which supports prescribed motion"),
-    )
 }

@@ -9,7 +9,7 @@ use eomgen_model_spec::suggest::did_you_mean;
 use eomgen_sim::inputs::HeldInputs;
 
 use crate::binding;
-use crate::checks::{held_inputs_note, input_names};
+use crate::checks::missing_inputs_notes;
 use crate::decimation::Decimation;
 use crate::description::Description;
 use crate::files::{find_record, list_record_files};
@@ -77,7 +77,7 @@ pub fn read_inputs(
             gap.describe(record.origin)
         )
     }));
-    warnings.extend(held_inputs_note(&record, input_names(&model.inputs)));
+    warnings.extend(missing_inputs_notes(&record, &model.inputs));
     Ok(RecordInputs {
         inputs: record.inputs,
         warnings,

@@ -389,7 +389,7 @@ impl RecordReader<'_> {
         };
         let places = self.model.inputs.iter().zip(self.inputs).enumerate();
         for (place, (input, column)) in places {
-            if input.rate.is_none() || input.rate_of.is_some() || column.is_none() {
+            if !input.is_prescribed() || column.is_none() {
                 continue;
             }
             let samples = times.iter().zip(&columns[place]);

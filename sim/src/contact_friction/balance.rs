@@ -3,10 +3,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::sliding_modes::solve_least_squares;
+use crate::sliding_modes::{solve_beyond_limits, solve_least_squares};
 
 /// A pivot below this fraction of the largest counts as rounding.
 const MIN_PIVOT_FRACTION: f64 = 1e-10;
+
+/// Largest error of a row that counts as rounding, relative to the largest entry of b or x.
+const MAX_ROW_ERROR: f64 = 1e-10;
 
 /// Solves A x = b with A row by row. If A is singular, x is the least-squares solution of least norm. Returns
 /// `None` if an entry is not finite.
@@ -21,6 +24,23 @@ pub fn solve_balance(matrix: Vec<f64>, right: Vec<f64>) -> Option<Vec<f64>> {
     let matrix = DMatrix::from_row_slice(size, size, &matrix);
     let solved = solve_least_squares(&matrix, DVector::from_vec(right));
     Some(solved.iter().copied().collect())
+}
+
+/// The same, but if that leaves a row unsolved, as where directions that coincided move apart, x is far beyond the limits
+/// of forces.
+pub fn solve_holding_balance(matrix: Vec<f64>, right: Vec<f64>) -> Option<Vec<f64>> {
+    let size = right.len();
+    let solved = solve_balance(matrix.clone(), right.clone())?;
+    let matrix = DMatrix::from_row_slice(size, size, &matrix);
+    let (right, x) = (
+        DVector::from_vec(right),
+        DVector::from_column_slice(&solved),
+    );
+    if (&matrix * &x - &right).amax() <= MAX_ROW_ERROR * right.amax().max(x.amax()) {
+        return Some(solved);
+    }
+    let beyond = solve_beyond_limits(&matrix, &right);
+    Some(beyond.map_or(solved, |beyond| beyond.iter().copied().collect()))
 }
 
 /// Returns the solution of a regular system.

@@ -17,6 +17,7 @@ mod tests;
 use nalgebra::DVector;
 
 pub use balance::solve_balance;
+use balance::solve_holding_balance;
 pub use impact::{SingleImpact, energetic_impulse};
 
 /// Largest violation of a condition, relative to the largest scaled rate or impulse.
@@ -244,7 +245,7 @@ impl ContactProblem {
 
     /// Returns the solution with these modes; `None` if it violates a condition.
     pub fn solution(&self, modes: &[ContactMode]) -> Option<ContactDecision> {
-        let scaled = self.solve_scaled(modes)?;
+        let scaled = self.solve_scaled(modes, solve_balance)?;
         (self.violation(modes, &scaled) <= MAX_VIOLATION).then(|| ContactDecision {
             modes: modes.to_vec(),
             impulses: self.unscaled(&scaled),
@@ -255,7 +256,17 @@ impl ContactProblem {
     /// Returns the impulses with which contacts keep these modes, without the conditions on their
     /// signs; NaN if there are none.
     pub fn impulses(&self, modes: &[ContactMode]) -> Vec<f64> {
-        match self.solve_scaled(modes) {
+        self.unscaled_or_nan(self.solve_scaled(modes, solve_balance))
+    }
+
+    /// Returns the forces with which contacts keep these modes, without the conditions on their signs; NaN if there are none,
+    /// and far beyond the limits of friction if directions that coincided move apart.
+    pub fn forces(&self, modes: &[ContactMode]) -> Vec<f64> {
+        self.unscaled_or_nan(self.solve_scaled(modes, solve_holding_balance))
+    }
+
+    fn unscaled_or_nan(&self, scaled: Option<Vec<f64>>) -> Vec<f64> {
+        match scaled {
             Some(scaled) => self.unscaled(&scaled),
             None => vec![f64::NAN; self.c.len()],
         }
@@ -266,8 +277,12 @@ impl ContactProblem {
         pairs.map(|(p, scale)| p / scale).collect()
     }
 
-    /// Returns the scaled impulses with which contacts keep these modes.
-    fn solve_scaled(&self, modes: &[ContactMode]) -> Option<Vec<f64>> {
+    /// Returns the scaled impulses with which contacts keep these modes, by a solver of the balance.
+    fn solve_scaled(
+        &self,
+        modes: &[ContactMode],
+        solve: impl Fn(Vec<f64>, Vec<f64>) -> Option<Vec<f64>>,
+    ) -> Option<Vec<f64>> {
         let count = self.count();
         let mut directions = Vec::with_capacity(2 * count);
         let mut ratios = vec![0.0; count];
@@ -294,7 +309,7 @@ impl ContactProblem {
             }
         }
         let right: Vec<f64> = directions.iter().map(|row| -self.c[*row]).collect();
-        let found = solve_balance(matrix, right)?;
+        let found = solve(matrix, right)?;
         let mut impulses = vec![0.0; 2 * count];
         for (direction, impulse) in directions.iter().zip(found) {
             impulses[*direction] = impulse;

@@ -59,8 +59,8 @@ impl ExponentialIntegrator {
             slopes.keep();
             return Ok(());
         }
-        let (n, degrees) = (self.states, self.degrees);
-        let forced = n - degrees;
+        let (degrees, forced) = (self.degrees, self.forced);
+        let n = degrees + forced;
         let rows = self.regimes[motion.regime].matrix.rows;
         slopes.rates.resize(rows, 0.0);
         self.rates(motion, &mut slopes.rates);
@@ -110,14 +110,17 @@ impl ExponentialIntegrator {
         rates: &[f64],
     ) -> Vec<f64> {
         let mut gradient = self.regimes[motion.regime].functions[surface].state.clone();
-        let inputs = &motion.given[1..];
+        let inputs = &self
+            .prescribed
+            .model_inputs(&motion.state, &motion.given[1..]);
         let guard = self.surfaces.guards[surface][0];
-        let (mut state, mut values) = (motion.state.clone(), Vec::new());
+        let own = self.prescribed.model_state(&motion.state);
+        let (mut state, mut values) = (own.to_vec(), Vec::new());
         if !force.write_guards(t, &state, inputs, &mut values) {
             return gradient;
         }
         let here = values[guard];
-        for (place, slot) in gradient.iter_mut().enumerate() {
+        for (place, slot) in gradient[..own.len()].iter_mut().enumerate() {
             let x = state[place];
             state[place] = x + self.difference(place, x, rates[place]);
             force.write_guards(t, &state, inputs, &mut values);

@@ -12,6 +12,7 @@
 //! | --- | --- |
 //! | matrices of a step | `regime`, `regime_rates`, `parameter_derivatives`, `kernels` |
 //! | surfaces and events | `surfaces`, `crossing`, `parts`, `release` |
+//! | prescribed motions | `prescribed_motions` |
 //! | nonlinear terms | `remainder`, `remainder_at` |
 //! | tangent vectors | `tangents`, `slopes`, `differences` |
 
@@ -22,6 +23,9 @@ mod holding_tests;
 mod kernels;
 mod parameter_derivatives;
 mod partial_steps;
+mod prescribed_motions;
+#[cfg(test)]
+mod prescribed_tests;
 mod regime;
 mod regime_rates;
 mod release;
@@ -40,6 +44,7 @@ use eomgen_codegen::program::affine::AffineEvaluator;
 use crossing::first_crossing;
 pub use parameter_derivatives::MovedParameters;
 use parameter_derivatives::regime_derivatives;
+use prescribed_motions::PrescribedMotions;
 use regime::Regime;
 use regime_rates::is_held_in_varying_direction;
 pub use remainder::Force;
@@ -103,7 +108,9 @@ impl ExponentialIntegrator {
         Ok(Self {
             typical_sizes: vec![1.0; evaluator.states()],
             states: evaluator.states(),
+            prescribed: PrescribedMotions::new(&evaluator),
             degrees: evaluator.degrees_of_freedom(),
+            forced: evaluator.model_states() - evaluator.degrees_of_freedom(),
             surfaces,
             regimes: Vec::new(),
             known: HashMap::new(),
@@ -126,6 +133,16 @@ impl ExponentialIntegrator {
         self
     }
 
+    /// Creates tangent vectors of the model. Those of parameters and driven vectors start at 0.
+    pub fn create_tangents<'d>(
+        &self,
+        directions: Directions,
+        drives: &'d mut dyn DrivingAccelerations,
+    ) -> Tangents<'d> {
+        let sizes = (self.states, self.degrees, self.forced);
+        Tangents::new(sizes, self.prescribed.clone(), directions, drives)
+    }
+
     /// Adds tangent vectors of parameters. For each parameter, `moved` has values on one or both
     /// sides of `own`, the parameters of the evaluator.
     pub fn set_moved_parameters(&mut self, own: &[f64], moved: Vec<Vec<MovedParameters>>) {
@@ -139,16 +156,6 @@ impl ExponentialIntegrator {
     /// Limits the number of surface crossings of a motion.
     pub fn limit_crossings(&mut self, most: usize) {
         self.most_crossings = most;
-    }
-
-    /// Returns the degrees of freedom of the model.
-    pub fn degrees_of_freedom(&self) -> usize {
-        self.degrees
-    }
-
-    /// The rates that forces act on: accelerations, and rates of states of first order.
-    fn forced_states(&self) -> usize {
-        self.states - self.degrees
     }
 
     /// Simulates from `initial` at the first sample (s, ascending) to the last. Calls `show` with
@@ -169,7 +176,8 @@ impl ExponentialIntegrator {
         };
         self.crossings = 0;
         let mut motion = self.start(*begin, initial, inputs, &mut options)?;
-        show(0, &motion.state, options.tangents.as_deref());
+        let own = initial.len();
+        show(0, &motion.state[..own], options.tangents.as_deref());
         for (place, end) in samples.iter().enumerate().skip(1) {
             while motion.t < *end {
                 // Times of samples and of inputs may differ by rounding.
@@ -178,14 +186,18 @@ impl ExponentialIntegrator {
                     .next_change(near)
                     .filter(|next| *next < *end - 1e-3 * self.step);
                 let until = change.unwrap_or(*end);
-                let values = inputs.last_sample(0.5 * (motion.t + until));
-                self.interval(&mut motion, until, values, &mut options)?;
+                let middle = 0.5 * (motion.t + until);
+                let mut values = inputs.last_sample(middle).to_vec();
+                let at = (motion.t, middle);
+                self.prescribed
+                    .set(inputs, at, &mut motion.state, &mut values);
+                self.interval(&mut motion, until, &values, &mut options)?;
                 motion.t = until;
             }
             if motion.state.iter().any(|x| !x.is_finite()) {
                 return Err("the state diverged".to_owned());
             }
-            show(place, &motion.state, options.tangents.as_deref());
+            show(place, &motion.state[..own], options.tangents.as_deref());
         }
         Ok(())
     }
@@ -197,33 +209,39 @@ impl ExponentialIntegrator {
         inputs: &HeldInputs,
         options: &mut Options<'_, '_>,
     ) -> Result<Motion, String> {
-        let values = inputs.last_sample(t + 1e-3 * self.step);
+        let inside = t + 1e-3 * self.step;
+        let mut values = inputs.last_sample(inside).to_vec();
+        let mut state = initial.to_vec();
+        state.resize(self.states, 0.0);
+        self.prescribed
+            .set(inputs, (t, inside), &mut state, &mut values);
         let mut given = vec![1.0];
-        given.extend(values);
+        given.extend(&values);
         let count = self.surfaces.guards.len();
         let mut motion = Motion {
             t,
-            state: initial.to_vec(),
+            state,
             sides: vec![Side::Below; count],
             regime: 0,
             given,
             base: Vec::new(),
             event_values: Vec::new(),
-            remainder: Remainder::zero(self.forced_states(), count),
+            remainder: Remainder::zero(self.forced, count),
             next: Vec::new(),
-            later: Remainder::zero(self.forced_states(), count),
+            later: Remainder::zero(self.forced, count),
             change: Vec::new(),
         };
         motion.regime = self.regime(&motion.sides)?;
         let functions = &self.regimes[motion.regime].functions;
         if let Some(force) = &mut options.force {
             let surfaces = (&self.surfaces, &functions[..]);
-            let at = (t, initial, &motion.given[..]);
-            motion.later.find(&mut **force, surfaces, at);
+            let at = (t, &motion.state[..], &motion.given[..]);
+            let later = &mut motion.later;
+            later.find((&mut **force, &self.prescribed), surfaces, at);
         }
         let functions = functions.iter().zip(&motion.later.moved);
         let distances: Vec<f64> = functions
-            .map(|(row, moved)| row.evaluate(initial, &motion.given) + moved)
+            .map(|(row, moved)| row.evaluate(&motion.state, &motion.given) + moved)
             .collect();
         let sides = distances.iter().map(|distance| Side::from_value(*distance));
         motion.sides = sides.collect();
@@ -244,9 +262,9 @@ impl ExponentialIntegrator {
             self.find_remainder(&mut motion, t, &mut **force)?;
         }
         if let Some(tangents) = &mut options.tangents {
-            tangents.begin(&self.regimes[motion.regime], (t, &motion.state, values));
+            tangents.begin(&self.regimes[motion.regime], (t, &motion.state, &values));
             if options.force.is_some() {
-                tangents.slopes = Some(Slopes::new(self.states, self.forced_states(), count));
+                tangents.slopes = Some(Slopes::new(self.states, self.forced, count));
             }
         }
         Ok(motion)

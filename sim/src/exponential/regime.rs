@@ -142,7 +142,7 @@ impl Regime {
         let held = held.collect();
         let n = rates.state.nrows();
         let degrees = evaluator.degrees_of_freedom();
-        let forced = n - degrees;
+        let forced = evaluator.model_states() - degrees;
         let borne = (
             factor.columns(degrees, forced).into_owned(),
             directions.rows(degrees, forced).into_owned(),

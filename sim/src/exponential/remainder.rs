@@ -1,6 +1,7 @@
 //! The nonlinear remainder: what of a model is not linear between its surfaces. Accelerations,
 //! and how far the surfaces themselves lie from the linear part's.
 
+use super::prescribed_motions::PrescribedMotions;
 use super::regime::Regime;
 use super::surfaces::{Row, Surfaces};
 
@@ -42,13 +43,14 @@ impl Remainder {
     /// sides of its surfaces.
     pub fn find(
         &mut self,
-        force: &mut dyn Force,
+        (force, prescribed): (&mut dyn Force, &PrescribedMotions),
         (surfaces, functions): (&Surfaces, &[Row]),
         (t, state, given): (f64, &[f64], &[f64]),
     ) {
-        let inputs = &given[1..];
-        force.write_accelerations(t, state, inputs, &mut self.force);
-        self.moves = force.write_guards(t, state, inputs, &mut self.guards);
+        let inputs = &prescribed.model_inputs(state, &given[1..]);
+        let own = prescribed.model_state(state);
+        force.write_accelerations(t, own, inputs, &mut self.force);
+        self.moves = force.write_guards(t, own, inputs, &mut self.guards);
         if self.moves {
             let surfaces = surfaces.guards.iter().zip(functions);
             for (slot, (guards, function)) in self.moved.iter_mut().zip(surfaces) {

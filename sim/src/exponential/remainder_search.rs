@@ -33,6 +33,7 @@ impl ExponentialIntegrator {
         out: &mut Remainder,
     ) -> Result<(), String> {
         let functions = &self.regimes[here].functions;
+        let force = (force, &self.prescribed);
         out.find(force, (&self.surfaces, functions), (t, state, given));
         self.relate((here, sides), state, given, out)?;
         self.regimes[here].subtract_held(&mut out.force, &mut out.borne);

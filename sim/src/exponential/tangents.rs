@@ -3,6 +3,7 @@
 //! accelerations.
 
 use super::kernels::{self, Columns};
+use super::prescribed_motions::PrescribedMotions;
 use super::regime::{DoubledStep, HeldSurface, Regime};
 use super::regime_rates::TERMS;
 use super::slopes::Slopes;
@@ -60,6 +61,9 @@ pub struct Directions {
 pub struct Tangents<'d> {
     states: usize,
     degrees: usize,
+    /// Number of rates that forces act on.
+    forced: usize,
+    prescribed: PrescribedMotions,
     /// Number of derivatives by the initial state.
     free: usize,
     by_parameter: usize,
@@ -86,14 +90,14 @@ pub struct Tangents<'d> {
 }
 
 impl<'d> Tangents<'d> {
-    /// Creates the vectors of a model with this number of states and degrees of freedom. Vectors
-    /// of parameters and driven vectors start at 0.
-    pub fn new(
-        (states, degrees): (usize, usize),
+    /// Creates the vectors of a model with these numbers of states, of degrees of freedom and of rates that forces act on.
+    /// Vectors of parameters and driven vectors start at 0.
+    pub(super) fn new(
+        (states, degrees, forced): (usize, usize, usize),
+        prescribed: PrescribedMotions,
         directions: Directions,
         drives: &'d mut dyn DrivingAccelerations,
     ) -> Self {
-        let forced = states - degrees;
         let Directions {
             has_state_vectors: by_state,
             parameter_count: by_parameter,
@@ -102,7 +106,9 @@ impl<'d> Tangents<'d> {
         Self {
             states,
             degrees,
-            free: if by_state { states } else { 0 },
+            forced,
+            prescribed,
+            free: if by_state { degrees + forced } else { 0 },
             by_parameter,
             driven,
             stride: states.next_multiple_of(kernels::LANES),
@@ -136,9 +142,8 @@ impl<'d> Tangents<'d> {
     /// Computes the driving accelerations at the present state, in a regime.
     pub fn find_drives(&mut self, regime: &Regime, at: (f64, &[f64], &[f64])) {
         if self.driven > 0 {
-            let forced = self.states - self.degrees;
-            let out = (&mut self.here[..], forced);
-            drives_in(regime, &mut *self.drives, at, out);
+            let out = (&mut self.here[..], self.forced);
+            drives_in(regime, (&mut *self.drives, &self.prescribed), at, out);
         }
         self.on_surface = false;
     }
@@ -179,10 +184,9 @@ impl<'d> Tangents<'d> {
             return;
         }
         if self.driven > 0 {
-            let forced = self.states - self.degrees;
-            let there = (&mut self.there[..], forced);
+            let there = (&mut self.there[..], self.forced);
             let at = (t, state, &given[1..]);
-            drives_in(regime, &mut *self.drives, at, there);
+            drives_in(regime, (&mut *self.drives, &self.prescribed), at, there);
             for (a, b) in self.here.iter_mut().zip(&self.there) {
                 *a = if self.on_surface { *b } else { 0.5 * (*a + b) };
             }
@@ -203,7 +207,7 @@ impl<'d> Tangents<'d> {
     /// Makes several steps at once, with the drives held, and corrected at the end what is felt
     /// of the forces that change with the state.
     fn several(&mut self, regime: &Regime, doubling: usize, given: &[f64]) {
-        let forced = self.states - self.degrees;
+        let forced = self.forced;
         let DoubledStep {
             state,
             given: of_given,
@@ -247,8 +251,7 @@ impl<'d> Tangents<'d> {
 
     /// Advances the vectors by a part of a step, `tau` s, that ends at a state.
     pub fn advance_part(&mut self, regime: &Regime, tau: f64, end: (f64, &[f64], &[f64])) {
-        let (n, degrees) = (self.states, self.degrees);
-        let forced = n - degrees;
+        let (n, degrees, forced) = (self.states, self.degrees, self.forced);
         if self.on_surface {
             self.find_drives(regime, end);
         }
@@ -260,12 +263,12 @@ impl<'d> Tangents<'d> {
             rates.fill(0.0);
             regime.matrix.add_product(vector, &mut rates);
             if let Some(slopes) = &self.slopes {
-                slopes.add_begin(vector, &mut rates[degrees..n]);
+                slopes.add_begin(vector, &mut rates[degrees..degrees + forced]);
             }
             if place >= driven {
                 let first = (place - driven) * forced;
                 let drives = &self.here[first..first + forced];
-                rates[degrees..n]
+                rates[degrees..]
                     .iter_mut()
                     .zip(drives)
                     .for_each(|(r, d)| *r += d);
@@ -353,12 +356,16 @@ impl<'d> Tangents<'d> {
 /// combination of those on both sides, and the surface takes away what would lead off it.
 fn drives_in(
     regime: &Regime,
-    drives: &mut dyn DrivingAccelerations,
+    (drives, prescribed): (&mut dyn DrivingAccelerations, &PrescribedMotions),
     (t, state, inputs): (f64, &[f64], &[f64]),
     (out, forced): (&mut [f64], usize),
 ) {
+    let model_inputs = prescribed.model_inputs(state, inputs);
+    let mut differences = |state: &[f64], out: &mut [f64]| {
+        drives.write_differences(t, prescribed.model_state(state), &model_inputs, out);
+    };
     if regime.held.is_empty() {
-        drives.write_differences(t, state, inputs, out);
+        differences(state, out);
         return;
     }
     let mut below = state.to_vec();
@@ -376,12 +383,12 @@ fn drives_in(
         let function = regime.functions[held.surface].evaluate_with_inputs(&below, inputs);
         move_across(&mut below, held, -distance - function);
     }
-    drives.write_differences(t, &below, inputs, out);
+    differences(&below, out);
     let (all_below, mut above) = (out.to_vec(), out.to_vec());
     for (held, distance, share) in &shares {
         let mut beyond = below.clone();
         move_across(&mut beyond, held, 2.0 * distance);
-        drives.write_differences(t, &beyond, inputs, &mut above);
+        differences(&beyond, &mut above);
         for ((slot, above), below) in out.iter_mut().zip(&above).zip(&all_below) {
             *slot += share * (above - below);
         }

@@ -8,7 +8,6 @@ use eomgen_model_spec::source::Source;
 
 use super::{
     Directions, DrivingAccelerations, ExponentialIntegrator, MovedParameters, NoDrives, Options,
-    Tangents,
 };
 
 fn rig() -> Model {
@@ -133,7 +132,7 @@ fn tangents_match_differences_of_neighbouring_motions() {
     let mut integrator =
         ExponentialIntegrator::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be integrated");
     let mut free = NoDrives;
-    let mut tangents = Tangents::new((14, 7), by_state(), &mut free);
+    let mut tangents = integrator.create_tangents(by_state(), &mut free);
     let mut found = vec![0.0; 14 * 14];
     let options = Options {
         force: None,
@@ -246,7 +245,7 @@ fn driven_tangent_matches_response_to_acceleration() {
     let inputs = HeldInputs::new(vec![0.0], vec![5.0], 1).expect("inputs");
     let times: Vec<f64> = (0..=100).map(|k| f64::from(k) * 0.01).collect();
     let mut push = Push;
-    let mut tangents = Tangents::new((2, 1), driven(2), &mut push);
+    let mut tangents = integrator.create_tangents(driven(2), &mut push);
     let mut last = Vec::new();
     let options = Options {
         force: None,
@@ -332,7 +331,7 @@ fn driven_tangent_stays_on_sticking_surface() {
     let inputs = HeldInputs::new(vec![0.0, 1.0], vec![2.0, 5.0], 1).expect("inputs");
     let times: Vec<f64> = (0..=200).map(|k| f64::from(k) * 0.01).collect();
     let mut push = Push;
-    let mut tangents = Tangents::new((2, 1), driven(2), &mut push);
+    let mut tangents = integrator.create_tangents(driven(2), &mut push);
     let mut driven = Vec::new();
     let options = Options {
         force: None,
@@ -384,7 +383,7 @@ fn by_parameters(
         ..Directions::default()
     };
     let mut free = NoDrives;
-    let mut tangents = Tangents::new((states, states / 2), directions, &mut free);
+    let mut tangents = integrator.create_tangents(directions, &mut free);
     let mut derivatives = Vec::new();
     let options = Options {
         force: None,

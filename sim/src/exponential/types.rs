@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use eomgen_codegen::program::affine::AffineEvaluator;
 
 use super::parameter_derivatives::MovedParameters;
+use super::prescribed_motions::PrescribedMotions;
 use super::regime::Regime;
 use super::remainder::{Force, RegimeDifference, Remainder};
 use super::surfaces::{Side, Surfaces};
@@ -16,11 +17,15 @@ pub struct ExponentialIntegrator {
     pub(super) surfaces: Surfaces,
     pub(super) regimes: Vec<Regime>,
     pub(super) known: HashMap<Vec<Side>, Option<usize>>,
+    /// Number of states with those of prescribed motions, which come last.
     pub(super) states: usize,
+    pub(super) prescribed: PrescribedMotions,
     /// The typical size of each state.
     pub(super) typical_sizes: Vec<f64>,
     /// Degrees of freedom: as many positions come first in the state, then as many rates.
     pub(super) degrees: usize,
+    /// Number of rates that forces act on: accelerations, and rates of states of first order.
+    pub(super) forced: usize,
     /// The length of a step, s.
     pub(super) step: f64,
     /// The most surfaces that a motion may cross, and how many it did.

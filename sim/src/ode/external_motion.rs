@@ -157,9 +157,7 @@ impl<S: System> ExternalMotion<S> {
             if !passed.is_empty() || has_drifted(y, &projected, &sizes, tolerance) {
                 y.copy_from_slice(&projected);
             }
-            watched.update_modes(t, y);
-            watched.enter_regime(t, y);
-            watched.fix_sides(true);
+            settle_modes(watched, t, y);
         });
         self.near = Point { t, y: y.to_vec() };
         self.note_sizes(t, y);
@@ -190,6 +188,22 @@ impl<S: System> ExternalMotion<S> {
                 *size = value.abs();
             }
         }
+    }
+}
+
+/// Updates modes and sides until both agree: a surface that gets another side, such as friction that reverses at an
+/// impact, changes the forces of closed contacts.
+fn settle_modes<S: System>(watched: &WatchedSystem<'_, S>, t: f64, y: &[f64]) {
+    let (mut before, mut after) = (Vec::new(), Vec::new());
+    for _ in 0..=watched.sides().len() {
+        watched.update_modes(t, y);
+        watched.enter_regime(t, y);
+        watched.fix_sides(true);
+        watched.write_modes(&mut after);
+        if after == before {
+            break;
+        }
+        std::mem::swap(&mut before, &mut after);
     }
 }
 

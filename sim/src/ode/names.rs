@@ -20,8 +20,6 @@ pub enum SurfaceKind {
     Speed,
     /// A speed at which the system can rest.
     HeldSpeed,
-    /// A speed at which the system can rest while no contact is closed.
-    HeldWithoutContacts,
     /// The distance of a contact.
     Distance,
 }
@@ -83,14 +81,11 @@ impl Names<'_> {
                         ),
                     ),
                     UnsupportedSticking::Formula => (
-                        "for a speed with piecewise functions or an exponent",
+                        "for a speed with a jump, a piecewise function of the state or an exponent",
                         String::new(),
                     ),
                 };
                 format!("{STICKING} {reason}; {cure}{SMOOTH_LAW}")
-            }
-            Some(SurfaceKind::HeldWithoutContacts) => {
-                format!("{STICKING} while a contact is closed; {SMOOTH_LAW}")
             }
             Some(SurfaceKind::HeldSpeed) => format!("{RESTARTING}; {SMOOTH_LAW}"),
             Some(SurfaceKind::Function | SurfaceKind::Distance) => CHATTERING.to_owned(),

@@ -98,7 +98,8 @@ impl ExactError {
             }
             Self::Sticking { t, guard } => format!(
                 "at t = {t:?} s the motion sticks on the switching surface on which {}, with forces that are not \
-                 linear there; the exact solver supports sticking with a constant friction level only",
+                 linear there, or moved by an input or the time; the exact solver supports sticking with a constant \
+                 friction level and constant speeds only",
                 names.surface_condition(*guard)
             ),
             Self::Stopped(error) => error.format_named(names),

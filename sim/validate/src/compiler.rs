@@ -101,10 +101,11 @@ pub fn write(path: &Path, text: &str) -> Result<(), String> {
     std::fs::write(path, text).map_err(|error| format!("{}: {error}", path.display()))
 }
 
-/// Returns the first non-empty line of a compiler's message.
+/// Returns the first line of a compiler's message with an error, or else its first line with text.
 pub fn first_line(text: &str) -> &str {
-    text.lines()
-        .find(|line| !line.trim().is_empty())
+    let mut lines = text.lines();
+    (lines.clone().find(|line| line.contains("error:")))
+        .or_else(|| lines.find(|line| !line.trim().is_empty()))
         .unwrap_or("no message")
 }
 

@@ -52,6 +52,7 @@ pub fn describe(name: &str) -> Option<String> {
         "regime_kernels" => {
             "The compiled code of each regime gives the same bits as the equations."
         }
+        "corners" => "The rates jump as derived where the energies jump.",
         "exact_derivative" => "The exact solver has the rates of the equations.",
         _ => return None,
     };

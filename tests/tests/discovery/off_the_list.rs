@@ -307,6 +307,20 @@ fn lead_by_half_an_interval_is_noted_as_held_input() {
     assert!(!held.contains("half the interval"), "{held}");
 }
 
+/// The force of these records acts exactly as it is held, and the fitted lead is smaller than its uncertainty.
+#[test]
+fn insignificant_lead_is_not_noted_as_held_input() {
+    let measured = eomgen_tests::models::project().join("examples/measured");
+    let [stage, dataset] =
+        ["stage.toml", "dataset.toml"].map(|name| measured.join(name).display().to_string());
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("compared").display().to_string();
+    program::run_accepted(&["compare", &stage, &dataset, "--out", &out]);
+    let document = std::fs::read_to_string(folder.path().join("compared/comparison.json"));
+    let document = document.expect("a document");
+    assert!(!document.contains("half the interval"), "{document}");
+}
+
 /// A stop reached only in the held-out records.
 #[test]
 fn effect_visible_only_in_held_out_records_is_noted() {

@@ -17,6 +17,7 @@ use eomgen_discover::search::pool::CandidatePool;
 use eomgen_discover::search::screening::screen_candidates;
 use eomgen_model_spec::source::Source;
 use eomgen_records::read_dataset;
+use eomgen_tests::random_numbers::NormalNumbers;
 
 const SPECIFICATION: &str = r#"
 [model]
@@ -72,23 +73,8 @@ length = 0.4
 
 const NOISE: f64 = 1e-3;
 
-/// Normal numbers (Box and Muller 1958) from a multiplicative generator (Park and Miller 1988).
-struct Normal(u64);
-
-impl Normal {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0 * 48_271 % 2_147_483_647;
-        self.0 as f64 / 2_147_483_647.0
-    }
-
-    fn next(&mut self) -> f64 {
-        let (a, b) = (self.uniform(), self.uniform());
-        (-2.0 * a.ln()).sqrt() * (2.0 * std::f64::consts::PI * b).cos()
-    }
-}
-
 /// Returns a record by the midpoint rule, with an additional constant force.
-fn record(normal: &mut Normal, turn: f64, force: f64) -> String {
+fn record(normal: &mut NormalNumbers, turn: f64, force: f64) -> String {
     let (sample, samples, parts) = (0.01, 200, 20);
     let h = sample / f64::from(parts);
     let (mut x, mut v) = (0.0, 0.0);
@@ -96,7 +82,7 @@ fn record(normal: &mut Normal, turn: f64, force: f64) -> String {
     for number in 0..samples {
         let t = sample * f64::from(number);
         let u = 0.5 * (2.1 * t + turn).cos() - 0.25 * (7.0 * t + turn).sin();
-        text += &format!("{t:.3},{u:.12},{:.12}\n", x + NOISE * normal.next());
+        text += &format!("{t:.3},{u:.12},{:.12}\n", x + NOISE * normal.draw());
         for _ in 0..parts {
             let acceleration = |v: f64| (u + force - 0.02 * v) / 0.02;
             let middle = v + 0.5 * h * acceleration(v);
@@ -117,10 +103,7 @@ const NAMES: [&str; 4] = [
 /// Returns the p-value of each effect of `NAMES` that reduces the residual.
 fn p_values(seed: u64, force: f64) -> Vec<Option<f64>> {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut normal = Normal(12_345 + 7_919 * seed);
-    for _ in 0..20 {
-        normal.uniform();
-    }
+    let mut normal = NormalNumbers::new(12_345 + 7_919 * seed);
     for (name, turn) in [("train.csv", 0.3), ("test.csv", 1.7)] {
         let text = record(&mut normal, turn + 0.1 * seed as f64, force);
         std::fs::write(folder.path().join(name), text).expect("a file");

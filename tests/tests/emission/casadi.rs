@@ -126,11 +126,8 @@ fn seeded_faults_in_functions_for_casadi_are_found() {
         std::fs::write(&file, text.replacen(from, to, 1)).expect("written");
         let (status, said) = verify(folder.path(), &[]);
         assert_eq!(status, Some(1), "{from}: {said}");
-        let line = said.lines().find(|line| line.trim().starts_with(check));
-        assert!(
-            line.is_some_and(|line| line.contains("FAILED")),
-            "{from}: {said}"
-        );
+        let mut failed = said.lines().filter(|line| line.contains("FAILED"));
+        assert!(failed.any(|line| line.contains(check)), "{from}: {said}");
     }
 }
 
@@ -190,10 +187,10 @@ fn family_certifies_functions_for_casadi() {
         );
         let said = expect(folder.path(), 0, &["verify", &file, &document]);
         let check = match file.ends_with("_casadi.c") {
-            true => "emitted_casadi",
-            false => "emitted_c",
+            true => "passed   The compiled functions for CasADi",
+            false => "passed   The compiled C",
         };
-        assert!(said.contains(&format!("{check} ")), "{said}");
+        assert!(said.contains(check), "{said}");
     }
     assert!(
         folder

@@ -123,7 +123,7 @@ fn family_with_headers_is_certified_compared_verified_and_identified() {
     std::fs::write(swing.join("swing.h"), read("swing.h") + "no C\n").expect("written");
     let said = expect(folder, 1, &verify);
     assert!(
-        said.contains("(swing.h: the emitted source failed"),
+        said.contains("swing.h: the emitted source failed"),
         "{said}"
     );
 }

@@ -716,3 +716,42 @@ fn block_at_rest_on_a_running_belt_gives_no_warning() {
         assert!(evaluations < 5000, "{evaluations}");
     }
 }
+
+#[test]
+fn block_that_slides_from_rest_to_rest_gives_no_warning() {
+    for amplitude in [3.0, 4.0, 5.0, 6.0, 8.0, 10.0] {
+        for frequency in [1.0, 2.0, 3.0] {
+            let text = format!(
+                "[model]\nname = \"block\"\n[parameters]\nm = {{ value = 4, unit = \"kg\" }}\n\
+                 c = {{ value = 12, unit = \"N s/m\" }}\nF = {{ value = 2.5, unit = \"N\" }}\n\
+                 A = {{ value = {amplitude}, unit = \"N\" }}\nw = {{ value = {frequency}, unit = \"1/s\" }}\n\
+                 [coordinates]\nx = {{ unit = \"m\" }}\n[kinetic]\nT = \"1/2*m*dot(x)^2\"\n\
+                 [dissipation]\nR = \"1/2*c*dot(x)^2\"\n[forces]\n\
+                 drive = {{ on = \"x\", value = \"A*sin(w*t)\" }}\n\
+                 dry = {{ on = \"x\", value = \"-F*sign(dot(x))\" }}\n"
+            );
+            check_silent_audits(&text, 10.0);
+        }
+    }
+}
+
+/// The belt below a body at rest starts within 1 ms: rounding of this time gives the body 1e-22 J.
+#[test]
+fn body_on_a_belt_that_starts_steeply_gives_no_warning() {
+    let text = r#"[model]
+name = "belt"
+[parameters]
+m = { value = 1, unit = "kg" }
+F = { value = 3, unit = "N" }
+V = { value = 0.3, unit = "m/s" }
+T = { value = 0.5, unit = "s" }
+Q = { value = 1e-3, unit = "s" }
+[coordinates]
+x = { unit = "m" }
+[kinetic]
+body = "1/2*m*dot(x)^2"
+[forces]
+friction = { on = "x", value = "-F*sign(dot(x) - V*min(max((t - T)/Q, 0), 1))" }
+"#;
+    check_silent_audits(text, 1.0);
+}

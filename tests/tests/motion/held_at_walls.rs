@@ -273,3 +273,43 @@ fn body_that_friction_holds_at_a_wall_stays_in_contact() {
         }
     }
 }
+
+/// The upper of two stacked bodies is pulled up and pressed down by less than its weight and the friction between them. The
+/// contact between them opens while the friction holds them together, and has to bear a load again when the friction slips.
+#[test]
+fn stack_that_friction_holds_together_stays_at_rest() {
+    for case in 0..MACHINES {
+        let numbers = &mut Numbers(case as u64 + 101);
+        let (length, mass) = UNITS[case % 2];
+        let level = between(numbers, 0.3, 1.3);
+        let pull = between(numbers, 1.0, 0.98 + level);
+        let text = format!(
+            "[model]\nname = \"stack\"\n[parameters]\n\
+             m = {{ value = {:?}, unit = \"kg\" }}\ng = {{ value = {:?}, unit = \"m/s^2\" }}\n\
+             level = {{ value = {level:?}, unit = \"1\" }}\npull = {{ value = {pull:?}, unit = \"1\" }}\n\
+             w = {{ value = {:?}, unit = \"rad/s\" }}\nphase = {{ value = {:?}, unit = \"rad\" }}\n\
+             [coordinates]\ny1 = {{ unit = \"m\" }}\ny2 = {{ unit = \"m\" }}\n\
+             [kinetic]\nT = \"1/2*m*(dot(y1)^2 + dot(y2)^2)\"\n[potential]\nV = \"m*g*(y1 + y2)\"\n\
+             [forces]\nfriction = {{ on = \"y2 - y1\", value = \"-level*m*g*sign(dot(y2) - dot(y1))\" }}\n\
+             load = {{ on = \"y2\", value = \"pull*m*g*sin(w*t + phase)\" }}\n\
+             [impacts]\nfloor = {{ when = \"y1\", restitution = 0 }}\n\
+             joint = {{ when = \"y2 - y1\", restitution = 0 }}\n",
+            mass * between(numbers, 0.2, 3.0),
+            9.81 * length,
+            between(numbers, 3.0, 12.0),
+            between(numbers, 0.0, 6.0),
+        );
+        for solver in SOLVERS {
+            let (times, states) = simulate(&text, 3.0, solver);
+            for (t, state) in times.iter().zip(&states) {
+                let largest = state
+                    .iter()
+                    .fold(0.0_f64, |most, entry| most.max(entry.abs()));
+                assert!(
+                    largest < 1e-9 * length,
+                    "{solver}, t = {t}: {state:?}\n{text}"
+                );
+            }
+        }
+    }
+}

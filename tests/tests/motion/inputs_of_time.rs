@@ -110,3 +110,87 @@ outputs = { w = "u" }
         }
     }
 }
+
+/// A body rests on a belt that starts at 1 s: it slides until it has the speed of the belt, and moves on with it.
+#[test]
+fn friction_holds_on_a_belt_that_steps() {
+    let text = r#"[model]
+name = "belt"
+[parameters]
+m = { value = 2, unit = "kg" }
+F = { value = 3, unit = "N" }
+[coordinates]
+x = { unit = "m" }
+[inputs]
+v = { unit = "m/s" }
+[kinetic]
+body = "1/2*m*dot(x)^2"
+[forces]
+friction = { on = "x", value = "-F*sign(dot(x) - v)" }
+"#;
+    let (speed, acceleration) = (0.3, 1.5);
+    let lost = speed * speed / (2.0 * acceleration);
+    for solver in ["auto", "rk", "radau"] {
+        let options = [
+            "--input",
+            "v=0.3*above(t - 1)",
+            "--until",
+            "2",
+            "--sample",
+            "0.5",
+            "--solver",
+            solver,
+        ];
+        let places = simulate(text, &options, "x");
+        for (place, t) in places.iter().zip([0.0, 0.5, 1.0, 1.5, 2.0]) {
+            let expected = match t > 1.0 {
+                true => speed * (t - 1.0) - lost,
+                false => 0.0,
+            };
+            assert!(
+                (place - expected).abs() < 1e-8,
+                "{solver}: {place} {expected}"
+            );
+        }
+    }
+}
+
+/// A stepped speed of the belt is held although a force varies; the body rests on the belt all the time.
+#[test]
+fn stepped_inputs_are_held_if_others_vary() {
+    let text = r#"[model]
+name = "belt"
+[parameters]
+m = { value = 2, unit = "kg" }
+F = { value = 3, unit = "N" }
+[coordinates]
+x = { unit = "m", initial_rate = 0.2 }
+[inputs]
+v = { unit = "m/s" }
+f = { unit = "N" }
+rest = { unit = "N" }
+[kinetic]
+body = "1/2*m*dot(x)^2"
+[forces]
+friction = { on = "x", value = "-F*sign(dot(x) - v)" }
+load = { on = "x", value = "f + rest" }
+"#;
+    for solver in ["rk", "radau"] {
+        let options = [
+            "--input",
+            "v=0.2 - 0.1*above(t - 3)",
+            "--input",
+            "f=2*sin(3*t)",
+            "--until",
+            "2",
+            "--sample",
+            "1",
+            "--solver",
+            solver,
+        ];
+        let places = simulate(text, &options, "x");
+        for (place, t) in places.iter().zip([0.0, 1.0, 2.0]) {
+            assert!((place - 0.2 * t).abs() < 1e-9, "{solver}: {place} at {t} s");
+        }
+    }
+}

@@ -328,6 +328,9 @@ fn run_python(line: &str, folder: &Path, refused: bool) -> String {
 /// Returns a line without the parts that vary between runs or machines: durations and rounding
 /// errors of checks.
 fn without_variable_parts(line: &str) -> String {
+    if line.starts_with("  passed ") {
+        return line.split(" (").next().unwrap_or(line).to_owned();
+    }
     match line.split_once(" passed ") {
         Some((check, _)) => format!("{} passed", check.trim_end()),
         None => line.trim_end().to_owned(),

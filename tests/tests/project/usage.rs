@@ -356,6 +356,8 @@ fn notations_of_other_programs_are_rejected_with_their_equivalent() {
         assert!(found.contains(".csv or .parquet"), "{found}");
     }
     assert!(run_rejected(&["derive", &spec("pendulum"), "--latex"]).contains("--format latex"));
+    let found = run_rejected(&["page", &spec("pendulum"), "--out", "never-made.svg"]);
+    assert!(found.contains(".html"), "{found}");
     for target in ["matlab", "simulink"] {
         let found = run_rejected(&[
             "generate",
@@ -367,6 +369,13 @@ fn notations_of_other_programs_are_rejected_with_their_equivalent() {
         ]);
         assert!(found.contains("--target fmu3"), "{found}");
     }
+}
+
+#[test]
+fn specification_in_place_of_a_family_file_is_one_error() {
+    let found = run_rejected(&["family", &spec("pendulum"), "--out", "never-made"]);
+    assert!(found.contains("is a specification"), "{found}");
+    assert_eq!(found.matches("error").count(), 1, "{found}");
 }
 
 #[test]

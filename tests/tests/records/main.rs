@@ -4,6 +4,7 @@ mod discovery_runs;
 mod driven_simulations;
 mod free_decays;
 mod measured_quantities;
+mod moving_base;
 mod parquet;
 mod refused_records;
 mod sensor_errors;

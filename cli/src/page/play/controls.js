@@ -46,6 +46,11 @@ class Page {
     return 10 ** Number(element("speed").value);
   }
 
+  /** Number of decimals of the clock. */
+  get decimals() {
+    return this.speed < 0.05 ? Math.max(5, 2 - Math.floor(Math.log10(this.speed))) : 2;
+  }
+
   get span() {
     return WINDOW * this.speed;
   }
@@ -146,7 +151,7 @@ class Page {
     this.stale = false;
     this.picture.draw(drawingCanvas);
     drawCurves(curvesCanvas, this.record, this.ticked(), this.motion.t, this.span);
-    element("clock").textContent = `${this.motion.t.toFixed(this.speed < 0.05 ? 5 : 2)} s`;
+    element("clock").textContent = `${this.motion.t.toFixed(this.decimals)} s`;
     say("status", this.obstacle());
     say("note", this.note());
   }
@@ -154,7 +159,7 @@ class Page {
   ticked() {
     const places = Array.from(document.querySelectorAll("#shown input:checked"), (box) => Number(box.value));
     const all = [...model.state, ...model.observables];
-    return places.map((place) => ({ ...all[place], place, mark: place }));
+    return places.map((place) => ({ ...all[place], place }));
   }
 
   /** Shows the reason for a stopped motion. */

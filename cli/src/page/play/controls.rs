@@ -8,29 +8,31 @@ use super::quantities::{Quantities, Signal};
 /// Change of an input in a sine or a step, as a fraction of half its range.
 const CHANGE_FRACTION: f64 = 0.2;
 
-/// Default, smallest and largest period of a sine and duration of a step, s.
-const PERIOD_S: (f64, f64, f64) = (2.0, 0.1, 10.0);
+/// Smallest and largest period of a sine, as multiples of its default.
+const PERIOD_RANGE: (f64, f64) = (0.05, 5.0);
+
+/// Default, smallest and largest duration of a step, s.
 const RISE_S: (f64, f64, f64) = (0.5, 0.05, 5.0);
 
 /// Change of an input that starts as a sine, as a fraction of half its range.
 const FIRST_CHANGE_FRACTION: f64 = 0.5;
 
-/// The same for a prescribed motion, and its period, s: large accelerations break the machine.
+/// The same for a prescribed motion, and its period as a multiple of the default: large accelerations break the machine.
 const FIRST_MOTION_FRACTION: f64 = 0.1;
-const FIRST_MOTION_PERIOD_S: f64 = 10.0;
+const FIRST_MOTION_PERIODS: f64 = 5.0;
 
-/// Returns the controls. If `is_driven`, the first input starts as a sine.
-pub(super) fn panel(quantities: &Quantities<'_>, is_driven: bool) -> Markup {
+/// Returns the controls. If `is_driven`, the first input starts as a sine. `period`: that of a sine, s.
+pub(super) fn panel(quantities: &Quantities<'_>, is_driven: bool, period: f64) -> Markup {
     let inputs = quantities.inputs.iter().enumerate();
     let inputs: Vec<Markup> = inputs
-        .map(|(place, input)| signal(input, is_driven && place == 0))
+        .map(|(place, input)| signal(input, is_driven && place == 0, period))
         .collect();
     html! {
         section.panel.controls aria-label="Controls" {
             (group("Inputs", &inputs))
             (group("Parameters", &controls("parameter", &quantities.parameters)))
             (group("Initial state", &controls("initial", &quantities.initial)))
-            p { button #defaults type="button" { "As specified" } }
+            p.scripted { button #defaults type="button" { "As specified" } }
         }
     }
 }
@@ -52,8 +54,8 @@ fn group(heading: &str, controls: &[Markup]) -> Markup {
 }
 
 /// Returns the controls of an input: its value, and the form of its course with the numbers of that form. If
-/// `is_sine`, the course starts as a sine.
-fn signal(signal: &Signal<'_>, is_sine: bool) -> Markup {
+/// `is_sine`, the course starts as a sine. `period`: that of a sine, s.
+fn signal(signal: &Signal<'_>, is_sine: bool, period: f64) -> Markup {
     let Signal { value, rates } = signal;
     let rates: Vec<String> = rates.iter().map(ToString::to_string).collect();
     let half = 0.5 * (value.high - value.low);
@@ -67,10 +69,10 @@ fn signal(signal: &Signal<'_>, is_sine: bool) -> Markup {
         low,
         high,
     };
-    let (period, shortest, longest) = PERIOD_S;
+    let (shortest, longest) = (PERIOD_RANGE.0 * period, PERIOD_RANGE.1 * period);
     let (fraction, period) = match (is_sine, rates.is_empty()) {
         (true, true) => (FIRST_CHANGE_FRACTION, period),
-        (true, false) => (FIRST_MOTION_FRACTION, FIRST_MOTION_PERIOD_S),
+        (true, false) => (FIRST_MOTION_FRACTION, FIRST_MOTION_PERIODS * period),
         (false, _) => (CHANGE_FRACTION, period),
     };
     let change = extra("change", &value.unit, (fraction * half, -half, half));

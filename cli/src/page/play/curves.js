@@ -34,27 +34,17 @@ class Record {
   }
 }
 
-/** Returns the limits of a strip, rounded so that they seldom change. */
-function ends(values) {
-  let [low, high] = [Infinity, -Infinity];
-  for (const value of values) {
-    if (Number.isFinite(value)) {
-      low = Math.min(low, value);
-      high = Math.max(high, value);
-    }
-  }
-  if (low > high) return [-1, 1];
-  const size = Math.max(Math.abs(low), Math.abs(high));
-  // Variations of the last digits are shown as a constant.
-  if (high - low <= 1e-9 * size || high === low) {
-    const half = size > 0 ? 0.5 * size : 1;
-    return [low - half, high + half];
-  }
-  const step = round((high - low) / 4);
-  return [step * Math.floor(low / step), step * Math.ceil(high / step)];
+/** Returns an index of a colour for each place: its own one, or the first that no earlier place has. */
+function distinctMarks(places, count) {
+  const free = new Set(Array(count).keys());
+  return places.map((place) => {
+    const mark = free.has(place) ? place : (free.values().next().value ?? place % count);
+    free.delete(mark);
+    return mark;
+  });
 }
 
-/** Draws the strips. `quantities`: symbol, unit and index in a row of each. */
+/** Draws the strips. `quantities`: symbol, unit, largest rounding error and index in a row of each. */
 function drawCurves(canvas, record, quantities, t, span) {
   const { context, width, height } = cleared(canvas);
   const colour = colours();
@@ -64,9 +54,10 @@ function drawCurves(canvas, record, quantities, t, span) {
   const across = (time) => left + ((time - start) / span) * (width - left - right);
   let first = record.times.findIndex((time) => time >= start);
   first = Math.max(0, first - 1);
-  for (const [strip, { symbol, unit, place, mark }] of quantities.entries()) {
+  const marks = distinctMarks(quantities.map(({ place }) => place), colour.marks.length);
+  for (const [strip, { symbol, unit, noise, place }] of quantities.entries()) {
     const [top, bottom] = [gap + strip * tall, (strip + 1) * tall];
-    const values = record.rows.slice(first).map((row) => row[place]);
+    const values = record.rows.slice(first).map((row) => withoutNoise(row[place], noise));
     const [low, high] = ends(values);
     const up = (value) => bottom - ((value - low) / (high - low)) * (bottom - top);
     context.strokeStyle = colour.line;
@@ -84,8 +75,9 @@ function drawCurves(canvas, record, quantities, t, span) {
     context.fillStyle = colour.soft;
     context.textAlign = "right";
     const scaled = multiple(Math.max(Math.abs(low), Math.abs(high)), unit);
-    context.fillText(shown(high / scaled.size, 3), left - 8, top + 9, left - 10);
-    context.fillText(shown(low / scaled.size, 3), left - 8, bottom, left - 10);
+    const [least, most] = endLabels(low / scaled.size, high / scaled.size);
+    context.fillText(most, left - 8, top + 9, left - 10);
+    context.fillText(least, left - 8, bottom, left - 10);
     context.textAlign = "left";
     context.fillStyle = colour.ink;
     const value = values.at(-1);
@@ -95,7 +87,7 @@ function drawCurves(canvas, record, quantities, t, span) {
     context.beginPath();
     context.rect(left, top - 2, width - left - right, bottom - top + 4);
     context.clip();
-    context.strokeStyle = colour.marks[mark % colour.marks.length];
+    context.strokeStyle = colour.marks[marks[strip]];
     context.lineWidth = 2;
     context.beginPath();
     for (const [index, y] of values.entries()) {

@@ -6,7 +6,7 @@ use eomgen_page::name_letters;
 use eomgen_page::play::format_unit;
 use serde_json::{Value, json};
 
-use super::quantities::Quantities;
+use super::quantities::{Quantities, machine_size, rounding_error};
 use crate::error::{Error, Result};
 use crate::field_shapes::{FieldShapes, field_shapes};
 
@@ -21,12 +21,26 @@ pub(super) fn json(
     moving: Value,
 ) -> Result<String> {
     let program = compiled.program();
+    let size = machine_size(compiled);
+    let quantity = |name: &str, unit: &str| {
+        json!({
+            "symbol": name_letters(name),
+            "unit": format_unit(unit),
+            "noise": rounding_error(unit, size),
+        })
+    };
     let names = compiled.state_names().into_iter();
     let state = names.zip(&quantities.units).zip(initial);
     let state: Vec<Value> = state
-        .map(|((name, unit), initial)| json!({ "symbol": name_letters(&name), "unit": format_unit(unit), "initial": initial }))
+        .map(|((name, unit), initial)| {
+            let mut quantity = quantity(&name, unit);
+            quantity["initial"] = json!(initial);
+            quantity
+        })
         .collect();
-    let of = |quantity: &eomgen_codegen::program::Quantity| json!({ "symbol": name_letters(&quantity.name), "unit": format_unit(&quantity.unit) });
+    let of = |observable: &eomgen_codegen::program::Quantity| {
+        quantity(&observable.name, &observable.unit)
+    };
     let inputs = program.inputs.iter().zip(compiled.default_inputs());
     let inputs = inputs.map(|(input, value)| json!({ "name": input.name, "value": value }));
     let fields = field_shapes(compiled, INTERVALS)?;

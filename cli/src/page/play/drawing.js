@@ -150,7 +150,7 @@ class Instruments {
   }
 
   follow(state) {
-    this.values = this.all.map((_, place) => state[place]);
+    this.values = this.all.map(({ noise }, place) => withoutNoise(state[place], noise));
     this.lines = this.fields.map(({ first, functions }) =>
       functions.map((row) => row.reduce((sum, phi, mode) => sum + phi * state[first + mode], 0)),
     );

@@ -1,4 +1,5 @@
-//! First motion of a page: a machine that stays at rest without inputs is driven by one of them.
+//! First motion of a page: a machine that stays at rest without inputs is driven by one of them, and a fast one is slowed
+//! down.
 
 use eomgen_compiled_model::{CompiledModel, OperatingPoint};
 
@@ -30,4 +31,22 @@ pub(super) fn is_at_rest(compiled: &CompiledModel, initial: &[f64]) -> Result<bo
         run.is_equilibrium(&at).unwrap_or(false)
     };
     Ok(TIMES_S.into_iter().all(is_equilibrium))
+}
+
+/// Shortest period of an oscillation that is visible in real time, s.
+const SHORTEST_VISIBLE_S: f64 = 0.05;
+
+/// Returns the period of the lowest mode at the initial state, s, if it is too short to be visible. A machine without
+/// modes there is not judged.
+pub(super) fn invisible_period(compiled: &CompiledModel, initial: &[f64]) -> Option<f64> {
+    let run = compiled.with_declared_parameters().ok()?;
+    let at = OperatingPoint {
+        t: 0.0,
+        state: initial.to_vec(),
+        inputs: compiled.default_inputs(),
+    };
+    let linear = run.linearise(at.point()).ok()?;
+    let modes = run.natural_modes(&linear, at.point()).ok()?;
+    let period = modes.first()?.frequency().recip();
+    (period < SHORTEST_VISIBLE_S).then_some(period)
 }

@@ -12,9 +12,8 @@ mod first_motion;
 mod quantities;
 
 use eomgen_codegen::report::Report;
-use eomgen_codegen::symbolic::formula::{Formula, Symbol};
 use eomgen_compiled_model::{CompiledModel, ExportedModel};
-use eomgen_page::{ScriptedDocument, equations, formula, play, scripted_document};
+use eomgen_page::{ScriptedDocument, equations, play, quantity_symbol, scripted_document};
 use maud::{Markup, html};
 
 use crate::error::Result;
@@ -35,6 +34,40 @@ const SCRIPT: [&str; 4] = [
 const REAL_TIME: f64 = 0.0;
 const SLOW_MOTION: f64 = -1.0;
 
+/// Usual period of an input that is a sine, s.
+const DRIVING_PERIOD_S: f64 = 2.0;
+
+/// The same for a fast machine, in periods of its lowest mode: it follows the input without resonance.
+const DRIVING_PERIODS: f64 = 5.0;
+
+/// Initial speed of a page.
+#[derive(Clone, Copy, Debug)]
+struct Pace {
+    /// Speed of the clock, as a logarithm to the base 10.
+    speed: f64,
+    /// Period of an input that is a sine, s.
+    period: f64,
+}
+
+impl Pace {
+    /// Returns the pace at which a short period of a machine, s, takes about a second.
+    fn of_period(period: f64) -> Self {
+        Self {
+            speed: (10.0 * period.log10()).round() / 10.0,
+            period: rounded(DRIVING_PERIODS * period),
+        }
+    }
+}
+
+/// Rounds a positive number to two digits.
+fn rounded(value: f64) -> f64 {
+    let text = format!("{value:.1e}");
+    text.parse().unwrap_or(value)
+}
+
+/// Slowest speed of the clock, as a logarithm to the base 10, unless a machine needs a slower one.
+const SLOWEST: f64 = -4.0;
+
 /// Interactive part of a page. A page has at most one.
 pub struct InteractivePart {
     /// Drawing, curves and controls.
@@ -49,12 +82,15 @@ impl InteractivePart {
     /// # Errors
     /// Declared parameters without a motion, or a module that cannot be emitted.
     pub fn new(compiled: &CompiledModel, initial: &[f64]) -> Result<Self> {
-        Self::with_quantities(
-            compiled,
-            initial,
-            &Quantities::new(compiled, initial)?,
-            REAL_TIME,
-        )
+        let quantities = Quantities::new(compiled, initial)?;
+        let pace = match first_motion::invisible_period(compiled, initial) {
+            Some(period) => Pace::of_period(period),
+            None => Pace {
+                speed: REAL_TIME,
+                period: DRIVING_PERIOD_S,
+            },
+        };
+        Self::with_quantities(compiled, initial, &quantities, pace)
     }
 
     /// Builds the part of a model with controls for some of its parameters only. Its clock starts at a tenth of
@@ -72,14 +108,18 @@ impl InteractivePart {
             .parameters
             .retain(|slider| parameters.contains(&&*slider.name));
         quantities.initial.clear();
-        Self::with_quantities(compiled, initial, &quantities, SLOW_MOTION)
+        let pace = Pace {
+            speed: SLOW_MOTION,
+            period: DRIVING_PERIOD_S,
+        };
+        Self::with_quantities(compiled, initial, &quantities, pace)
     }
 
     fn with_quantities(
         compiled: &CompiledModel,
         initial: &[f64],
         quantities: &Quantities<'_>,
-        speed: f64,
+        pace: Pace,
     ) -> Result<Self> {
         let model = ExportedModel::new(&compiled.with_declared_parameters()?)?;
         let bytes = model.to_bytes();
@@ -95,11 +135,11 @@ impl InteractivePart {
             }
             @if is_at_rest { (note_of_rest(quantities)) }
             div.instrument {
-                div.seen {
-                    (drawing(&compiled.model().title, speed))
+                div.seen.scripted {
+                    (drawing(&compiled.model().title, pace.speed))
                     (curves(quantities))
                 }
-                (controls::panel(quantities, is_at_rest))
+                (controls::panel(quantities, is_at_rest, pace.period))
             }
         };
         Ok(Self {
@@ -130,9 +170,14 @@ pub fn interactive_page(compiled: &CompiledModel, initial: &[f64]) -> Result<Str
     let report = Report::new(compiled.model(), compiled.equations(), &evaluator);
     let part = InteractivePart::new(compiled, initial)?;
     let model = compiled.model();
+    // A model without a title has its name as the title.
+    let title = match model.title == model.name {
+        true => model.name.replace('_', " "),
+        false => model.title.clone(),
+    };
     let body = html! {
         header {
-            h1 { (model.title) }
+            h1 { (title) }
             p.lead {
                 "Move a slider to change the motion. The page computes it with the same "
                 "operations as the emitted Rust and C."
@@ -152,14 +197,14 @@ pub fn interactive_page(compiled: &CompiledModel, initial: &[f64]) -> Result<Str
             }
         }
     };
-    Ok(part.document(&model.title, &body))
+    Ok(part.document(&title, &body))
 }
 
 /// Returns a note on the first motion of a machine that stays at rest without inputs.
 fn note_of_rest(quantities: &Quantities<'_>) -> Markup {
     match quantities.inputs.first() {
         Some(signal) => {
-            let symbol = formula(&Formula::Symbol(Symbol::from_state(&signal.value.name)));
+            let symbol = quantity_symbol(&signal.value.name);
             html! {
                 p.note {
                     "Without inputs this machine stays at rest. Its input " (symbol)
@@ -176,6 +221,7 @@ fn note_of_rest(quantities: &Quantities<'_>) -> Markup {
 }
 
 fn drawing(title: &str, speed: f64) -> Markup {
+    let slowest = SLOWEST.min(speed.floor() - 1.0);
     html! {
         section.panel aria-label="Drawing" {
             canvas #drawing role="img" aria-label={ "Drawing of " (title) ", moving" } {}
@@ -184,7 +230,7 @@ fn drawing(title: &str, speed: f64) -> Markup {
                 button #reset type="button" { "Reset" }
                 label {
                     "Speed"
-                    input #speed type="range" min="-4" max="1" step="0.1" value=(speed);
+                    input #speed type="range" min=(slowest) max="1" step="0.1" value=(speed);
                     output #speed-value for="speed" { "1 ×" }
                 }
                 output #clock aria-label="Time" { "0.00 s" }
@@ -211,7 +257,7 @@ fn curves(quantities: &Quantities<'_>) -> Markup {
                     @for shown in all {
                         label {
                             input type="checkbox" value=(shown.place) checked[shown.at_first];
-                            (formula(&Formula::Symbol(Symbol::from_state(&shown.name))))
+                            (quantity_symbol(&shown.name))
                             span.unit { "[" (shown.unit) "]" }
                         }
                     }

@@ -173,7 +173,7 @@ fn around_zero(reach: f64) -> (f64, f64) {
 }
 
 /// Returns the largest length among the parameters, m; 1 if there is none.
-fn machine_size(compiled: &CompiledModel) -> f64 {
+pub(super) fn machine_size(compiled: &CompiledModel) -> f64 {
     let lengths = compiled.program().parameters.iter();
     let size = lengths
         .filter(|parameter| parameter.quantity.unit == "m")
@@ -190,6 +190,17 @@ fn reach(unit: &str, size: f64) -> f64 {
         "m" => 0.5 * size,
         "m/s" => 2.0 * size,
         _ => 1.0,
+    }
+}
+
+/// Largest rounding error, as a fraction of the size of a motion.
+const ROUNDING: f64 = 1e-14;
+
+/// Returns the largest value of a unit that is a rounding error; 0 for units of unknown size.
+pub(super) fn rounding_error(unit: &str, size: f64) -> f64 {
+    match unit {
+        "rad" | "rad/s" | "m" | "m/s" => ROUNDING * reach(unit, size),
+        _ => 0.0,
     }
 }
 

@@ -1,11 +1,12 @@
 //! Names of Greek letters with their LaTeX commands and characters.
 
-const GREEK: [(&str, &str, &str); 35] = [
+const GREEK: [(&str, &str, &str); 36] = [
     ("alpha", "\\alpha", "α"),
     ("beta", "\\beta", "β"),
     ("gamma", "\\gamma", "γ"),
     ("delta", "\\delta", "δ"),
     ("epsilon", "\\epsilon", "ε"),
+    ("eps", "\\epsilon", "ε"),
     ("zeta", "\\zeta", "ζ"),
     ("eta", "\\eta", "η"),
     ("theta", "\\theta", "θ"),

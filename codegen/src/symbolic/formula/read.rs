@@ -274,7 +274,9 @@ impl<'a> Reader<'a> {
     fn product(&self, factors: &[(NodeId, i32)]) -> Formula {
         let (mut above, mut below) = (Vec::new(), Vec::new());
         let is_shown = |(id, _): &&(NodeId, i32)| self.unit_factor(*id) != Some(1.0);
-        let shown: Vec<_> = factors.iter().filter(is_shown).copied().collect();
+        let mut shown: Vec<_> = factors.iter().filter(is_shown).copied().collect();
+        // Coefficients precede varying factors.
+        shown.sort_by_key(|(id, _)| !self.is_coefficient(*id));
         let is_reduced = shown.len() < factors.len();
         for (id, exponent) in shown {
             let (id, exponent) = match self.graph.operation(id) {
@@ -294,6 +296,11 @@ impl<'a> Reader<'a> {
             true => above.swap_remove(0),
             false => Formula::Quotient { above, below },
         }
+    }
+
+    fn is_coefficient(&self, id: NodeId) -> bool {
+        self.graph.as_constant(id).is_some()
+            || matches!(self.graph.operation(id), Operation::Parameter(_))
     }
 
     fn matrix_operation(&self, operation: &Operation) -> Formula {

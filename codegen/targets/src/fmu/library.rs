@@ -61,8 +61,8 @@ fn read_beside_program() -> Result<Vec<u8>> {
     let places: [PathBuf; 2] = [folder.join(&file), folder.join("deps").join(&file)];
     let Some(place) = places.iter().find(|place| place.is_file()) else {
         return Err(EmissionError::request(format!(
-            "the library of functional mock-up units, {file}, is not in {}: copy it there from a release, or from \
-             target/release/deps after `cargo build --release` in the source of eomgen",
+            "the library of functional mock-up units, {file}, is not in {0}: copy it there from a release, or run \
+             `cp target/release/deps/{file} {0}` in the clone from which the program was installed",
             folder.display()
         )));
     };

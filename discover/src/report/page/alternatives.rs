@@ -103,10 +103,27 @@ pub(super) fn list_rejected(list: &[RejectedEffect]) -> Markup {
                     1 => { "One other effect was tested." }
                     count => { (count) " other effects and sites were tested." }
                 }
+                @if let Some(best) = describe_best(list) { " " (best) }
             }
             (write_folded(&groups, &["effect", "reason"], row))
         },
     )
+}
+
+/// Describes the reduction by the best effect of each round, with which the predicted ones compare.
+fn describe_best(list: &[RejectedEffect]) -> Option<String> {
+    let of_rounds = list.iter().filter_map(|of| of.best_reduction);
+    let mut texts: Vec<String> = of_rounds
+        .map(|best| format!("{:.1} %", 100.0 * best))
+        .collect();
+    texts.sort();
+    texts.dedup();
+    (!texts.is_empty()).then(|| {
+        format!(
+            "The best effect of a round would reduce the squared residual by {}.",
+            texts.join(" or ")
+        )
+    })
 }
 
 /// Lists the effects that the records cannot show, grouped by experiment.

@@ -1,6 +1,6 @@
 //! Found effects, the steps of the search, and the change of the specification.
 
-use eomgen_page::{prose, section, table};
+use eomgen_page::{prose, quantity_symbol, section, table};
 use maud::{Markup, html};
 
 use crate::catalogue::effect::effect_in_words;
@@ -43,10 +43,10 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
                 EffectStatus::Empirical => { "It does not identify the cause." },
             }
             @if let Some(order) = &effect.at.order {
-                " It repeats " (order.order) " times per turn of " code { (order.angle) } "."
+                " It repeats " (order.order) " times per turn of " (quantity_symbol(&order.angle)) "."
             }
             @if let Some(load) = &effect.load {
-                " It increases with the load of " code { (load) } "."
+                " It increases with the load of " (quantity_symbol(load)) "."
             }
             @if let Some(experiment) = &effect.experiment {
                 " Experiment to separate them: " (prose(experiment)) "."
@@ -57,8 +57,8 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
         }
         dl.values {
             @for (name, of) in &effect.parameters {
-                dt { code { (name) } }
-                dd { (format_estimate(of.value, of.sd, &of.unit)) }
+                dt { (quantity_symbol(name)) }
+                dd { (prose(&format_estimate(of.value, of.sd, &of.unit))) }
             }
             @if !effect.term.is_empty() && !is_value {
                 dt { "in the specification" }
@@ -116,7 +116,7 @@ fn step_table(steps: &[SearchStep]) -> Markup {
             tr {
                 td {
                     @if step.added.is_empty() { "original model" }
-                    @else { "with " (effect_in_words(&step.added.join(", "))) }
+                    @else { "with " (prose(&effect_in_words(&step.added.join(", ")))) }
                 }
                 td.number { (format_number(step.test_rms, 3)) }
             }
@@ -142,7 +142,7 @@ fn validation_line(discovery: &Discovery) -> Markup {
                 (written) "pass all " (validation.checks.len()) " checks of " code { "eomgen validate" }
                 ". Its simulated residual is " (left(discovery.resimulation.train))
                 " standard deviations of the noise on the training records and "
-                (left(discovery.resimulation.test)) " on the test records."
+                (left(discovery.resimulation.test)) " on the held-out records."
             }
         } @else {
             p.warning { (written) "FAIL " (validation.failed.join(", ")) "." }

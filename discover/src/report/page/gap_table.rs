@@ -1,6 +1,6 @@
 //! Gap of each channel before and after the search.
 
-use eomgen_page::table;
+use eomgen_page::{quantity_symbol, table};
 use maud::{Markup, html};
 
 use crate::report::quantity::{format_number, format_quantity};
@@ -11,7 +11,7 @@ pub(super) fn write_gap_table(compared: &CommonResult) -> Markup {
     let rows = html! {
         @for (name, gap) in &compared.gap {
             tr {
-                th scope="row" { code { (name) } }
+                th scope="row" { (quantity_symbol(name)) }
                 td.number { (format_quantity(gap.floor, 3, &gap.unit)) }
                 (both(gap, has_after, |on| on.test))
                 (both(gap, has_after, |on| on.train))
@@ -27,7 +27,7 @@ pub(super) fn write_gap_table(compared: &CommonResult) -> Markup {
             "training, before",
             "training, after",
         ],
-        false => &["channel", "noise floor", "held out", "fitted to"],
+        false => &["channel", "noise floor", "held out", "training"],
     };
     html! {
         (table(headings, &rows))

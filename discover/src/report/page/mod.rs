@@ -15,7 +15,7 @@ mod verdict;
 #[cfg(test)]
 mod tests;
 
-use eomgen_page::{ScriptedDocument, document, prose, scripted_document, section};
+use eomgen_page::{ScriptedDocument, document, prose, quantity_symbol, scripted_document, section};
 use maud::{Markup, html};
 
 use crate::report::playback::Playback;
@@ -28,6 +28,7 @@ impl Comparison {
         let compared = &self.compared;
         whole(
             compared,
+            "Comparison of model and measurement",
             &html! {
                 (verdict::write_comparison_verdict(self))
                 (opening(compared))
@@ -43,6 +44,7 @@ impl Discovery {
         let compared = &self.compared;
         whole(
             compared,
+            "Search for missing effects of the model",
             &html! {
                 (verdict::write_discovery_verdict(self))
                 (found_effects::list_effects(&self.effects, &self.experiments))
@@ -59,17 +61,14 @@ impl Discovery {
     }
 }
 
-/// A document around a body.
-fn whole(compared: &CommonResult, body: &Markup) -> String {
-    let title = match compared.title.as_str() {
-        "" => "Model and measurement",
-        title => title,
-    };
+/// A document around a body; `kind` is the kind of the report.
+fn whole(compared: &CommonResult, kind: &str, body: &Markup) -> String {
+    let title = compared.title.as_str();
     let origin = &compared.origin;
     let body = html! {
         header {
             h1 { (title) }
-            p.note { "Comparison of model and measurement, " (origin.date) }
+            p.note { (kind) ", " span.word { (origin.date) } }
         }
         main { (body) }
         footer { (origin::list_files(origin)) }
@@ -117,7 +116,7 @@ fn closing(compared: &CommonResult) -> Markup {
             (section("Location of the difference", &html! {
                 @if has_location { p { (prose(&format_readable(&compared.location))) } }
                 @if let Some((equation, force)) = force {
-                    h3 { "Missing force on " code { (equation) } }
+                    h3 { "Missing force on " (quantity_symbol(equation)) }
                     (force)
                 }
             }))

@@ -1,6 +1,6 @@
 //! Nuisances of the fit: declared and estimated values.
 
-use eomgen_page::{section, stacked_table};
+use eomgen_page::{prose, quantity_symbol, section, stacked_table};
 use maud::{Markup, html};
 
 use crate::report::quantity::{format_estimate, format_tenths};
@@ -42,10 +42,10 @@ fn row(of: &Nuisance) -> Markup {
         tr {
             th scope="row" {
                 @if let Some(fault) = of.fault { (fault) " of " }
-                code { (of.name) }
+                (quantity_symbol(&of.name))
             }
-            td.number { (format_estimate(mean, sd, unit)) }
-            td.number { (format_estimate(of.estimate.value, of.estimate.sd, unit)) }
+            td.number { (prose(&format_estimate(mean, sd, unit))) }
+            td.number { (prose(&format_estimate(of.estimate.value, of.estimate.sd, unit))) }
             td class=[class] {
                 @if off.is_finite() { (format_tenths(off)) } @else { "–" }
             }

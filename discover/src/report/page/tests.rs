@@ -53,6 +53,7 @@ fn discovery(text: &str) -> Discovery {
     let rejected = RejectedEffect {
         at: at(),
         reason: name(),
+        best_reduction: Some(0.9),
         experiment: name(),
         next_experiment: Some(next_experiment(text)),
         p_values: Some((0.2, 1.0)),
@@ -210,7 +211,7 @@ fn large_remaining_gap_is_uncertain_in_the_summary() {
         .and_then(|gap| gap.after.as_mut());
     gap.expect("a gap").test = 41e-6;
     let first = "The named effects may be substitutes for others: the extended model closes 60 % of the gap between model \
-                 and measurement on held-out records and leaves 41 noise floors.";
+                 and measurement on held-out records and leaves 41.0 noise floors.";
     assert!(summary(&found).starts_with(first), "{}", summary(&found));
     // No line breaks before a percent sign.
     let first = first.replace(" %", "\u{a0}%");
@@ -228,7 +229,7 @@ fn a_nuisance_at_its_bound_makes_an_answer_uncertain() {
         summary.contains("with the gain of x at the bound of the fit"),
         "{summary}"
     );
-    let notes = crate::report::discovery::describe_bounds(&found.compared.nuisances);
+    let notes = crate::report::discovery::describe_deviations(&found.compared.nuisances);
     assert_eq!(notes.len(), 1, "{notes:?}");
     assert!(
         notes[0].starts_with("the gain of x is 1.030, 3.0 standard deviations"),
@@ -259,5 +260,36 @@ fn page_has_no_external_reference() {
         "http:", "https:", "//", "<script", "<link", "src=", "url(", "href",
     ] {
         assert!(!page.contains(forbidden), "{forbidden}");
+    }
+}
+
+#[test]
+fn reports_name_their_kind() {
+    let kinds = [
+        "Search for missing effects of the model",
+        "Comparison of model and measurement",
+    ];
+    let pages = [discovery("x").to_html(), comparison("x").to_html()];
+    for (place, page) in pages.iter().enumerate() {
+        assert!(
+            page.contains(kinds[place]) && !page.contains(kinds[1 - place]),
+            "{page}"
+        );
+        assert!(page.contains("<th scope=\"col\">training"), "{page}");
+    }
+}
+
+#[test]
+fn names_of_quantities_are_symbols() {
+    for page in [discovery("theta").to_html(), comparison("theta").to_html()] {
+        let table = page.split("<tbody>").nth(1).unwrap_or_default();
+        assert!(
+            table.starts_with("<tr><th scope=\"row\"><math><mi>θ</mi></math></th>"),
+            "{table}"
+        );
+        assert!(
+            page.contains("noise floors in <math>") || page.contains(" on <math>"),
+            "{page}"
+        );
     }
 }

@@ -24,7 +24,7 @@ pub(super) fn write_controls(
     html! {
         div.controls {
             @for id in unknowns { (control(problem, best, model, *id)) }
-            p { button #defaults type="button" { "Reset values" } }
+            p.scripted { button #defaults type="button" { "Reset values" } }
         }
     }
 }

@@ -9,7 +9,7 @@ mod data;
 mod record_excerpt;
 mod reproduction_check;
 
-use eomgen_page::play;
+use eomgen_page::{play, quantity_symbol};
 use maud::{Markup, html};
 use serde_json::Value;
 
@@ -61,6 +61,12 @@ impl Playback {
         if problem.dataset.gives_motion() {
             return Self::Unavailable("the motion is given by the records".to_owned());
         }
+        if model.specification().prescribed_inputs().next().is_some() {
+            return Self::Unavailable(
+                "the page holds inputs between samples, and the model has a prescribed motion"
+                    .to_owned(),
+            );
+        }
         let moving = match embed_model(&model) {
             Ok(moving) => moving,
             Err(why) => return Self::Unavailable(why),
@@ -107,7 +113,7 @@ fn body(problem: &EstimationProblem<'_>, stretch: &RecordExcerpt, controls: &Mar
     let channels = problem.dataset.channels.iter();
     let rows = channels.zip(&stretch.rms_before_after);
     html! {
-        p {
+        p.scripted {
             "Move a slider: the extended model is simulated again for "
             @if stretch.is_complete { "the test record" }
             @else { "the beginning of the test record, " (format!("{seconds:.3}")) " s," }
@@ -131,7 +137,7 @@ fn body(problem: &EstimationProblem<'_>, stretch: &RecordExcerpt, controls: &Mar
                 tbody {
                     @for (channel, [before, after]) in rows {
                         tr {
-                            th scope="row" { code { (channel.name) } }
+                            th scope="row" { (quantity_symbol(&channel.name)) }
                             td.number data-left="before" { (format_quantity(*before, 3, &channel.unit)) }
                             td.number data-left="now" { (format_quantity(*after, 3, &channel.unit)) }
                         }
@@ -139,8 +145,8 @@ fn body(problem: &EstimationProblem<'_>, stretch: &RecordExcerpt, controls: &Mar
                 }
             }
         }
-        p #status role="status" {}
-        canvas #strips role="img" aria-label="Measured and simulated over time, and their differences" {}
-        p.note { span.key.measured {} "measured, with the simulations; below, the differences" }
+        p #status.scripted role="status" {}
+        canvas #strips.scripted role="img" aria-label="Measured and simulated over time, and their differences" {}
+        p.note.scripted { span.key.measured {} "measured, with the simulations; below, the differences" }
     }
 }

@@ -83,7 +83,7 @@ class Page {
   write(which, place, value, unit) {
     const cell = document.querySelectorAll(`[data-left=${which}]`)[place];
     const of = multiple(value, unit);
-    cell.textContent = Number.isFinite(value) ? `${shown(value / of.size, 3)} ${of.unit}` : "–";
+    cell.textContent = Number.isFinite(value) ? `${shown(value / of.size, 3)}\u00a0${of.unit}` : "–";
     cell.dataset.value = value;
   }
 

@@ -1,18 +1,5 @@
 // For every channel what was measured with the simulations over it, and below, what they are off.
 
-/** The lowest and the highest of some numbers, with a margin. */
-function limits(columns) {
-  let [low, high] = [Infinity, -Infinity];
-  for (const column of columns) {
-    for (const value of column) {
-      if (Number.isFinite(value)) [low, high] = [Math.min(low, value), Math.max(high, value)];
-    }
-  }
-  if (!(low < high)) return [low - 1, low + 1].map((end) => (Number.isFinite(end) ? end : 0));
-  const margin = 0.06 * (high - low);
-  return [low - margin, high + margin];
-}
-
 /** A strip of a canvas over time: where its numbers stand. */
 class Strip {
   constructor(context, { left, right, top, bottom }, [start, end], [low, high]) {
@@ -35,8 +22,9 @@ class Strip {
     context.stroke();
     context.fillStyle = colour.soft;
     context.textAlign = "right";
-    context.fillText(shown(high / of.size, 3), left - 6, top + 10, left - 8);
-    context.fillText(shown(low / of.size, 3), left - 6, bottom, left - 8);
+    const [least, most] = endLabels(low / of.size, high / of.size);
+    context.fillText(most, left - 6, top + 10, left - 8);
+    context.fillText(least, left - 6, bottom, left - 8);
     context.textAlign = "left";
     context.fillStyle = colour.ink;
     writeSymbol(context, symbol, title, [left, top - 6], right - left);
@@ -76,13 +64,13 @@ function drawStrips(canvas, times, breaks, channels) {
     const top = place * tall;
     const less = (column) => column.map((value, sample) => value - measured[sample]);
     const motion = { left, right, top: top + 20, bottom: top + 0.58 * tall };
-    const both = new Strip(context, motion, span, limits([measured, before]));
+    const both = new Strip(context, motion, span, ends([...measured, ...before]));
     both.frame(colour, symbol, "", unit);
     both.curve(times, measured, breaks, colour.soft, 5);
     both.curve(times, before, breaks, colour.marks[1], 1.6);
     both.curve(times, now, breaks, colour.marks[0], 1.6);
     const [first, second] = [less(before), less(now)];
-    const off = new Strip(context, { left, right, top: top + 0.58 * tall + 28, bottom: top + tall - 10 }, span, limits([first, [0]]));
+    const off = new Strip(context, { left, right, top: top + 0.58 * tall + 28, bottom: top + tall - 10 }, span, ends([...first, 0]));
     off.frame(colour, symbol, ": simulated minus measured", unit);
     off.curve(times, first, breaks, colour.marks[1], 1.4);
     off.curve(times, second, breaks, colour.marks[0], 1.4);

@@ -68,6 +68,8 @@ pub(crate) struct Auditor {
     drift_limit: f64,
     /// Energy at the end of the last step, J.
     energy: Option<f64>,
+    /// Largest magnitude of the energy, J.
+    largest_energy: f64,
     /// Power at the end of the last step, W.
     power: f64,
     /// Energy change at impacts since that step, J.
@@ -113,6 +115,7 @@ impl Auditor {
             drift: 0.0,
             drift_limit: 0.0,
             energy: None,
+            largest_energy: 0.0,
             power: 0.0,
             pending_energy: 0.0,
             last_allowed: 0.0,
@@ -134,6 +137,7 @@ impl Auditor {
         if let Some(suspected) = &self.suspected {
             audit.note(suspected.imbalance);
         }
+        audit.remove_faults_up_to(ENERGY_ROUNDING * self.largest_energy);
         audit
     }
 
@@ -176,6 +180,7 @@ impl Auditor {
         self.raise_sizes(start.1);
         self.raise_sizes(end.1);
         let ends = (self.evaluate(energies, start), self.evaluate(energies, end));
+        self.largest_energy = self.largest_energy.max(ends.1.energy.abs());
         if let Some(before) = self.energy.replace(ends.1.energy) {
             self.audit_jump(start, (before, ends.0), energies);
         }
@@ -253,6 +258,8 @@ impl Auditor {
             before + certain.copysign(difference)
         };
         self.drift = add(uncertainty);
+        let rounding = ENERGY_ROUNDING * self.largest_energy;
+        self.audit.remove_faults_up_to(rounding);
         if self.audit.drift.is_some() || self.has_small_drift() {
             return;
         }
@@ -537,7 +544,9 @@ impl Auditor {
         }
     }
 
-    fn raise_sizes(&mut self, state: &[f64]) {
+    /// Raises the sizes of the states to those of a state of the motion, also inside a step: at the ends of a step from rest
+    /// to rest, rates are 0.
+    pub(super) fn raise_sizes(&mut self, state: &[f64]) {
         let magnitudes = self.sizes.iter_mut().zip(&mut self.magnitudes);
         for ((size, magnitude), entry) in magnitudes.zip(state) {
             *size = size.max(entry.abs());

@@ -135,6 +135,17 @@ impl Audit {
             *largest = found;
         }
     }
+
+    /// Removes faults that are at most this rounding of the energy, J. At the beginning of a motion from rest, they had
+    /// nothing to be compared with.
+    fn remove_faults_up_to(&mut self, rounding: f64) {
+        let is_rounding = |fault: Imbalance| fault.energy_gain.abs() <= rounding;
+        if self.largest_fault.is_some_and(is_rounding) {
+            self.fault_count = 0;
+            (self.first_fault, self.largest_fault) = (None, None);
+        }
+        self.drift = self.drift.filter(|drift| !is_rounding(*drift));
+    }
 }
 
 impl Imbalance {

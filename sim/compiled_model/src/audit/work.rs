@@ -33,6 +33,7 @@ impl Auditor {
         let mean = 0.5 * (first.power + last.power);
         match (step.state_inside)(middle, Interior::Interpolated) {
             Some(state) => {
+                self.raise_sizes(&state);
                 let power = self.evaluate(energies, (middle, &state)).power;
                 ((mean + 2.0 * power) / 3.0 * (end - begin), true)
             }
@@ -54,6 +55,7 @@ impl Auditor {
         let mut inside = |place: f64| {
             let t = begin + length * place;
             let state = (step.state_inside)(t, refinement.interior)?;
+            self.raise_sizes(&state);
             self.audit.evaluations += 1;
             Some(energies.evaluate((t, &state)))
         };

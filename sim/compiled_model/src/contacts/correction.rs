@@ -50,15 +50,7 @@ impl Contacts {
         if self.closed.is_empty() {
             return corrected;
         }
-        for _ in 0..CORRECTIONS {
-            own.impacts(Point { t, state, inputs }, &mut self.at);
-            let (coordinates, rates) = state.split_at_mut(degrees);
-            let corrections = self.solve_balance(&self.closed, |impact| impact.distance);
-            self.add_impulses(&self.closed, &corrections, coordinates);
-            let corrections = self.stopping();
-            self.add_forces(&self.closed, &corrections, rates);
-        }
-        own.impacts(Point { t, state, inputs }, &mut self.at);
+        self.move_onto_closed(own, (t, inputs), state);
         self.note_sizes(state);
         self.note_slip_sizes();
         let is_left = |place: &&usize| {
@@ -74,6 +66,25 @@ impl Contacts {
         self.release_independent(state);
         self.keep_open_sides(t, &arrived);
         corrected + CORRECTIONS as u64 + 1
+    }
+
+    /// Moves a state onto the closed contacts, and evaluates the impacts there.
+    pub(super) fn move_onto_closed(
+        &mut self,
+        own: &mut Evaluator,
+        (t, inputs): (f64, &[f64]),
+        state: &mut [f64],
+    ) {
+        let degrees = own.program().degrees_of_freedom();
+        for _ in 0..CORRECTIONS {
+            own.impacts(Point { t, state, inputs }, &mut self.at);
+            let (coordinates, rates) = state.split_at_mut(degrees);
+            let corrections = self.solve_balance(&self.closed, |impact| impact.distance);
+            self.add_impulses(&self.closed, &corrections, coordinates);
+            let corrections = self.stopping();
+            self.add_forces(&self.closed, &corrections, rates);
+        }
+        own.impacts(Point { t, state, inputs }, &mut self.at);
     }
 
     /// Marks the coordinates and the rates on which the corrections onto closed contacts act.

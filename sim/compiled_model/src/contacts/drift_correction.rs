@@ -28,7 +28,7 @@ impl Contacts {
             let rests =
                 self.at[place].rate.abs() <= ROUNDING * self.rate_size(place, &rates) + rate;
             let before = std::mem::take(&mut self.drifts[place]);
-            if touches && rests {
+            if touches && rests && !drifts.is_empty() {
                 self.drifts[place] = drifts;
             } else if !before.is_empty() && !self.rests(place) {
                 let offset = &mut self.offsets[place];

@@ -17,6 +17,7 @@ mod impulses;
 mod jump;
 mod power;
 mod redundant;
+mod released;
 mod sequence;
 mod start;
 mod tangents;

@@ -265,7 +265,8 @@ impl Instance<'_> {
     }
 
     /// Returns the unknowns at given speeds: all coordinates and first-order states that are not
-    /// fixed, and the inputs that are not fixed if a state is.
+    /// fixed, and the inputs that are not fixed if a state is. Rates of prescribed motion are given: a machine on an
+    /// accelerated base is not at rest.
     fn find_unknowns(
         &self,
         at: &OperatingPoint,
@@ -282,7 +283,9 @@ impl Instance<'_> {
         let states = (0..degrees)
             .chain(2 * degrees..at.state.len())
             .map(Setting::State);
-        let inputs = (0..at.inputs.len()).filter(|_| is_held).map(Setting::Input);
+        let inputs = self.model().model().inputs.iter().enumerate();
+        let inputs = inputs.filter(|(_, input)| is_held && input.rate_of.is_none());
+        let inputs = inputs.map(|(place, _)| Setting::Input(place));
         let free = states
             .chain(inputs)
             .filter(|setting| !fixed.contains(setting));

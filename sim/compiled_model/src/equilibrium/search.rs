@@ -143,21 +143,49 @@ impl<'i, 'm> Search<'i, 'm> {
         if !self.project(at) {
             return Err(unsatisfied_constraints_error());
         }
-        let start = at.clone();
-        let here = match self.attempt(at, MIN_SINGULAR_VALUE_FRACTION)? {
-            Ok(here) => here,
-            Err(first) => {
-                // A slope that counts as 0 may be that of a soft part.
-                *at = start;
-                let second = self.attempt(at, SOFT_SINGULAR_VALUE_FRACTION)?;
-                second.map_err(|second| match (&first, &second) {
-                    (Failure::NotFound(_), Failure::Inaccurate(_)) => second.into_error(),
-                    _ => first.into_error(),
-                })?
-            }
-        };
+        let here = self.search_from(at)?;
         self.check_surfaces(at)?;
         Ok(here.accelerations.iter().copied().collect())
+    }
+
+    /// Moves `at` to an equilibrium, by further attempts from the same start if the first fails.
+    fn search_from(&mut self, at: &mut OperatingPoint) -> Result<LinearisedEquations, Error> {
+        let start = at.clone();
+        let first = match self.attempt(at, MIN_SINGULAR_VALUE_FRACTION)? {
+            Ok(here) => return Ok(here),
+            Err(first) => first,
+        };
+        // A slope that counts as 0 may be that of a soft part.
+        *at = start.clone();
+        let second = match self.attempt(at, SOFT_SINGULAR_VALUE_FRACTION)? {
+            Ok(here) => return Ok(here),
+            Err(second) => second,
+        };
+        *at = start;
+        if let Some(here) = self.attempt_near_surface(at)? {
+            return Ok(here);
+        }
+        Err(match (&first, &second) {
+            (Failure::NotFound(_), Failure::Inaccurate(_)) => second.into_error(),
+            _ => first.into_error(),
+        })
+    }
+
+    /// Moves `at` to an equilibrium from a start on a switching surface, such as a wheel that touches the ground, to
+    /// one side of which the machine accelerates. Returns `None` if the start is not on a surface or no equilibrium is found.
+    fn attempt_near_surface(
+        &mut self,
+        at: &mut OperatingPoint,
+    ) -> Result<Option<LinearisedEquations>, Error> {
+        if !self.guards(at).contains(&0.0) {
+            return Ok(None);
+        }
+        let here = self.linearise(at)?;
+        let Some((near, _)) = self.nudge(at, self.acceleration_signs(&here)) else {
+            return Ok(None);
+        };
+        *at = near;
+        Ok(self.attempt(at, MIN_SINGULAR_VALUE_FRACTION)?.ok())
     }
 
     /// Moves `at` to an equilibrium. Singular values below `least` of the largest count as 0.

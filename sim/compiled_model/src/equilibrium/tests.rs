@@ -494,3 +494,47 @@ fn state_of_hysteresis_balances_the_load_of_a_free_mass() {
     assert!((found.point.state[2] - 2.5).abs() < 1e-12, "{found:?}");
     assert_eq!(found.unknowns, ["x", "z"]);
 }
+
+/// A car whose tyres just touch the ground at the start: on this surface the slope of their force is one-sided.
+#[test]
+fn car_settles_on_tyres_that_touch_at_the_start() {
+    let model = compiled(
+        r#"
+[model]
+name = "car"
+[parameters]
+m = { value = 320, unit = "kg" }
+J = { value = 430, unit = "kg m^2" }
+m_w = { value = 35, unit = "kg" }
+k = { value = 18, unit = "kN/m" }
+k_t = { value = 160, unit = "kN/m" }
+a = { value = 1.1, unit = "m" }
+b = { value = 1.3, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+z = { unit = "m" }
+th = { unit = "rad" }
+z_f = { unit = "m" }
+z_r = { unit = "m" }
+[definitions]
+front = "z - a*sin(th) - z_f"
+rear = "z + b*sin(th) - z_r"
+[kinetic]
+body = "1/2*m*dot(z)^2 + 1/2*J*dot(th)^2"
+wheels = "1/2*m_w*(dot(z_f)^2 + dot(z_r)^2)"
+[potential]
+weight = "g*(m*z + m_w*(z_f + z_r))"
+springs = "1/2*k*(front^2 + rear^2)"
+tyres = "1/2*k_t*(min(z_f, 0)^2 + min(z_r, 0)^2)"
+"#,
+    );
+    let run = model.with_declared_parameters().expect("an instance");
+    let found = fixed(&run, &[]).expect("an equilibrium");
+    let weight = 320.0 * 9.81;
+    let wheel = 35.0 * 9.81;
+    for (wheel_place, share) in [(2, 1.3 / 2.4), (3, 1.1 / 2.4)] {
+        let expected = -(weight * share + wheel) / 160e3;
+        let place = found.point.state[wheel_place];
+        assert!((place / expected - 1.0).abs() < 1e-9, "{place} {expected}");
+    }
+}

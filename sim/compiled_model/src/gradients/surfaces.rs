@@ -75,6 +75,7 @@ impl<'r> BackwardPass<'r, '_> {
         let (mut values, mut rates) = (vec![0.0; count], vec![0.0; count]);
         let (t, state) = &first.start;
         let given = self.recorded.inputs().evaluate(*t);
+        self.evaluator.set_modes(&first.modes);
         self.evaluator
             .write_surfaces((*t, state), &given, (&mut values, &mut rates))?;
         for (surface, mode) in first.modes.iter().enumerate() {

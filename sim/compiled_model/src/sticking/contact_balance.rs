@@ -12,6 +12,9 @@ use crate::contacts::{contact_problem, free_accelerations, rates_and_slips};
 /// the function is rounding, too.
 const MAX_STOPPED_FRACTION: f64 = 1e-8;
 
+/// Sum of two opposed effects, relative to one of them, that is rounding.
+const MAX_BALANCED_FRACTION: f64 = 1e-12;
+
 impl SidedModel {
     /// Sets the closed contacts with their modes.
     pub(super) fn set_closed_contacts(&mut self, closed: &[(usize, ContactMode)]) {
@@ -133,9 +136,9 @@ impl SidedModel {
                 let terms = forces.iter().zip(&by_forces);
                 terms.map(|(force, effects)| force * effects[row]).sum()
             };
-            surface.rate += rate(&forces);
+            surface.rate = add_opposed(surface.rate, rate(&forces));
             for (slot, forces) in surface.by_sides.iter_mut().zip(&forces_by_sides) {
-                *slot += rate(forces);
+                *slot = add_opposed(*slot, rate(forces));
             }
             for (force, column) in forces_by_sides[row].iter().zip(&columns) {
                 for (slot, entry) in surface.column.iter_mut().zip(column.iter().flatten()) {
@@ -159,6 +162,15 @@ impl SidedModel {
         let sliding = &self.evaluator.program().outputs.sliding;
         let functions = sliding.iter().map(|surface| self.guards[surface.guard]);
         (rates_and_slips(&self.impacts, closed), functions.collect())
+    }
+}
+
+/// Returns the sum of an effect and that of the contact forces, 0 if they balance up to rounding.
+fn add_opposed(own: f64, by_contacts: f64) -> f64 {
+    let sum = own + by_contacts;
+    match sum.abs() <= MAX_BALANCED_FRACTION * own.abs() {
+        true => 0.0,
+        false => sum,
     }
 }
 

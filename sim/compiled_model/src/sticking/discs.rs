@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use eomgen_sim::friction_discs::DiscVerdict;
+use eomgen_sim::friction_discs::{DiscArrival, DiscVerdict};
 
 /// Smallest velocity with a direction, in roundings of the velocity, which then turn it by little.
 const SLOWEST_ROUNDINGS: f64 = 1000.0;
@@ -65,6 +65,15 @@ impl Disc {
 
     pub fn is_leaving(&self) -> bool {
         matches!(self.state, DiscState::Leaving { .. })
+    }
+
+    /// Returns the arrival of a motion that did not rest.
+    pub fn arrival(&self) -> DiscArrival {
+        DiscArrival {
+            rows: self.rows.clone(),
+            along: self.along.clone(),
+            exceeds_limit: false,
+        }
     }
 
     /// Returns true if the unit vector turns faster and faster on the way to zero.
@@ -185,7 +194,10 @@ impl Disc {
             (DiscVerdict::Slides(along), _) => {
                 self.along.clone_from(along);
                 DiscState::Leaving {
-                    moved: rounding.max(2.0 * norm(self.velocity(functions))),
+                    // The switching function stays positive where the motion has left.
+                    moved: rounding
+                        .max(2.0 * norm(self.velocity(functions)))
+                        .max(self.floor),
                 }
             }
         };

@@ -18,9 +18,11 @@ const ADDITIONAL_POINTS: usize = 4;
 const MAX_DIFFERENCE: f64 = 1e-10;
 
 impl SidedModel {
-    /// Finds the guards that vanish with the functions of these held rows and the rates of closed contacts.
+    /// Finds the guards and the rates of contacts that vanish with the functions of these held rows and the rates of closed
+    /// contacts.
     pub(super) fn find_implied_guards(&mut self, held: &[usize]) {
         self.implied_guards.clear();
+        self.implied_contacts.clear();
         let first_rate = self.guards.len();
         let rates = self.closed_contacts().iter();
         let rates = rates.map(|(contact, _)| first_rate + contact);
@@ -54,7 +56,11 @@ impl SidedModel {
             size > 0.0 && rest.is_some_and(|rest| rest.amax() <= MAX_DIFFERENCE * size)
         };
         let others = (0..self.guard_count()).filter(|guard| !own.contains(guard));
-        self.implied_guards = others.filter(is_implied).collect();
+        let implied_guards = others.filter(is_implied).collect();
+        let contacts = 0..values[0].len() - first_rate;
+        let is_held = |contact: &usize| is_implied(&(first_rate + contact));
+        let implied_contacts = contacts.filter(is_held).collect();
+        (self.implied_guards, self.implied_contacts) = (implied_guards, implied_contacts);
     }
 
     /// Returns the guards and the rates of the contacts at random points.

@@ -7,7 +7,7 @@ use eomgen_codegen::program::evaluator::{Evaluator, ImpactValues, Point, Sliding
 use eomgen_sim::contact_friction::ContactMode;
 use eomgen_sim::friction_discs::{DiscArrival, DiscVerdict, decide_with_discs};
 use eomgen_sim::sliding_modes::{
-    Arrival, Rates, Sharing, Verdict, reduce_largest, solve_least_squares,
+    Arrival, Rates, Sharing, Verdict, reduce_largest, solve_holding, solve_least_squares,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -58,6 +58,8 @@ pub struct SidedModel {
     pub(super) drawn_values: Vec<Vec<f64>>,
     /// Guards that vanish with the held functions and the rates of closed contacts.
     pub(super) implied_guards: Vec<usize>,
+    /// Contacts whose rates vanish with them.
+    pub(super) implied_contacts: Vec<usize>,
 }
 
 impl SidedModel {
@@ -88,6 +90,7 @@ impl SidedModel {
             own_effects: Vec::new(),
             drawn_values: Vec::new(),
             implied_guards: Vec::new(),
+            implied_contacts: Vec::new(),
             evaluator,
         }
     }
@@ -284,11 +287,13 @@ impl SidedModel {
             }
             self.evaluate(at);
             let right = self.surface_values(held, |surface| -surface.rate);
-            let change = solve_least_squares(&self.matrix(held), right);
+            let (change, can_hold) = solve_holding(&self.matrix(held), &right);
             for (surface, change) in held.iter().zip(&change) {
                 self.inputs[self.first_side + surface] += change;
             }
-            self.share_forces(held);
+            if can_hold {
+                self.share_forces(held);
+            }
             if change.amax() <= MAX_SETTLED_CHANGE {
                 return;
             }
@@ -302,10 +307,24 @@ impl SidedModel {
             .iter()
             .map(|row| self.sign(*row, self.inputs[first + row]));
         let mut signs: Vec<f64> = signs.collect();
-        reduce_largest(&self.matrix_by_signs(held), &mut signs);
+        reduce_largest(&self.matrix_by_signs(held), &mut signs, &self.groups(held));
         for (row, sign) in held.iter().zip(signs) {
             self.inputs[first + row] = self.side_of_sign(*row, sign);
         }
+    }
+
+    /// Returns the places of each surface and of each disc among held rows.
+    fn groups(&self, held: &[usize]) -> Vec<Range<usize>> {
+        let disc = |row: &usize| self.discs.iter().position(|rows| rows.contains(row));
+        let mut end = 0;
+        let groups = held.chunk_by(|a, b| disc(a).is_some() && disc(a) == disc(b));
+        groups
+            .map(|group| {
+                let begin = end;
+                end += group.len();
+                begin..end
+            })
+            .collect()
     }
 
     /// Sets the sides and evaluates the effects of the surfaces at a point.

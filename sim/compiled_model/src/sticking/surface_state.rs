@@ -7,8 +7,14 @@ pub(super) enum SurfaceState {
     Free,
     /// The surface holds the motion, which came from this side, -1 or 1, at this time, s.
     Holding { from: f64, since: f64 },
-    /// The surface exerts its largest force to this side, and other surfaces hold the motion.
-    Bearing { from: f64, side: f64 },
+    /// The surface exerts its largest force to this side, and other surfaces hold the motion since this time, s, while its
+    /// function stays within the errors `allowed` at once and per second.
+    Bearing {
+        from: f64,
+        side: f64,
+        since: f64,
+        allowed: [f64; 2],
+    },
     /// Closed contacts stop the motion since this time, s, and the surface exerts no force while its function stays within
     /// the errors `allowed` at once and per second.
     Unloaded {
@@ -36,10 +42,11 @@ impl SurfaceState {
         }
     }
 
-    /// Returns true if closed contacts stopped the motion, and move it at this time (s) and value of the function.
-    pub(super) fn is_moved_by_contacts(self, (t, function): (f64, f64)) -> bool {
+    /// Returns true if contacts or other surfaces stopped the motion, and it moves at this time (s) and value of the
+    /// function.
+    pub(super) fn is_moved_by_others(self, (t, function): (f64, f64)) -> bool {
         match self {
-            Self::Unloaded { since, allowed, .. } => {
+            Self::Unloaded { since, allowed, .. } | Self::Bearing { since, allowed, .. } => {
                 function.abs() > find_allowed(allowed, t - since)
             }
             _ => false,

@@ -28,13 +28,18 @@ pub(super) enum KnownSides {
     Everywhere,
 }
 
+/// States of surfaces and discs with the fixed sides.
+pub(crate) struct SavedStates {
+    places: Vec<SurfaceState>,
+    discs: Vec<Disc>,
+    kept: Option<Vec<f64>>,
+}
+
 /// States of all surfaces along a motion.
 pub(crate) struct SurfaceStates {
     pub(super) sided: SidedModel,
     /// False if no surface can hold the motion.
     pub(super) can_hold: bool,
-    /// False while closed contacts exert forces, which the sides that hold the motion do not balance.
-    pub(super) may_hold: bool,
     /// Index of the guard of the first disc.
     pub(super) first_disc_guard: usize,
     pub(super) places: Vec<SurfaceState>,
@@ -58,7 +63,6 @@ impl SurfaceStates {
         let count = sided.surface_count();
         Self {
             can_hold: sided.can_hold_motion(),
-            may_hold: sided.can_hold_motion(),
             first_disc_guard: sided.guard_count(),
             places: vec![SurfaceState::Free; count],
             discs: sided.discs().iter().cloned().map(Disc::new).collect(),
@@ -75,7 +79,7 @@ impl SurfaceStates {
 
     /// Lets the motion cross all surfaces.
     pub fn disable_holding(&mut self) {
-        (self.can_hold, self.may_hold) = (false, false);
+        self.can_hold = false;
     }
 
     /// Returns true if a surface can hold the motion.
@@ -96,21 +100,11 @@ impl SurfaceStates {
         self.first_disc_guard = self.sided.guard_count() + count;
     }
 
-    /// Sets the closed contacts with their modes, whose forces act with those of the surfaces. With `None` forces of closed contacts are
-    /// not known, and the motion crosses all surfaces. Returns true if the contacts changed.
-    pub fn set_closed_contacts(&mut self, closed: Option<&[(usize, ContactMode)]>) -> bool {
-        let may_hold = self.can_hold && closed.is_some();
-        if self.may_hold && !may_hold {
-            self.places.fill(SurfaceState::Free);
-            self.discs
-                .iter_mut()
-                .for_each(|disc| disc.state = DiscState::Sliding);
-        }
-        let closed = closed.unwrap_or_default();
-        if self.may_hold == may_hold && self.sided.closed_contacts() == closed {
+    /// Sets the closed contacts with their modes, whose forces act with those of the surfaces. Returns true if they changed.
+    pub fn set_closed_contacts(&mut self, closed: &[(usize, ContactMode)]) -> bool {
+        if self.sided.closed_contacts() == closed {
             return false;
         }
-        self.may_hold = may_hold;
         self.sided.set_closed_contacts(closed);
         self.known = KnownSides::Nothing;
         true
@@ -321,9 +315,9 @@ impl SurfaceStates {
 
     /// Replaces the guards `out` of surfaces that hold or release the motion; the first call
     /// starts the motion. The guard of a surface that holds changes its sign if its force reaches
-    /// a limit, that of a surface whose motion contacts stop if they move it.
+    /// a limit, that of a surface whose motion contacts or other surfaces stop if they move it.
     pub fn write_guards(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
-        if !self.may_hold {
+        if !self.can_hold {
             return;
         }
         if self.begin.is_none() {
@@ -344,11 +338,16 @@ impl SurfaceStates {
             match *place {
                 SurfaceState::Free => {}
                 SurfaceState::Holding { from, .. } => *slot = from * 4.0 * side * (1.0 - side),
-                SurfaceState::Bearing { from, .. } => *slot = from,
                 SurfaceState::Unloaded {
                     from,
                     since,
                     allowed,
+                }
+                | SurfaceState::Bearing {
+                    from,
+                    since,
+                    allowed,
+                    ..
                 } => *slot = from * (find_allowed(allowed, at.0 - since) - slot.abs()),
                 SurfaceState::Leaving { side, moved } => *slot += side * moved,
             }
@@ -368,6 +367,32 @@ impl SurfaceStates {
         }
     }
 
+    /// Returns true if surfaces that hold the motion, with closed contacts, keep the distance of a contact.
+    pub fn keeps_distance(&mut self, contact: usize) -> bool {
+        self.update_implied_guards();
+        self.sided.implied_contacts.contains(&contact)
+    }
+
+    /// Returns the states of surfaces and discs, for [`SurfaceStates::restore`].
+    pub fn save(&self) -> SavedStates {
+        SavedStates {
+            places: self.places.clone(),
+            discs: self.discs.clone(),
+            kept: self.kept.clone(),
+        }
+    }
+
+    /// Restores states of surfaces and discs.
+    pub fn restore(&mut self, saved: SavedStates) {
+        let SavedStates {
+            places,
+            discs,
+            kept,
+        } = saved;
+        (self.places, self.discs, self.kept) = (places, discs, kept);
+        self.known = KnownSides::Nothing;
+    }
+
     /// Replaces the bounds of guards as [`SurfaceStates::write_guards`] replaces the guards. Those of
     /// surfaces that hold are unknown.
     pub fn bound_guards(&self, out: &mut [Enclosure]) {
@@ -378,10 +403,9 @@ impl SurfaceStates {
             let slot = &mut out[self.sided.guard_index(surface)];
             match *place {
                 SurfaceState::Free => {}
-                SurfaceState::Holding { .. } | SurfaceState::Unloaded { .. } => {
-                    *slot = Enclosure::UNKNOWN;
-                }
-                SurfaceState::Bearing { from, .. } => *slot = Enclosure::constant(from),
+                SurfaceState::Holding { .. }
+                | SurfaceState::Unloaded { .. }
+                | SurfaceState::Bearing { .. } => *slot = Enclosure::UNKNOWN,
                 SurfaceState::Leaving { side, moved } => {
                     *slot = slot.add_enclosure(Enclosure::constant(side * moved));
                 }

@@ -32,14 +32,15 @@ type Reached<'r> = (&'r [usize], &'r [Arrival], &'r [(usize, DiscArrival)]);
 impl SurfaceStates {
     /// Decides the effect of all surfaces on which the motion is, after rates jumped or contacts changed.
     pub fn decide_again(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
-        if !self.may_hold || self.begin.is_none() {
+        if !self.can_hold || self.begin.is_none() {
             return;
         }
         self.release_moved(at, inputs);
         let (functions, allowed) = self.functions_and_roundings(at, inputs);
         let touches = |surface: &usize| functions[*surface].abs() <= allowed[*surface];
         let touching: Vec<usize> = (0..self.places.len()).filter(touches).collect();
-        let discs = self.held_discs(at, inputs);
+        let mut discs = self.held_discs(at, inputs);
+        discs.extend(self.stopped_discs(&functions, &allowed));
         if touching.is_empty() && discs.is_empty() {
             return;
         }
@@ -69,7 +70,7 @@ impl SurfaceStates {
         t: f64,
         state: &mut [f64],
     ) {
-        if !self.may_hold {
+        if !self.can_hold {
             return;
         }
         let near = self.sided.evaluate_functions((t_before, before), inputs);
@@ -80,14 +81,17 @@ impl SurfaceStates {
         let mut arrivals = Vec::new();
         let overcome = self.find_overcome((t, state), inputs);
         let came_from = self.arrival_sides(&near);
-        for (surface, place) in self.places.iter().enumerate() {
+        let (left, has_new_force) = self.free_left(t, &beyond);
+        is_new |= has_new_force;
+        let places = self.places.iter().enumerate();
+        for (surface, place) in places.filter(|(surface, _)| !left.contains(surface)) {
             let (from, to) = (near[surface], beyond[surface]);
             let moved = place.displacement();
             let is_crossed = came_from[surface] * (to + moved) < 0.0;
             let near = NEAR_MOVE_FACTOR * (to - from).abs();
             let near = near.min(MAX_NEAR_FRACTION * self.sizes[surface]) + roundings[surface];
             let is_near = to.abs() <= near.max(2.0 * place.displacement().abs());
-            is_new |= place.is_moved_by_contacts((t, to));
+            is_new |= place.is_moved_by_others((t, to));
             // A surface that the motion has not left yet may hold it again.
             if place.is_on() || is_crossed || is_near {
                 is_new |= is_crossed && !place.is_on();
@@ -111,6 +115,29 @@ impl SurfaceStates {
         let reached = (&touching[..], &arrivals[..], &discs[..]);
         self.decide_states((t, state), inputs, reached, &came_from);
         self.correct_onto_surfaces((t, state), inputs, true);
+    }
+
+    /// Frees the surfaces whose motion other surfaces no longer stop, given the functions at a time (s). Returns them, and
+    /// true if the force of one changes its side.
+    fn free_left(&mut self, t: f64, functions: &[f64]) -> (Vec<usize>, bool) {
+        let (mut left, mut has_new_force) = (Vec::new(), false);
+        for (surface, place) in self.places.iter_mut().enumerate() {
+            let SurfaceState::Bearing { side, .. } = *place else {
+                continue;
+            };
+            let function = functions[surface];
+            if !place.is_moved_by_others((t, function)) {
+                continue;
+            }
+            has_new_force |= side * function < 0.0;
+            left.push(surface);
+            *place = SurfaceState::Free;
+            if let Some(kept) = &mut self.kept {
+                kept[surface] = function.signum();
+            }
+            self.known = KnownSides::Nothing;
+        }
+        (left, has_new_force)
     }
 
     /// Releases the motion from surfaces that a jump of the rates moved it away from.
@@ -148,7 +175,8 @@ impl SurfaceStates {
                     let by_force = self.sided.own_force_rate(surface) * (at.0 - since).abs();
                     MAX_FORCE_DRIFT_FRACTION * by_force
                 }
-                SurfaceState::Unloaded { since, allowed, .. } => {
+                SurfaceState::Unloaded { since, allowed, .. }
+                | SurfaceState::Bearing { since, allowed, .. } => {
                     find_allowed(allowed, at.0 - since)
                 }
                 _ => 0.0,
@@ -183,14 +211,7 @@ impl SurfaceStates {
                 false => most.min(NEAR_MOVE_FACTOR * norm(&moved)),
             };
             if norm(velocity) <= reach + norm(disc.velocity(&roundings)) {
-                found.push((
-                    index,
-                    DiscArrival {
-                        rows: disc.rows.clone(),
-                        along: disc.along.clone(),
-                        exceeds_limit: false,
-                    },
-                ));
+                found.push((index, disc.arrival()));
             } else if has_passed {
                 disc.state = DiscState::Sliding;
                 disc.follow(beyond);
@@ -198,6 +219,15 @@ impl SurfaceStates {
             }
         }
         found
+    }
+
+    /// Returns the discs that do not hold the motion although their velocity is within these values of the functions.
+    fn stopped_discs(&self, functions: &[f64], allowed: &[f64]) -> Vec<(usize, DiscArrival)> {
+        let stopped = self.discs.iter().enumerate().filter(|(_, disc)| {
+            !disc.is_holding() && norm(disc.velocity(functions)) <= norm(disc.velocity(allowed))
+        });
+        let arrivals = stopped.map(|(index, disc)| (index, disc.arrival()));
+        arrivals.collect()
     }
 
     /// Returns the discs that hold the motion; their force may exceed its limit.
@@ -246,7 +276,7 @@ impl SurfaceStates {
     /// motion if an input moves a surface away or a force exceeds its limit. The sides of surfaces that cannot hold the
     /// motion must follow from the state.
     pub fn update(&mut self, at: (f64, &[f64]), (earlier, inputs): (&[f64], &[f64])) {
-        if !self.may_hold {
+        if !self.can_hold {
             return;
         }
         if self.begin.is_some() && !self.is_free() {
@@ -272,7 +302,8 @@ impl SurfaceStates {
             for (surface, place) in self.places.iter_mut().enumerate() {
                 let value = functions[surface];
                 let has_left = match *place {
-                    SurfaceState::Leaving { side, moved } => side * value > 2.0 * moved,
+                    // Forces may turn back a motion that has barely left.
+                    SurfaceState::Leaving { moved, .. } => value.abs() > 2.0 * moved,
                     _ => jumps[surface],
                 };
                 if has_left && *place != SurfaceState::Free {
@@ -301,12 +332,17 @@ impl SurfaceStates {
             disc.follow(&functions);
             self.known = KnownSides::Nothing;
         }
-        for (size, value) in self.sizes.iter_mut().zip(&functions) {
-            *size = size.max(value.abs());
-        }
+        self.note_sizes(&functions);
         for disc in &mut self.discs {
             let largest = norm(disc.velocity(&self.sizes));
             disc.set_roundings(MAX_DRIFT_FRACTION * largest, self.tolerance * largest);
+        }
+    }
+
+    /// Notes the magnitudes of the functions.
+    fn note_sizes(&mut self, functions: &[f64]) {
+        for (size, value) in self.sizes.iter_mut().zip(functions) {
+            *size = size.max(value.abs());
         }
     }
 
@@ -333,6 +369,7 @@ impl SurfaceStates {
         self.begin = Some(at.0);
         self.known = KnownSides::Nothing;
         let functions = self.sided.evaluate_functions(at, inputs);
+        self.note_sizes(&functions);
         let roundings = self.sided.function_roundings(at, inputs);
         let touching: Vec<usize> = (0..self.places.len())
             .filter(|surface| {
@@ -444,7 +481,12 @@ impl SurfaceStates {
             };
             let new = match verdict {
                 Verdict::Holds(_) => SurfaceState::Holding { from, since },
-                Verdict::AtLimit(side) => SurfaceState::Bearing { from, side },
+                Verdict::AtLimit(side) => SurfaceState::Bearing {
+                    from,
+                    side,
+                    since: at.0,
+                    allowed: self.find_allowed_errors(*surface),
+                },
                 Verdict::Releases(side) => {
                     let value = functions[*surface];
                     match side * value > 2.0 * roundings[*surface] {
@@ -477,7 +519,7 @@ impl SurfaceStates {
         let mut passing = Vec::new();
         for (surface, _) in stopped {
             let (place, function) = (self.places[surface], functions[surface]);
-            let side = match place.is_moved_by_contacts((t, function)) {
+            let side = match place.is_moved_by_others((t, function)) {
                 true => Some(function.signum()),
                 false => self.sided.side_of_contact_motion(surface),
             };
@@ -485,15 +527,20 @@ impl SurfaceStates {
                 passing.push((surface, side));
                 continue;
             }
-            let errors = [self.sizes[surface], self.sided.own_effects[surface]];
             self.places[surface] = SurfaceState::Unloaded {
                 from: side_of_arrival(place, came_from[surface]),
                 since: t,
-                allowed: errors.map(|size| self.tolerance * size),
+                allowed: self.find_allowed_errors(surface),
             };
         }
         let (touching, arrivals) = others.into_iter().unzip();
         (touching, arrivals, passing)
+    }
+
+    /// Returns the errors of a surface's function, at once and per second, within which others stop the motion.
+    fn find_allowed_errors(&self, surface: usize) -> [f64; 2] {
+        let sizes = [self.sizes[surface], self.sided.own_effects[surface]];
+        sizes.map(|size| self.tolerance * size)
     }
 
     /// Frees the surfaces without a jump of the rates and returns the others.

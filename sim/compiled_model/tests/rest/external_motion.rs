@@ -103,6 +103,31 @@ fn ball_bounces_and_rests_as_in_its_closed_form() {
 }
 
 #[test]
+fn contact_opens_when_friction_reverses_at_an_impact() {
+    // Friction on a rod presses a sleeve of twice its mass against a wall until the rod rebounds.
+    let model = of_text(
+        "[model]\nname = \"sleeve\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
+         F = { value = 3, unit = \"N\" }\n[coordinates]\n\
+         a = { unit = \"m\", initial = 1, initial_rate = -4 }\nb = { unit = \"m\" }\n\
+         [kinetic]\nt = \"1/2*m*dot(a)^2 + m*dot(b)^2\"\n\
+         [definitions]\nf = \"F*sign(dot(a) - dot(b))\"\n[forces]\n\
+         rod = { on = \"a\", value = \"-f\" }\nsleeve = { on = \"b\", value = \"f\" }\n\
+         [impacts]\nstop = { when = \"a\", restitution = 0.5 }\n\
+         wall = { when = \"b\", restitution = 0 }\n",
+    );
+    let (mut t, mut y) = (0.0, vec![1.0, 0.0, -4.0, 0.0]);
+    let mut motion = start(&model, &y, &[]);
+    // The rod hits with sqrt(10) m/s and leaves with half of it. Both then have a third of that.
+    let events = simulate(&mut motion, &mut t, &mut y, 1.0, 3);
+    let speed = 10.0_f64.sqrt() / 6.0;
+    assert!(
+        y[2..].iter().all(|rate| (rate - speed).abs() < 1e-8),
+        "{y:?}"
+    );
+    assert!(events < 10, "{events}");
+}
+
+#[test]
 fn friction_holds_until_an_input_releases_the_block() {
     let model = of_text(
         "[model]\nname = \"block\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\

@@ -294,6 +294,19 @@ fn gradients_through_sticking_equal_differences() -> Result<(), Error> {
 }
 
 #[test]
+fn gradients_through_sticking_of_a_brake_that_is_open_at_first_equal_differences()
+-> Result<(), Error> {
+    let text = "[model]\nname = \"brake\"\n[parameters]\nJ = { value = 1, unit = \"kg m^2\" }\n\
+                M = { value = 10, unit = \"N m\" }\nk = { value = 5, unit = \"N m\" }\n\
+                w = { value = 3, unit = \"1/s\" }\n[coordinates]\n\
+                q = { unit = \"rad\", initial_rate = 3 }\n[states]\n\
+                N = { unit = \"N m\", rate = \"w*(M - N)\" }\n\
+                [kinetic]\nt = \"1/2*J*dot(q)^2\"\n[potential]\nv = \"1/2*k*q^2\"\n\
+                [forces]\nbrake = { on = \"q\", value = \"-N*sign(dot(q))\" }\n";
+    compare_text(text, None, 1.0)
+}
+
+#[test]
 fn gradients_of_flexible_arm_with_play_equal_differences() -> Result<(), Error> {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
     let place = folder.join("../../model-spec/models/planetary_arm.toml");

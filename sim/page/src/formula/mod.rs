@@ -30,6 +30,11 @@ pub fn formula(formula: &Formula) -> Markup {
     }
 }
 
+/// Returns the symbol of a quantity by its name in the specification: θ with a dot for `theta_dot`.
+pub fn quantity_symbol(name: &str) -> Markup {
+    formula(&Formula::Symbol(Symbol::from_state(name)))
+}
+
 /// Returns a number as MathML: a mantissa, times a power of ten if there is an exponent.
 pub(crate) fn power_of_ten(mantissa: &str, exponent: Option<&str>) -> Markup {
     let signed = |number: &str| number.replace('-', "\u{2212}");
@@ -215,6 +220,9 @@ fn symbol(symbol: &Symbol) -> Markup {
         symbol.parts()
     };
     let dots = symbol.dots + named.dots;
+    if let Some(words) = words(head, &parts) {
+        return dotted(&identifier(&words), dots);
+    }
     let head = dotted(&identifier(letter(head).unwrap_or(head)), dots);
     if !symbol.owners.is_empty() {
         return with_subscripts(&head, symbol.owners.iter().map(self::symbol));
@@ -228,6 +236,16 @@ fn symbol(symbol: &Symbol) -> Markup {
     }
     let parts = parts.into_iter().map(|part| letter(part).unwrap_or(part));
     element(&head, &parts.collect::<Vec<_>>().join(","))
+}
+
+/// Fewest letters of the words of a name that is no letter with a subscript.
+const FEWEST_LETTERS: [usize; 2] = [8, 4];
+
+/// Returns the words of a name such as `stabilisation_rate`, which is no letter with a subscript.
+fn words(head: &str, parts: &[&str]) -> Option<String> {
+    let [rest] = parts else { return None };
+    let are_words = head.len() >= FEWEST_LETTERS[0] && rest.len() >= FEWEST_LETTERS[1];
+    are_words.then(|| format!("{head}\u{a0}{rest}"))
 }
 
 fn dotted(head: &Markup, dots: u8) -> Markup {
@@ -264,8 +282,12 @@ pub(crate) fn entry_name(letter: &str, rows: &[&Formula]) -> Markup {
 /// drawings on a canvas.
 pub fn name_letters(name: &str) -> (String, String) {
     let symbol = Symbol::from_state(name);
-    let (head, parts) = symbol.parts();
-    let mut head = letter(head).unwrap_or(head).to_owned();
+    let (head, mut parts) = symbol.parts();
+    let words = words(head, &parts);
+    if words.is_some() {
+        parts.clear();
+    }
+    let mut head = words.unwrap_or_else(|| letter(head).unwrap_or(head).to_owned());
     match symbol.dots {
         0 => {}
         1 => head.push('\u{307}'),

@@ -93,6 +93,42 @@ function round(least) {
   return power * ([1, 2, 5, 10].find((step) => step * power >= least * (1 - 1e-12)) ?? 10);
 }
 
+/** Smallest range of an axis that is shown, as a fraction of the largest value. */
+const FINEST = 1e-5;
+
+/** Returns the limits of an axis, rounded so that they seldom change. */
+function ends(values) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const value of values) {
+    if (Number.isFinite(value)) {
+      low = Math.min(low, value);
+      high = Math.max(high, value);
+    }
+  }
+  if (low > high) return [-1, 1];
+  const size = Math.max(Math.abs(low), Math.abs(high));
+  // Variations of the last digits are shown as a constant.
+  if (high - low <= FINEST * size || high === low) {
+    const half = size > 0 ? 0.5 * size : 1;
+    return [low - half, high + half];
+  }
+  const step = round((high - low) / 4);
+  return [step * Math.floor(low / step), step * Math.ceil(high / step)];
+}
+
+/** Returns the labels of an axis' ends, with as many digits as distinguish them. */
+function endLabels(low, high) {
+  for (let digits = 3; ; digits += 1) {
+    const labels = [low, high].map((end) => shown(end, digits));
+    if (labels[0] !== labels[1] || digits === 8) return labels;
+  }
+}
+
+/** Replaces a rounding error by 0. `noise`: the largest one. */
+function withoutNoise(value, noise) {
+  return Math.abs(value) < noise ? 0 : value;
+}
+
 /** Returns the multiple of a unit in which a magnitude is at least 1: its size in the unit and its name. */
 function multiple(magnitude, unit) {
   const takesPrefix = /^(m|s|N|rad|V|A|W|J|Pa)(?=$|\/| )/.test(unit);

@@ -1,10 +1,11 @@
 //! Sliders with number fields for the quantities that a page can change.
 
-use eomgen_codegen::symbolic::formula::{Formula, Symbol};
 use eomgen_model_spec::model::Parameter;
 use maud::{Markup, html};
 
-use crate::formula::formula;
+use crate::formula::quantity_symbol;
+use crate::number::raised_digit;
+use crate::prose::prose;
 
 const SLIDER_STEPS: f64 = 400.0;
 
@@ -58,8 +59,7 @@ impl<'m> Slider<'m> {
 
     /// Returns the markup. The script identifies it by `kind` and index.
     pub fn control(&self, kind: &str) -> Markup {
-        let symbol = formula(&Formula::Symbol(Symbol::from_state(&self.name)));
-        self.labelled_control(kind, &symbol)
+        self.labelled_control(kind, &quantity_symbol(&self.name))
     }
 
     /// Returns the markup with words instead of a symbol as its label.
@@ -92,7 +92,7 @@ impl<'m> Slider<'m> {
                 input type="number" step="any" value=(value) aria-label={ (name) " in " (unit) };
                 input id=(id) type="range" min=(low) max=(high) step=(step) value=(value)
                     aria-label={ (name) " in " (unit) ", slider" };
-                @if !doc.is_empty() { small { (doc) } }
+                @if !doc.is_empty() { small { (prose(doc)) } }
             }
         }
     }
@@ -133,7 +133,7 @@ pub fn format_unit(unit: &str) -> String {
     }
     // A prefix is followed by its unit.
     let unit = &unit
-        .split(' ')
+        .split([' ', '*'])
         .map(|part| match part.strip_prefix('u') {
             Some(rest) if rest.starts_with(char::is_alphabetic) => format!("µ{rest}"),
             _ => part.to_owned(),
@@ -147,10 +147,7 @@ pub fn format_unit(unit: &str) -> String {
         match letter {
             '^' => {}
             '-' if raised => text.push('⁻'),
-            '0'..='9' if raised => {
-                let digit = letter as usize - '0' as usize;
-                text.extend("⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(digit));
-            }
+            '0'..='9' if raised => text.push(raised_digit(letter)),
             other => text.push(other),
         }
     }
@@ -168,6 +165,7 @@ mod tests {
             ("kg m^-10", "kg m⁻¹⁰"),
             ("um", "µm"),
             ("N m", "N m"),
+            ("kg*m^2", "kg m²"),
             ("1", "1"),
             ("m^(1/2)", "m^(1/2)"),
         ] {

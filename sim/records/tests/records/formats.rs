@@ -985,7 +985,7 @@ load = "-m*g*l*cos(theta)"
 "#;
 
 #[test]
-fn prescribed_motion_without_record_is_at_rest() {
+fn prescribed_motion_is_a_spline_or_at_rest() {
     let source = eomgen_model_spec::source::Source::new("crane.toml", CRANE);
     let model = eomgen_model_spec::check(source).expect("a model").model;
     let folder = folder(DESCRIPTION, "t,angle\n", |t, a| format!("{t:.2},{a:.6}\n"));
@@ -1009,11 +1009,16 @@ fn prescribed_motion_without_record_is_at_rest() {
     let column = "[inputs.l]\ncolumn = \"angle\"\nunit = \"m\"\n[channels.theta]";
     let given = DESCRIPTION.replace("[channels.theta]", column);
     write(folder.path(), "dataset.toml", &given);
-    let refusal = read_dataset(&path, &model)
-        .expect_err("a prescribed motion")
-        .to_string();
+    let dataset = read_dataset(&path, &model).unwrap_or_else(|refusal| panic!("{refusal}"));
+    let place = names.iter().position(|name| *name == "l").expect("l");
+    let record = &dataset.train[0];
+    let middle = 0.5 * (record.times[10] + record.times[11]);
+    assert!(!record.inputs.is_held(place) && record.inputs.evaluate(middle)[place + 1] != 0.0);
+    let gain = given.replace("[inputs.l]", "[inputs.l]\ngain = { sd = 0.1 }");
+    write(folder.path(), "dataset.toml", &gain);
+    let refusal = read_dataset(&path, &model).expect_err("a gain").to_string();
     assert!(
-        refusal.contains("input `l` is a prescribed motion"),
+        refusal.contains("the gain of `l`, a prescribed motion, cannot be estimated"),
         "{refusal}"
     );
 }

@@ -137,7 +137,10 @@ fn check_names(oracle: &Oracle, variant: &dyn Variant) -> Check {
     let found = variant.coordinate_names();
     let same = found == oracle.names();
     let detail = if same {
-        format!("{} coordinates", found.len())
+        match found.len() {
+            1 => "1 coordinate".to_owned(),
+            count => format!("{count} coordinates"),
+        }
     } else {
         format!("found {found:?}, expected {:?}", oracle.names())
     };

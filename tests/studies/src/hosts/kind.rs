@@ -24,7 +24,7 @@ impl Kind {
             Self::PlaneFriction => "dry friction in a plane",
             Self::Impacts => "impacts",
             Self::ContactFriction => "impacts with contact friction",
-            Self::Constraints => "constraints, start beside them",
+            Self::Constraints => "constraints, start violates them",
             Self::Jumps => "energies that jump",
             Self::InputFunction => "input as a function of time",
             Self::Controller => "sampled controllers",

@@ -272,13 +272,40 @@ fn moving_base_is_no_equilibrium() {
 }
 
 #[test]
+fn prescribed_motion_rests_at_an_equilibrium() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = "[model]\nname = \"load\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
+                l = { value = 2, unit = \"m\" }\ng = { value = 9.81, unit = \"m/s^2\" }\n\
+                [coordinates]\ntheta = { unit = \"rad\" }\n[inputs]\n\
+                s = { unit = \"m\", rates = 2 }\nM = { unit = \"N m\" }\n\
+                [definitions]\nplace = [\"s + l*sin(theta)\", \"-l*cos(theta)\"]\n\
+                [kinetic]\nT = \"1/2*m*dot(dot(place), dot(place))\"\n\
+                [potential]\nV = \"-m*g*l*cos(theta)\"\n[forces]\ntorque = { on = \"theta\", value = \"M\" }\n";
+    let model = write_model(folder.path(), text);
+    let found = run(&["trim", &model, "--fix", "theta=0.3"]);
+    assert!(
+        found.status.success() && found.stderr.is_empty(),
+        "{found:?}"
+    );
+    let found: Value = serde_json::from_slice(&found.stdout).expect("JSON");
+    assert_eq!(
+        [&found["at"]["s_dot"], &found["at"]["s_ddot"]].map(Value::as_f64),
+        [Some(0.0); 2]
+    );
+    let torque = found["at"]["M"].as_f64().expect("a torque");
+    assert!((torque - 19.62 * 0.3_f64.sin()).abs() < 1e-9, "{torque}");
+    let accelerated = run(&["trim", &model, "--fix", "theta=0.3", "--fix", "M=0"]);
+    assert!(!accelerated.status.success(), "{accelerated:?}");
+}
+
+#[test]
 fn surfaces_of_inputs_are_named_without_their_units() {
     let folder = tempfile::tempdir().expect("a folder");
     let model = write_model(folder.path(), OSCILLATOR);
     let events = folder.path().join("events.csv").display().to_string();
     let out = folder.path().join("out.csv").display().to_string();
     for (input, surface) in [
-        ("u=10*above(t - 0.5)", "-0.5 + t"),
+        ("u=10*t*above(t - 0.5)", "-0.5 + t"),
         ("u=2*above(sin(3*t) - 0.25) kN", "-0.25 + sin(3*t)"),
         ("u=max(t^2 - 1, 0)*1e-3 kN", "-1 + t^2"),
     ] {

@@ -29,12 +29,15 @@ pub struct BrowserSettings {
     pub width: u32,
     pub dark: bool,
     pub still: bool,
+    /// True if scripts of the page run.
+    pub scripts: bool,
 }
 
 pub const WIDE_WINDOW: BrowserSettings = BrowserSettings {
     width: 1280,
     dark: false,
     still: false,
+    scripts: true,
 };
 
 /// Returns the observations of the probe on a page.
@@ -44,8 +47,14 @@ pub fn run_probe(browser: &str, page: &Path, look: BrowserSettings) -> Value {
 
 pub fn run_probe_script(probe: &str, browser: &str, page: &Path, look: BrowserSettings) -> Value {
     let script = |name: &str| project().join("tests/tests/hosts/page").join(name);
-    let BrowserSettings { width, dark, still } = look;
-    let look = serde_json::json!({ "width": width, "dark": dark, "still": still });
+    let BrowserSettings {
+        width,
+        dark,
+        still,
+        scripts,
+    } = look;
+    let look =
+        serde_json::json!({ "width": width, "dark": dark, "still": still, "scripts": scripts });
     let profile = tempfile::tempdir().expect("a folder");
     let output = Command::new("node")
         .arg(script("look.mjs"))

@@ -22,7 +22,7 @@ function ink(element) {
   const wait = (time) => new Promise((done) => setTimeout(done, time));
   for (const folded of document.querySelectorAll("details")) folded.open = true;
   await wait(500);
-  const seen = { smallest: Infinity, smallestText: "", identifiers: [], cut: [], columns: [], dots: [], backgrounds: [] };
+  const seen = { smallest: Infinity, smallestText: "", identifiers: [], cut: [], fields: [], columns: [], dots: [], backgrounds: [] };
   const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   for (let node = walker.nextNode(); node; node = walker.nextNode()) {
     const element = node.parentElement;
@@ -32,11 +32,13 @@ function ink(element) {
     const scale = svg ? svg.getBoundingClientRect().width / svg.viewBox.baseVal.width : 1;
     const size = Number.parseFloat(getComputedStyle(element).fontSize) * scale;
     if (size < seen.smallest) [seen.smallest, seen.smallestText] = [size, text];
-    // Descriptions of parameters are the author's.
-    if (!element.closest("code, pre, .control small") && /\b[A-Za-z]+_[A-Za-z0-9_]+\b|`/.test(text)) seen.identifiers.push(text);
+    if (!element.closest("code, pre") && /\b[A-Za-z]+_[A-Za-z0-9_]+\b|`/.test(text)) seen.identifiers.push(text);
   }
   for (const command of document.querySelectorAll("dd pre, pre.changes")) {
     if (command.scrollWidth > command.clientWidth) seen.cut.push(command.textContent);
+  }
+  for (const field of document.querySelectorAll("input[type=number]")) {
+    if (field.scrollWidth > field.clientWidth) seen.fields.push(field.value);
   }
   for (const cell of document.querySelectorAll("tbody th, tbody td, dd")) {
     const words = cell.querySelector("math, pre") ? [] : cell.textContent.trim().split(/\s+/);

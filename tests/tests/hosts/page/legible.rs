@@ -1,5 +1,5 @@
 //! Legibility of the tour, of the reports and of interactive pages: no lettering below 11 px in any window, no
-//! names of the program in prose, no cut commands, no columns of single words, dots of rates above their letters, and
+//! names of the program in prose, no cut commands and numbers, no columns of single words, dots of rates above their letters, and
 //! figures in the colours of the page.
 
 use std::path::Path;
@@ -18,14 +18,13 @@ const SMALLEST: f64 = 11.0;
 const NARROW_DARK: BrowserSettings = BrowserSettings {
     width: 400,
     dark: true,
-    still: false,
+    ..WIDE_WINDOW
 };
 
 /// Window of a tablet.
 const MEDIUM: BrowserSettings = BrowserSettings {
     width: 800,
-    dark: false,
-    still: false,
+    ..WIDE_WINDOW
 };
 
 /// Asserts the legibility of a page, narrow and dark, and medium and wide and light.
@@ -37,7 +36,7 @@ fn assert_legible(browser: &str, page: &Path) {
         let size = seen["smallest"].as_f64().expect("a number");
         // Scaled figures have rounded sizes.
         assert!(size > SMALLEST - 0.05, "{seen}");
-        for key in ["identifiers", "cut", "columns", "dots"] {
+        for key in ["identifiers", "cut", "fields", "columns", "dots"] {
             assert_eq!(seen[key], json!([]), "{key}: {seen}");
         }
         let figures = seen["backgrounds"].as_array().expect("a list");
@@ -121,20 +120,88 @@ fn reports_are_legible_and_name_their_records() {
     }
 }
 
+/// Returns what the functions for pictures on a canvas print for an expression.
+fn run_on_canvas(expression: &str) -> String {
+    let read = |file: &str| std::fs::read_to_string(project().join(file)).expect("a script");
+    let script = [
+        read("sim/page/src/play/canvas.js"),
+        read("cli/src/page/play/curves.js"),
+        format!("console.log(JSON.stringify({expression}))"),
+    ];
+    let output = std::process::Command::new("node")
+        .args(["-e", &script.concat()])
+        .output()
+        .expect("node can be run");
+    String::from_utf8_lossy(&output.stdout).trim().to_owned()
+}
+
 #[test]
 fn numbers_on_canvas_have_powers_of_ten() {
     if browser().is_none() {
         return;
     }
-    let script = project().join("sim/page/src/play/canvas.js");
-    let script = std::fs::read_to_string(script).expect("a script")
-        + "\nconsole.log([-2.5e-7, 1e16, 0, 12.5].map((value) => shown(value, 3)).join(' '))";
-    let output = std::process::Command::new("node")
-        .args(["-e", &script])
-        .output()
-        .expect("node can be run");
-    let written = String::from_utf8_lossy(&output.stdout);
-    assert_eq!(written, "−2.5·10⁻⁷ 1.0·10¹⁶ 0 12.5\n");
+    let written = run_on_canvas("[-2.5e-7, 1e16, 0, 12.5].map((value) => shown(value, 3))");
+    assert_eq!(written, r#"["−2.5·10⁻⁷","1.0·10¹⁶","0","12.5"]"#);
+}
+
+#[test]
+fn rounding_errors_on_canvas_are_zero_or_constant() {
+    if browser().is_none() {
+        return;
+    }
+    let written = run_on_canvas("[-1.75e-43, 2e-3].map((value) => withoutNoise(value, 3e-14))");
+    assert_eq!(written, "[0,0.002]");
+    let (low, high) = (16.2, 16.2 * (1.0 + 1e-7));
+    let written = run_on_canvas(&format!("endLabels(...ends([{low}, {high}]))"));
+    assert_eq!(written, r#"["8.1","24.3"]"#);
+    let written = run_on_canvas("endLabels(...ends([16.2, 16.21]))");
+    assert_eq!(written, r#"["16.2","16.21"]"#);
+}
+
+#[test]
+fn curves_have_different_colours() {
+    if browser().is_none() {
+        return;
+    }
+    assert_eq!(
+        run_on_canvas("distinctMarks([0, 1, 6, 12], 6)"),
+        "[0,1,2,3]"
+    );
+    assert_eq!(run_on_canvas("distinctMarks([0, 2, 2, 1], 3)"), "[0,2,1,1]");
+}
+
+#[test]
+fn pages_without_javascript_have_no_dead_elements() {
+    let Some(browser) = browser() else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let measured = run_report("discover");
+    let page = write_page(&path("crane"), &[], folder.path());
+    for page in [page, measured.file("out/report.html")] {
+        let look = BrowserSettings {
+            scripts: false,
+            ..WIDE_WINDOW
+        };
+        let seen = run_probe_script("unscripted.js", browser, &page, look);
+        assert_eq!(seen["dead"], json!([]), "{seen}");
+        assert_eq!(seen["message"], true, "{seen}");
+        let height = seen["controls"].as_f64().expect("a height");
+        assert!(height > 60.0, "{seen}");
+    }
+}
+
+#[test]
+fn fast_machine_starts_in_slow_motion() {
+    let speed = |spec: &Path| {
+        let page = run_accepted(&["page", &spec.display().to_string(), "--out", "-"]);
+        let (_, control) = page.split_once("<input id=\"speed\"").expect("a speed");
+        let (_, value) = control.split_once("value=\"").expect("a value");
+        let (value, _) = value.split_once('"').expect("its end");
+        value.parse::<f64>().expect("a number")
+    };
+    // Its natural frequency is about 20 kHz.
+    let resonator = speed(&project().join("examples/recipes/mems_resonator.toml"));
+    assert!((-5.0..-4.0).contains(&resonator), "{resonator}");
+    assert_eq!(speed(&path("crane")), 0.0);
 }
 
 #[test]
@@ -145,6 +212,12 @@ fn interactive_pages_are_legible() {
         path("crane"),
         path("planetary_arm"),
         drawn_example("double_pendulum"),
+        project().join("examples/constrained/flexible_coupler.toml"),
+        project().join("examples/friction/stribeck_belt.toml"),
+        project().join("examples/impacts/box_with_friction.toml"),
+        project().join("examples/recipes/hydraulic_axis.toml"),
+        project().join("examples/recipes/mems_resonator.toml"),
+        project().join("examples/recipes/robot_arm.toml"),
     ] {
         assert_legible(browser, &write_page(&spec, &[], folder.path()));
     }

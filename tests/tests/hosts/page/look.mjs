@@ -5,7 +5,7 @@ import { spawn } from "node:child_process";
 import { readFileSync } from "node:fs";
 
 const [browser, page, probe, profile, look] = process.argv.slice(2);
-const { width, dark, still } = JSON.parse(look);
+const { width, dark, still, scripts } = JSON.parse(look);
 const flags = ["--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe", `--user-data-dir=${profile}`];
 const child = spawn(browser, flags, { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
 const [to, from] = [child.stdio[3], child.stdio[4]];
@@ -58,6 +58,7 @@ try {
     { name: "prefers-reduced-motion", value: still ? "reduce" : "no-preference" },
   ];
   await ask("Emulation.setEmulatedMedia", { features });
+  if (!scripts) await ask("Emulation.setScriptExecutionDisabled", { value: true });
   const open = new Promise((done) => {
     loaded = done;
   });

@@ -22,7 +22,7 @@ fn write_page(spec: &Path, options: &[&str], folder: &Path) -> PathBuf {
     let out = folder.join("page.html");
     let (spec, place) = (spec.display().to_string(), out.display().to_string());
     let said = run_accepted(&[&["page", &spec, "--out", &place], options].concat());
-    assert_eq!(said, format!("open {place}\n"));
+    assert_eq!(said, format!("{place}: open it in a browser\n"));
     out
 }
 

@@ -60,7 +60,7 @@ fn report_slider_moves_found_friction() {
     }
     assert!(page.contains("default-src 'none'"));
     assert!(
-        page.contains("Found: Coulomb friction on q, <code>T_c</code> = "),
+        page.contains("Found: Coulomb friction on <span class=\"word\"><math><mi>q</mi></math>,</span> <math><msub><mi>T</mi><mi>c</mi></msub></math> = "),
         "the page does not print the verdict"
     );
     // The engine has 350 kB.

@@ -3,7 +3,7 @@
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::contact_friction::{ContactDecision, ContactMode};
 
-use super::super::tangents::ContactForces;
+use super::super::tangents::{ContactForces, Tangent};
 use super::super::{Contacts, Overlap, solve_rows};
 
 /// Rounding of a force, relative to the forces of its contact.
@@ -11,6 +11,9 @@ const FORCE_ROUNDING: f64 = 1e-12;
 
 /// Part of the effect of a tangential force on its own slip, with the reactions of other contacts, that is rounding.
 const MAX_INDEPENDENT_FRACTION: f64 = 1e-8;
+
+/// Acceleration of a slip that is rounding, relative to its terms.
+const ACCELERATION_ROUNDING: f64 = 1e-11;
 
 /// Multiple of the rounding of a slip that counts as zero where other contacts stick.
 const NEAR_ROUNDINGS: f64 = 1e3;
@@ -30,6 +33,7 @@ impl Contacts {
     ) -> Result<(), (usize, Overlap)> {
         let places = self.resting();
         let forces = self.friction_forces();
+        let has_left = self.free_left_slips(&forces);
         let mut modes: Vec<ContactMode> =
             self.closed.iter().map(|place| self.mode(*place)).collect();
         let mut excluded = Vec::new();
@@ -44,7 +48,7 @@ impl Contacts {
         }
         // Before the guards are NaN the forces may have grown beyond bounds.
         let is_finite = forces.normal.iter().all(|force| force.is_finite());
-        if excluded.is_empty() && is_finite {
+        if excluded.is_empty() && is_finite && !has_left {
             return Ok(());
         }
         modes.resize(places.len(), ContactMode::Open);
@@ -194,6 +198,20 @@ impl Contacts {
         }
     }
 
+    /// Frees the slips of contacts that others no longer keep at zero. Returns true if there are any.
+    fn free_left_slips(&mut self, forces: &ContactForces) -> bool {
+        let has_left = |tangent: &Tangent| {
+            let closed = self.closed.iter().position(|place| *place == tangent.place);
+            let guard = closed.map(|index| self.friction_guard(tangent, index, forces));
+            tangent.bears && guard.is_some_and(|guard| guard < 0.0)
+        };
+        let left: Vec<bool> = self.tangents.iter().map(has_left).collect();
+        for (tangent, has_left) in self.tangents.iter_mut().zip(&left) {
+            tangent.bears &= !has_left;
+        }
+        left.contains(&true)
+    }
+
     /// Marks contacts at the limit of friction whose slip other contacts keep at zero, as those of a box that rests
     /// on two edges, or of the floor under a body at a wall: their slip follows from the directions in which the others do not
     /// move.
@@ -206,6 +224,7 @@ impl Contacts {
         let sticking = (0..count).filter(sticks).map(|index| count + index);
         let kept: Vec<usize> = (0..count).chain(sticking).collect();
         let delassus = self.full_delassus(&self.closed);
+        let forces = self.friction_forces();
         let rows: Vec<Vec<f64>> = delassus
             .chunks_exact((2 * count).max(1))
             .map(<[f64]>::to_vec)
@@ -217,6 +236,10 @@ impl Contacts {
             let slides = matches!(self.tangents[tangent].mode, ContactMode::Slides(_));
             let slip = self.slip(self.closed[index]);
             if !slides || slip.abs() > NEAR_ROUNDINGS * roundings[tangent] {
+                continue;
+            }
+            let (acceleration, size) = self.slip_acceleration(index, &forces);
+            if acceleration.abs() > ACCELERATION_ROUNDING * size {
                 continue;
             }
             let row = &rows[count + index];

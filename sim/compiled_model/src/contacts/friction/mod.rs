@@ -20,6 +20,9 @@ pub(crate) use problem::{contact_problem, free_accelerations, full_delassus, rat
 /// Relative change of a rate for its effect on a slip.
 const RELATIVE_CHANGE: f64 = 1e-6;
 
+/// Acceleration of a slip, relative to its terms, beyond which other contacts no longer keep it at zero.
+const MAX_BEARING_ACCELERATION: f64 = 1e-10;
+
 /// Rounding of a slip, relative to the largest sum of its terms so far.
 const SLIP_ROUNDING: f64 = 1024.0 * f64::EPSILON;
 
@@ -30,7 +33,7 @@ impl Contacts {
     }
 
     /// Returns the index of a contact among those with friction.
-    fn tangent_index(&self, place: usize) -> Option<usize> {
+    pub(super) fn tangent_index(&self, place: usize) -> Option<usize> {
         self.tangents
             .iter()
             .position(|tangent| tangent.place == place)
@@ -57,7 +60,7 @@ impl Contacts {
         self.at[place].friction.as_ref()
     }
 
-    fn slip(&self, place: usize) -> f64 {
+    pub(super) fn slip(&self, place: usize) -> f64 {
         self.friction_at(place)
             .map_or(0.0, |friction| friction.slip)
     }
@@ -86,7 +89,7 @@ impl Contacts {
         let modes: Vec<ContactMode> = self.closed.iter().map(|place| self.mode(*place)).collect();
         let rates = self.free_accelerations(&self.closed);
         let problem = self.problem(&self.closed, |_| None, &rates);
-        ContactForces::from_directions(problem.impulses(&modes))
+        ContactForces::from_directions(problem.forces(&modes))
     }
 
     /// Returns the impulses that stop the closed contacts and the slips of those that stick.
@@ -131,7 +134,7 @@ impl Contacts {
     }
 
     /// Writes the guards of friction: the slip in its direction while a contact slides, the margin mu N - |T|
-    /// while it sticks.
+    /// while it sticks. That of a contact whose slip others keep at zero is negative if they no longer do.
     pub(super) fn write_friction_guards(&self, forces: &ContactForces, out: &mut [f64]) {
         for (slot, tangent) in out.iter_mut().zip(&self.tangents) {
             let closed = self.closed.iter().position(|place| *place == tangent.place);
@@ -148,7 +151,10 @@ impl Contacts {
             return 1.0;
         };
         match tangent.mode {
-            _ if tangent.bears => 1.0,
+            _ if tangent.bears => {
+                let (acceleration, size) = self.slip_acceleration(index, forces);
+                MAX_BEARING_ACCELERATION * size - acceleration.abs() + f64::MIN_POSITIVE
+            }
             ContactMode::Slides(side) => side * friction.slip + tangent.slip_offset,
             ContactMode::Sticks => {
                 let bound = friction.coefficient * forces.normal[index];
@@ -156,6 +162,19 @@ impl Contacts {
             }
             ContactMode::Open => 1.0,
         }
+    }
+
+    /// Returns the acceleration of the slip of the closed contact with this index, and the size of its terms.
+    pub(super) fn slip_acceleration(&self, index: usize, forces: &ContactForces) -> (f64, f64) {
+        let count = self.closed.len();
+        let delassus = self.full_delassus(&self.closed);
+        let row = delassus.chunks_exact(2 * count).nth(count + index);
+        let forces = forces.normal.iter().chain(&forces.tangential);
+        let terms = row.into_iter().flatten().zip(forces);
+        let free = self.free_accelerations(&self.closed)[count + index];
+        terms.fold((free, free.abs()), |(sum, size), (entry, force)| {
+            (sum + entry * force, size + (entry * force).abs())
+        })
     }
 
     /// Notes the magnitudes of the slips at the last point.
@@ -168,7 +187,7 @@ impl Contacts {
 
     /// Returns the effect of rounding of the rates on each slip. At rest the rates are the rounding of
     /// earlier, larger ones, or of rates that have not moved.
-    fn slip_roundings(&mut self, own: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
+    pub(super) fn slip_roundings(&mut self, own: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
         let degrees = own.program().degrees_of_freedom();
         own.impacts(point, &mut self.at);
         let slips = |contacts: &Self| -> Vec<f64> {

@@ -1,0 +1,160 @@
+//! Prose: names of quantities in it become symbols, other names become code, and a number keeps its unit.
+
+use eomgen_codegen::symbolic::formula::letter;
+use maud::{Markup, html};
+
+use crate::formula::quantity_symbol;
+use crate::number::raised_digit;
+
+const NO_BREAK_SPACE: &str = "\u{a0}";
+
+/// Units that prefixes can precede.
+const UNITS: [&str; 17] = [
+    "m", "g", "s", "N", "J", "W", "Hz", "Pa", "V", "A", "K", "F", "H", "C", "T", "rad", "deg",
+];
+
+const PREFIXES: [char; 9] = ['p', 'n', 'µ', 'u', 'm', 'c', 'k', 'M', 'G'];
+
+/// Returns prose. The parts between backticks are code. Names of quantities, such as `T_c` and `theta`, are symbols.
+/// Lines do not break between a number and its unit.
+pub fn prose(text: &str) -> Markup {
+    html! {
+        @for (place, part) in text.split('`').enumerate() {
+            @if place % 2 == 1 { code { (part) } } @else { (words(part)) }
+        }
+    }
+}
+
+/// Returns text with symbols for its names.
+fn words(text: &str) -> Markup {
+    let pieces = split_words(text);
+    let before = |place: usize, distance: usize| {
+        let place = place.checked_sub(distance);
+        place.map_or("", |place| pieces[place])
+    };
+    let is_power =
+        |place: usize| before(place, 1) == "^" && pieces[place].chars().all(|c| c.is_ascii_digit());
+    let is_named = |place: usize| {
+        is_symbol(pieces[place]) || is_site(pieces[place], before(place, 1), before(place, 2))
+    };
+    html! {
+        @for (place, piece) in pieces.iter().enumerate() {
+            @match *piece {
+                " " if is_unit_after(before(place, 1), pieces.get(place + 1)) => (NO_BREAK_SPACE),
+                "^" if place + 1 < pieces.len() && is_power(place + 1) => {},
+                digits if is_power(place) => (digits.chars().map(raised_digit).collect::<String>()),
+                "pi" => i { "π" },
+                name if is_named(place) => {
+                    // No line break before a punctuation mark.
+                    @match pieces.get(place + 1).and_then(|next| leading_mark(next)) {
+                        Some(mark) => span.word { (quantity_symbol(name)) (mark) },
+                        None => (quantity_symbol(name)),
+                    }
+                },
+                name if name.contains('_') => code { (name) },
+                plain => {
+                    @let mark = match place > 0 && is_named(place - 1) {
+                        true => leading_mark(plain).map_or(0, str::len),
+                        false => 0,
+                    };
+                    (plain[mark..].replace(" %", &format!("{NO_BREAK_SPACE}%")))
+                },
+            }
+        }
+    }
+}
+
+/// Splits text into words and the text between them.
+fn split_words(text: &str) -> Vec<&str> {
+    let is_letter = |c: char| c.is_alphanumeric() || c == '_';
+    let mut pieces: Vec<&str> = Vec::new();
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        let is_word = is_letter(first);
+        let end = rest.find(|c| is_letter(c) != is_word);
+        let (piece, after) = rest.split_at(end.unwrap_or(rest.len()));
+        pieces.push(piece);
+        rest = after;
+    }
+    pieces
+}
+
+/// Returns the punctuation mark at the start of a text.
+fn leading_mark(text: &str) -> Option<&str> {
+    text.starts_with([',', '.', ';', ':', ')'])
+        .then(|| &text[..1])
+}
+
+/// Returns true for the name of a Greek letter, and for a letter with a subscript.
+fn is_symbol(name: &str) -> bool {
+    match name.split_once('_') {
+        Some((head, rest)) => {
+            !rest.is_empty() && (head.chars().count() == 1 || letter(head).is_some())
+        }
+        None => letter(name).is_some(),
+    }
+}
+
+/// Letters after "in" and "of" that are words or units.
+const WORDS_AND_UNITS: [&str; 5] = ["a", "g", "h", "m", "s"];
+
+/// Returns true for a letter after a preposition, which is a coordinate.
+fn is_site(name: &str, space: &str, preposition: &str) -> bool {
+    let is_letter = name.len() == 1 && name.chars().all(|c| c.is_ascii_lowercase());
+    let is_quantity = match preposition {
+        "on" => name != "a",
+        "in" | "of" => !WORDS_AND_UNITS.contains(&name),
+        _ => false,
+    };
+    is_letter && space == " " && is_quantity
+}
+
+/// Returns true if a number before a space has a unit after it.
+fn is_unit_after(number: &str, unit: Option<&&str>) -> bool {
+    let is_unit = |unit: &str| {
+        let rest = unit.strip_prefix(PREFIXES).unwrap_or_default();
+        UNITS.contains(&unit) || UNITS.contains(&rest)
+    };
+    number.ends_with(|c: char| c.is_ascii_digit()) && unit.is_some_and(|unit| is_unit(unit))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::prose;
+
+    fn set(text: &str) -> String {
+        prose(text).into_string()
+    }
+
+    #[test]
+    fn backticks_become_code() {
+        assert_eq!(set("run `a < b` now"), "run <code>a &lt; b</code> now");
+        assert_eq!(set("plain"), "plain");
+        assert_eq!(
+            set("the key noise_floor"),
+            "the key <code>noise_floor</code>"
+        );
+    }
+
+    #[test]
+    fn names_of_quantities_become_symbols() {
+        let friction = "<math><msub><mi>T</mi><mi>c</mi></msub></math>";
+        assert_eq!(set("T_c = 1, b."), format!("{friction} = 1, b."));
+        assert_eq!(set("floors in theta"), "floors in <math><mi>θ</mi></math>");
+        assert_eq!(
+            set("friction on q, on a"),
+            "friction on <span class=\"word\"><math><mi>q</mi></math>,</span> on a"
+        );
+        assert_eq!(set("in q of s"), "in <math><mi>q</mi></math> of s");
+        assert_eq!(set("10 pi m^2"), "10 <i>π</i> m²");
+    }
+
+    #[test]
+    fn number_keeps_its_unit() {
+        assert_eq!(set("4.11 mrad or 3 N·m"), "4.11\u{a0}mrad or 3\u{a0}N·m");
+        assert_eq!(
+            set("by 8.2 %, `a % b`, 2 models"),
+            "by 8.2\u{a0}%, <code>a % b</code>, 2 models"
+        );
+    }
+}
