@@ -2,6 +2,7 @@
 //! of one element or of two neighbouring ones.
 
 use cranelift_codegen::ir::{InstBuilder, Value, types};
+use eomgen_codegen::program::cholesky::{self, MatrixLoops, Range};
 use eomgen_codegen::program::{Extent, Op, ScaledValue, ValueId};
 
 use crate::lanes::Array;
@@ -10,7 +11,7 @@ use crate::stage::Writer;
 
 /// Matrix in memory, row by row; a scalar is repeated.
 #[derive(Clone, Copy, Debug)]
-struct Matrix {
+pub struct Matrix {
     array: Array,
     rows: usize,
     columns: usize,
@@ -246,99 +247,105 @@ impl Writer<'_, '_, '_> {
         self.instructions().fmul(product, right)
     }
 
-    /// Computes L of L L^T = matrix row by row; the upper part of its place is always 0.
     fn cholesky(&mut self, out: Matrix, matrix: ValueId) {
-        let matrix = self.matrix(matrix);
-        self.count(out.rows, &[], |writer, r, _| {
-            let (row, given) = (writer.row(out, r), writer.row(matrix, r));
-            let diagonal = writer.element_at(r);
-            let zero = writer.index(0);
-            writer.range((zero, r), &[], |writer, c, _| {
-                let column = writer.row(out, c);
-                let at = writer.element_at(c);
-                let rest = writer.load(given, at);
-                let rest = writer.subtract_products(rest, (zero, c), (row, column));
-                let pivot = writer.load(column, at);
-                let entry = writer.instructions().fdiv(rest, pivot);
-                writer.store(entry, row, at);
-                Vec::new()
-            });
-            let rest = writer.load(given, diagonal);
-            let rest = writer.subtract_products(rest, (zero, r), (row, row));
-            let root = writer.positive_root(rest);
-            writer.store(root, row, diagonal);
+        let n = self.index(out.rows);
+        let matrix = Operand::Matrix(self.matrix(matrix));
+        // The upper part of its place is always 0.
+        cholesky::factorise(self, &n, &matrix, &Operand::Matrix(out));
+    }
+
+    fn cholesky_solve(&mut self, out: Matrix, factor: ValueId, right: ValueId) {
+        let right = match self.program.value(right).extent {
+            Extent::Scalar => Operand::Repeated(self.number(right, Lanes::One)),
+            _ => Operand::Matrix(self.matrix(right)),
+        };
+        let size = [out.rows, out.columns].map(|length| self.index(length));
+        let factor = Operand::Matrix(self.matrix(factor));
+        let both = [&right, &Operand::Matrix(out)];
+        cholesky::solve(self, size.each_ref(), &factor, both);
+    }
+
+    /// Returns the bounds of a loop; those of a reversed one count from its end.
+    fn bounds(&mut self, range: &Range<Value>) -> (Value, Value) {
+        match *range {
+            Range::First(n) | Range::Reversed(n) => (self.index(0), n),
+            Range::After(i, n) => (self.instructions().iadd_imm_u(i, 1), n),
+        }
+    }
+
+    /// Returns the index at a position of a loop.
+    fn index_at(&mut self, range: &Range<Value>, position: Value) -> Value {
+        match *range {
+            Range::First(_) | Range::After(..) => position,
+            Range::Reversed(n) => {
+                let last = self.instructions().iadd_imm_s(n, -1);
+                self.instructions().isub(last, position)
+            }
+        }
+    }
+}
+
+/// Operand of the factorisation or the solution.
+#[derive(Clone, Copy, Debug)]
+pub enum Operand {
+    Matrix(Matrix),
+    /// One number in all elements.
+    Repeated(Value),
+}
+
+impl MatrixLoops for Writer<'_, '_, '_> {
+    type Index = Value;
+    type Number = Value;
+    type Matrix = Operand;
+
+    fn each(&mut self, _: &str, range: Range<Value>, mut body: impl FnMut(&mut Self, &Value)) {
+        let bounds = self.bounds(&range);
+        self.range(bounds, &[], |writer, position, _| {
+            let index = writer.index_at(&range, position);
+            body(writer, &index);
             Vec::new()
         });
     }
 
-    /// Computes rest - left_k right_k for every k in order.
     fn subtract_products(
         &mut self,
-        rest: Value,
-        bounds: (Value, Value),
-        (left, right): (Array, Array),
+        first: Value,
+        range: Range<Value>,
+        mut factors: impl FnMut(&mut Self, &Value) -> [Value; 2],
     ) -> Value {
-        let rests = self.range(bounds, &[rest], |writer, k, rests| {
-            let at = writer.element_at(k);
-            let (left, right) = (writer.load(left, at), writer.load(right, at));
-            let product = writer.instructions().fmul(left, right);
+        let bounds = self.bounds(&range);
+        let rests = self.range(bounds, &[first], |writer, position, rests| {
+            let index = writer.index_at(&range, position);
+            let [a, b] = factors(writer, &index);
+            let product = writer.instructions().fmul(a, b);
             vec![writer.instructions().fsub(rests[0], product)]
         });
         rests[0]
     }
 
-    fn cholesky_solve(&mut self, out: Matrix, factor: ValueId, right: ValueId) {
-        let given = self.program.value(right).extent != Extent::Scalar;
-        let given = given.then(|| self.matrix(right));
-        let factor = self.matrix(factor);
-        self.count(out.columns, &[], |writer, column, _| {
-            let column = writer.element_at(column);
-            let first = writer.index(0);
-            let size = writer.index(factor.rows);
-            writer.count(factor.rows, &[], |writer, r, _| {
-                let rest = match given {
-                    Some(given) => writer.entry(given, r, column),
-                    None => writer.number(right, Lanes::One),
-                };
-                let of = |_: &mut Self, k| (r, k);
-                writer.substitute(out, factor, (r, column), rest, (first, r), of);
-                Vec::new()
-            });
-            writer.count(factor.rows, &[], |writer, behind, _| {
-                let last = writer.index(factor.rows - 1);
-                let r = writer.instructions().isub(last, behind);
-                let next = writer.instructions().iadd_imm_u(r, 1);
-                let rest = writer.entry(out, r, column);
-                let of = |_: &mut Self, k| (k, r);
-                writer.substitute(out, factor, (r, column), rest, (next, size), of);
-                Vec::new()
-            });
-            Vec::new()
-        });
+    fn get_element(&mut self, matrix: &Operand, [row, column]: [&Value; 2]) -> Value {
+        match *matrix {
+            Operand::Matrix(matrix) => {
+                let column = self.element_at(*column);
+                self.entry(matrix, *row, column)
+            }
+            Operand::Repeated(number) => number,
+        }
     }
 
-    /// Computes out_r = (rest - sum of factor entries times out_k) / factor_rr.
-    fn substitute(
-        &mut self,
-        out: Matrix,
-        factor: Matrix,
-        (r, column): (Value, ElementRef),
-        rest: Value,
-        bounds: (Value, Value),
-        of: impl Fn(&mut Self, Value) -> (Value, Value),
-    ) {
-        let rests = self.range(bounds, &[rest], |writer, k, rests| {
-            let (row, place) = of(writer, k);
-            let at = writer.element_at(place);
-            let entry = writer.entry(factor, row, at);
-            let known = writer.entry(out, k, column);
-            let product = writer.instructions().fmul(entry, known);
-            vec![writer.instructions().fsub(rests[0], product)]
-        });
-        let at = self.element_at(r);
-        let pivot = self.entry(factor, r, at);
-        let solved = self.instructions().fdiv(rests[0], pivot);
-        let row = self.row(out, r);
-        self.store(solved, row, column);
+    fn set_element(&mut self, matrix: &Operand, [row, column]: [&Value; 2], value: Value) {
+        if let Operand::Matrix(matrix) = *matrix {
+            let column = self.element_at(*column);
+            let row = self.row(matrix, *row);
+            self.store(value, row, column);
+        }
+    }
+
+    fn divide(&mut self, a: Value, b: Value) -> Value {
+        self.instructions().fdiv(a, b)
+    }
+
+    fn root_or_nan(&mut self, a: Value) -> Value {
+        self.positive_root(a)
     }
 }

@@ -11,7 +11,9 @@ use crate::program::{PARTIAL_SUMS, Program};
 use crate::statements::layout::{
     BLOCK, CLOSE, COMMA_OUT, DEEPER, FLOW, FLOW_OUT, SHALLOWER, SPACE, ZERO, block,
 };
-use crate::statements::{Array, Expression, Index, Notes, Operator, Place, Statement, Structure};
+use crate::statements::{
+    Array, Expression, Index, Notes, Operator, Place, Span, Statement, Structure,
+};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
@@ -105,11 +107,21 @@ impl Writer {
             Statement::Assign(place, value) => {
                 assignment(&place_text(place), &self.expression(value))
             }
-            Statement::Loop {
+            Statement::Loop { index, span, lines } => {
+                write_loop_over(index, span, &self.statements(lines))
+            }
+            Statement::Remainder {
+                name,
+                first,
                 index,
-                length,
-                lines,
-            } => write_loop(index, *length, &self.statements(lines)),
+                span,
+                product,
+            } => {
+                let defined = assignment(&format!("{real} {name}"), &self.expression(first));
+                let rest = Expression::subtract(&Expression::name(*name), product);
+                let line = assignment(name, &self.expression(&rest));
+                defined + &write_loop_over(index, span, &line)
+            }
             Statement::Sum {
                 name,
                 length,
@@ -498,7 +510,16 @@ pub(super) fn call(name: &str, arguments: &[String]) -> String {
 }
 
 pub(super) fn write_loop(index: &str, length: usize, lines: &str) -> String {
-    let head = format!("for (int {index} = 0; {index} < {length}; ++{index}) {{");
+    write_loop_over(index, &Span::between(0, length), lines)
+}
+
+fn write_loop_over(index: &str, span: &Span, lines: &str) -> String {
+    let (from, to) = (index_text(&span.from), index_text(&span.to));
+    let head = if span.reversed {
+        format!("for (int {index} = {to} - 1; {index} >= {from}; --{index}) {{")
+    } else {
+        format!("for (int {index} = {from}; {index} < {to}; ++{index}) {{")
+    };
     block(&head, lines, "}")
 }
 

@@ -6,7 +6,10 @@ use super::names::fill_template;
 use super::primitives::{CFormat, bits, primitives};
 use crate::program::Program;
 use crate::statements::layout::block;
-use crate::statements::{Helper, KernelStatements, RequiredFunctions};
+use crate::statements::{
+    Elements, Expression, Helper, Index, KernelStatements, MatrixOperand, Place, Recorder,
+    RequiredFunctions, Span, Statement,
+};
 use eomgen_elementary::{Double, Function as Elementary, Single};
 
 /// Writes the functions that stages call. Elementary functions are written in both formats, of which the
@@ -21,11 +24,13 @@ pub(super) fn functions(program: &Program, needed: &RequiredFunctions, stages: &
         (Helper::DeadzoneOnSide, DEADZONE_ON_SIDE),
         (Helper::Touching, TOUCHING),
         (Helper::Either, EITHER),
-        (Helper::Cholesky, CHOLESKY),
     ] {
         if needed.has_any(&[helper]) {
             helpers += &fill_template(program, item);
         }
+    }
+    if needed.has_any(&[Helper::Cholesky]) {
+        helpers += &cholesky(program);
     }
     let called = helpers.clone() + stages;
     let double = elementary_functions::<Double>(program, needed, &called);
@@ -188,46 +193,46 @@ static uint32_t NAME_either(uint32_t above, uint32_t below) {
 }
 ";
 
-const CHOLESKY: &str = "\
-/** Lower factor L of a symmetric matrix L L^T of n rows; NaN if it is not positive definite. */
-static void NAME_cholesky(int n, const NAME_real *matrix, NAME_real *factor) {
-    for (int i = 0; i < n * n; ++i) {
-        factor[i] = R(0.0);
-    }
-    for (int i = 0; i < n; ++i) {
-        for (int j = 0; j < i + 1; ++j) {
-            NAME_real rest = matrix[i * n + j];
-            for (int k = 0; k < j; ++k) {
-                rest = rest - factor[i * n + k] * factor[j * n + k];
-            }
-            if (i == j) {
-                const NAME_real root = NAME_sqrt(rest);
-                factor[i * n + j] = rest > R(0.0) ? root : R(NAME_nan());
-            } else {
-                factor[i * n + j] = rest / factor[j * n + j];
-            }
-        }
-    }
-}
-/** Solution of L L^T X = right, of n rows, for each of m columns. */
+const CHOLESKY_HEAD: &str = "\
+static void NAME_cholesky(int n, const NAME_real *matrix, NAME_real *factor) {";
+
+const CHOLESKY_SOLVE_HEAD: &str = "\
 static void NAME_cholesky_solve(
     int n, int m, const NAME_real *factor, const NAME_real *right, NAME_real *x
-) {
-    for (int c = 0; c < m; ++c) {
-        for (int i = 0; i < n; ++i) {
-            NAME_real rest = right[i * m + c];
-            for (int k = 0; k < i; ++k) {
-                rest = rest - factor[i * n + k] * x[k * m + c];
-            }
-            x[i * m + c] = rest / factor[i * n + i];
-        }
-        for (int i = n - 1; i >= 0; --i) {
-            NAME_real rest = x[i * m + c];
-            for (int k = i + 1; k < n; ++k) {
-                rest = rest - factor[k * n + i] * x[k * m + c];
-            }
-            x[i * m + c] = rest / factor[i * n + i];
-        }
-    }
+) {";
+
+/// Writes the Cholesky factorisation and the solution with the factor, for matrices as pointers to their first entries.
+fn cholesky(program: &Program) -> String {
+    let writer = Writer::new(program);
+    let function = |description: &str, head: &str, lines: &[Statement]| {
+        comment(&[description.to_owned()])
+            + &block(
+                &fill_template(program, head),
+                &writer.statements(lines),
+                "}",
+            )
+    };
+    let matrix = |name: &str, columns: &'static str| {
+        MatrixOperand::local(name, Elements::Flat(columns.into()))
+    };
+    let entry = Place::new("factor", ["i".into()]);
+    let mut lines = vec![Statement::Loop {
+        index: "i",
+        span: Span::between(0, Index::from("n").times("n")),
+        lines: vec![Statement::Assign(entry, Expression::Number(0.0))],
+    }];
+    let factor = matrix("factor", "n");
+    let recorder = || Recorder::new("rest");
+    lines.extend(recorder().factorise("n", &matrix("matrix", "n"), &factor));
+    let both = [&matrix("right", "m"), &matrix("x", "m")];
+    let solution = recorder().solve(("n", Some("m".into())), &factor, both);
+    function(
+        "Lower factor L of a symmetric matrix L L^T of n rows; NaN if it is not positive definite.",
+        CHOLESKY_HEAD,
+        &lines,
+    ) + &function(
+        "Solution of L L^T X = right, of n rows, for each of m columns.",
+        CHOLESKY_SOLVE_HEAD,
+        &solution,
+    )
 }
-";

@@ -7,11 +7,12 @@
 //! contracted, so that all backends compute the same bits.
 //!
 //! `value`, `types`, `domain` and `controllers` define programs, `lowering` builds them from the equations of motion, `evaluator` runs
-//! them, `encoding` writes them as bytes, `affine` computes the matrices of a piecewise-linear model, `describe` writes formulas of prepared
+//! them, `cholesky` factorises matrices for all backends, `encoding` writes them as bytes, `affine` computes the matrices of a piecewise-linear model, `describe` writes formulas of prepared
 //! values, `content` names values by their content, `trace` has their origin, `units` infers their units, and `operation_count` estimates the cost of a call.
 
 #[cfg(feature = "derive")]
 pub mod affine;
+pub mod cholesky;
 #[cfg(feature = "derive")]
 pub mod content;
 mod controllers;

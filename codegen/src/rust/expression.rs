@@ -7,7 +7,9 @@ use crate::statements::layout::{
     BLOCK, BLOCK_OUT, BRACE, BRACE_OUT, CLOSE, COMMA_OUT, FLOW, FLOW_EVEN, FLOW_OUT,
     LAYOUT_BOUNDARY, SPACE, SPACE_OUT, ZERO,
 };
-use crate::statements::{Array, Expression, Index, Notes, Operator, Place, Statement, Structure};
+use crate::statements::{
+    Array, Expression, Index, Notes, Operator, Place, Span, Statement, Structure,
+};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
@@ -63,11 +65,21 @@ impl Writer {
             Statement::Assign(place, value) => {
                 assignment(&place_text(place), self.expression(value)) + "\n"
             }
-            Statement::Loop {
+            Statement::Loop { index, span, lines } => {
+                write_loop_over(index, span, &self.statements(lines))
+            }
+            Statement::Remainder {
+                name,
+                first,
                 index,
-                length,
-                lines,
-            } => write_loop(index, *length, &self.statements(lines)),
+                span,
+                product,
+            } => {
+                let defined = assignment(&format!("let mut {name}"), self.expression(first));
+                let rest = Expression::subtract(&Expression::name(*name), product);
+                let line = assignment(name, self.expression(&rest)) + "\n";
+                defined + "\n" + &write_loop_over(index, span, &line)
+            }
             Statement::Sum {
                 name,
                 length,
@@ -288,7 +300,17 @@ pub(super) fn call(name: &str, arguments: &[String]) -> String {
 }
 
 pub(super) fn write_loop(index: &str, length: usize, lines: &str) -> String {
-    block(&format!("for {index} in 0..{length} {{"), lines, "}")
+    write_loop_over(index, &Span::between(0, length), lines)
+}
+
+fn write_loop_over(index: &str, span: &Span, lines: &str) -> String {
+    let indices = format!("{}..{}", index_text(&span.from), index_text(&span.to));
+    let head = if span.reversed {
+        format!("for {index} in ({indices}).rev() {{")
+    } else {
+        format!("for {index} in {indices} {{")
+    };
+    block(&head, lines, "}")
 }
 
 /// Writes a binary operation that can be broken before the operator.

@@ -1,11 +1,14 @@
 //! Helper functions of an emitted file: their selection, and the text of the small ones. `kernels` writes
 //! those with kernels.
 
-use super::expression::Conversions;
+use super::expression::{Conversions, Writer, zeros};
 use super::kernels::function;
 use super::piecewise::{CHOSEN, DEADZONE_ON_SIDE, EITHER, POSITIVE, TOUCHING};
 use super::slopes;
-use crate::statements::{Helper, RequiredFunctions};
+use crate::statements::layout::block;
+use crate::statements::{
+    Elements, Helper, Index, MatrixOperand, Recorder, RequiredFunctions, Statement,
+};
 
 /// Writes the required functions.
 pub fn items(needed: &RequiredFunctions, conversions: Conversions) -> String {
@@ -23,8 +26,8 @@ pub fn items(needed: &RequiredFunctions, conversions: Conversions) -> String {
         (has(Helper::Either), EITHER),
         (has(Helper::Chosen), CHOSEN),
         (needed.has_any(&sides), POSITIVE),
-        (has(Helper::Cholesky), CHOLESKY),
-        (has(Helper::CholeskyOfMatrix), CHOLESKY_OF_MATRIX),
+        (has(Helper::Cholesky), &*(cholesky() + &cholesky_solve())),
+        (has(Helper::CholeskyOfMatrix), &*cholesky_solve_matrix()),
         (
             conversions.converted || conversions.converted_matrix,
             CONVERTED,
@@ -49,69 +52,64 @@ pub fn items(needed: &RequiredFunctions, conversions: Conversions) -> String {
         .collect::<String>()
 }
 
-/// Cholesky factorisation and solution; the solution is also used by rates for SIMD lanes.
-const CHOLESKY: &str = "\
+const CHOLESKY_HEAD: &str = "\
 /// Computes the lower factor L of a symmetric matrix L L^T; NaN if it is not positive definite.
-fn cholesky<T: Scalar, const N: usize>(matrix: &[[T; N]; N]) -> [[T; N]; N] {
-    let mut factor = [[T::number(0.0); N]; N];
-    for i in 0..N {
-        for j in 0..i + 1 {
-            let mut rest = matrix[i][j];
-            for k in 0..j {
-                rest = rest - factor[i][k] * factor[j][k];
-            }
-            factor[i][j] = if i == j {
-                let root = sqrt(rest);
-                T::select_greater(rest, T::number(0.0), root, T::number(f64::NAN))
-            } else {
-                rest / factor[j][j]
-            };
-        }
-    }
-    factor
-}
+fn cholesky<T: Scalar, const N: usize>(matrix: &[[T; N]; N]) -> [[T; N]; N] {";
 
+/// Head of the solution for a vector, which rates for SIMD lanes also use.
+const CHOLESKY_SOLVE_HEAD: &str = "\
 /// Solves L L^T x = right.
 #[inline(always)]
 fn cholesky_solve<T: Scalar, const N: usize>(
     factor: &[[T; N]; N],
     right: &[T; N],
-) -> [T; N] {
-    let mut x = [T::number(0.0); N];
-    for i in 0..N {
-        let mut rest = right[i];
-        for k in 0..i {
-            rest = rest - factor[i][k] * x[k];
-        }
-        x[i] = rest / factor[i][i];
-    }
-    for j in 0..N {
-        let i = N - 1 - j;
-        let mut rest = x[i];
-        for k in i + 1..N {
-            rest = rest - factor[k][i] * x[k];
-        }
-        x[i] = rest / factor[i][i];
-    }
-    x
-}
-";
-const CHOLESKY_OF_MATRIX: &str = "\
+) -> [T; N] {";
+
+const CHOLESKY_SOLVE_MATRIX_HEAD: &str = "\
 /// Solves L L^T X = right, column by column.
 fn cholesky_solve_matrix<T: Scalar, const N: usize, const M: usize>(
     factor: &[[T; N]; N],
     right: &[[T; M]; N],
-) -> [[T; M]; N] {
-    let mut x = *right;
-    for j in 0..M {
-        let column = cholesky_solve(factor, &right.map(|row| row[j]));
-        for i in 0..N {
-            x[i][j] = column[i];
-        }
-    }
-    x
+) -> [[T; M]; N] {";
+
+/// Writes the Cholesky factorisation.
+fn cholesky() -> String {
+    let lines = recorder().factorise(
+        "N",
+        &MatrixOperand::local("matrix", Elements::InRows),
+        &MatrixOperand::local("factor", Elements::InRows),
+    );
+    array_function(CHOLESKY_HEAD, ("factor", &["N", "N"]), &lines)
 }
-";
+
+/// Writes the solution with a Cholesky factor for a vector.
+fn cholesky_solve() -> String {
+    let lines = solution(Elements::InColumn, None);
+    array_function(CHOLESKY_SOLVE_HEAD, ("x", &["N"]), &lines)
+}
+
+/// Writes the solution with a Cholesky factor for a matrix.
+fn cholesky_solve_matrix() -> String {
+    let lines = solution(Elements::InRows, Some("M".into()));
+    array_function(CHOLESKY_SOLVE_MATRIX_HEAD, ("x", &["N", "M"]), &lines)
+}
+
+fn solution(elements: Elements, columns: Option<Index>) -> Vec<Statement> {
+    let both = ["right", "x"].map(|name| MatrixOperand::local(name, elements.clone()));
+    let factor = MatrixOperand::local("factor", Elements::InRows);
+    recorder().solve(("N", columns), &factor, both.each_ref())
+}
+
+fn recorder() -> Recorder {
+    Recorder::new("rest")
+}
+
+/// Writes a function that returns an array with these lengths, which is zero before its lines.
+fn array_function(head: &str, (result, lengths): (&str, &[&str]), lines: &[Statement]) -> String {
+    let lengths: Vec<String> = lengths.iter().map(|length| (*length).to_owned()).collect();
+    let lines = zeros(result, &lengths) + &Writer::default().statements(lines);
+    block(head, &format!("{lines}{result}\n"), "}")
+}
 
 const CONVERTED: &str = "\
 /// Converts numbers to another type.

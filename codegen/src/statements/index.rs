@@ -29,7 +29,47 @@ impl Index {
 
     /// Returns `count * other`.
     pub fn from_multiple(count: usize, other: impl Into<Self>) -> Self {
-        Self::Product(Box::new(Self::Number(count)), Box::new(other.into()))
+        Self::Number(count).times(other)
+    }
+
+    /// Returns `self * other`.
+    pub fn times(self, other: impl Into<Self>) -> Self {
+        Self::Product(Box::new(self), Box::new(other.into()))
+    }
+}
+
+/// Indices of a loop: from a first one up to an excluded one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Span {
+    /// First index.
+    pub from: Index,
+    /// Index after the last one.
+    pub to: Index,
+    /// True if the loop begins at the last index.
+    pub reversed: bool,
+}
+
+impl Span {
+    /// Returns the indices between two, in ascending order.
+    pub fn between(from: impl Into<Index>, to: impl Into<Index>) -> Self {
+        Self {
+            from: from.into(),
+            to: to.into(),
+            reversed: false,
+        }
+    }
+
+    /// Returns true if it has no index; false if that is unknown.
+    pub fn is_empty(&self) -> bool {
+        self.numbers().is_some_and(|(from, to)| from >= to)
+    }
+
+    /// Returns the bounds if they are numbers.
+    pub fn numbers(&self) -> Option<(usize, usize)> {
+        match (&self.from, &self.to) {
+            (Index::Number(from), Index::Number(to)) => Some((*from, *to)),
+            _ => None,
+        }
     }
 }
 

@@ -3,11 +3,12 @@
 //!
 //! `stages`, `requested` and `controllers` build the functions, `preparation` the coefficients, from the shared data in
 //! `file`. `body` (with `operands`, `blocks`, `rows` and `sides`) builds the `statement`s of a function from
-//! `expression`s; `kernel` builds those of an elementary function. `indices` and `data` list the constants for callers. The backends contain the syntax of each
+//! `expression`s; `kernel` builds those of an elementary function, `cholesky` those of a factorisation. `indices` and `data` list the constants for callers. The backends contain the syntax of each
 //! language.
 
 mod blocks;
 mod body;
+mod cholesky;
 mod controllers;
 mod data;
 mod emit_error;
@@ -31,13 +32,14 @@ mod statement;
 mod step;
 mod used;
 
+pub(crate) use cholesky::{Elements, MatrixOperand, Recorder};
 pub(crate) use controllers::{ControllerStage, ControllerStages, TIMES, controller_stages};
 pub use data::{DataArray, DataElements, data_arrays};
 pub use emit_error::EmitError;
 pub(crate) use emit_error::EmitResult;
 pub(crate) use expression::{Array, Expression, Operator, Structure};
 pub(crate) use file::{File, quantity_line};
-pub(crate) use index::Index;
+pub(crate) use index::{Index, Span};
 pub use indices::{Indices, indices};
 pub(crate) use kernel::KernelStatements;
 pub(crate) use names::Words;

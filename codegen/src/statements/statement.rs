@@ -1,7 +1,7 @@
 //! Statements of a stage.
 
 use super::expression::{Array, Expression};
-use super::index::Index;
+use super::index::{Index, Span};
 
 /// Target of an assignment.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,14 +38,27 @@ pub enum Statement {
     Flag(String),
     /// Assignment to an existing element or flag.
     Assign(Place, Expression),
-    /// Loop over the values of a variable from 0.
+    /// Loop over the values of a variable.
     Loop {
         /// Variable.
         index: &'static str,
-        /// Number of values.
-        length: usize,
+        /// Values.
+        span: Span,
         /// Statements for each value.
         lines: Vec<Self>,
+    },
+    /// Definition of a number less products, subtracted in the order of an index.
+    Remainder {
+        /// Name of the remainder.
+        name: &'static str,
+        /// Number before the first subtraction.
+        first: Expression,
+        /// Variable of the loop.
+        index: &'static str,
+        /// Values of the variable.
+        span: Span,
+        /// Product for each value.
+        product: Expression,
     },
     /// Sum of elements i, in the order that [`Op::Total`](crate::program::Op::Total) defines.
     Sum {
@@ -89,7 +102,7 @@ impl Statement {
             | Self::Sum { name, .. }
             | Self::Cholesky { name, .. }
             | Self::CholeskySolve { name, .. } => Some(name),
-            Self::Flag(_) | Self::Assign(..) | Self::Loop { .. } => None,
+            Self::Flag(_) | Self::Assign(..) | Self::Loop { .. } | Self::Remainder { .. } => None,
         }
     }
 
@@ -102,7 +115,7 @@ impl Statement {
     pub fn loop_over(index: &'static str, length: usize, lines: Vec<Self>) -> Self {
         Self::Loop {
             index,
-            length,
+            span: Span::between(0, length),
             lines,
         }
     }

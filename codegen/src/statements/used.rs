@@ -59,6 +59,7 @@ impl UsedNames {
 
     fn filter_statement(&mut self, statement: Statement) -> Option<Statement> {
         let written = match &statement {
+            Statement::Remainder { name, .. } => *name,
             Statement::Let(name, _)
             | Statement::Zeros(name, _)
             | Statement::Flag(name)
@@ -74,6 +75,10 @@ impl UsedNames {
         match &statement {
             Statement::Let(_, value) | Statement::Assign(_, value) => self.expression(value),
             Statement::Sum { element, .. } => self.expression(element),
+            Statement::Remainder { first, product, .. } => {
+                self.expression(first);
+                self.expression(product);
+            }
             Statement::Cholesky { matrix, .. } => self.array(matrix),
             Statement::CholeskySolve { factor, right, .. } => {
                 self.array(factor);
@@ -85,16 +90,12 @@ impl UsedNames {
     }
 
     fn filter_loop(&mut self, statement: Statement) -> Option<Statement> {
-        let Statement::Loop {
-            index,
-            length,
-            lines,
-        } = statement
-        else {
+        let Statement::Loop { index, span, lines } = statement else {
             return Some(statement);
         };
         let lines = self.retain(lines);
-        (!lines.is_empty() && length > 0).then(|| Statement::loop_over(index, length, lines))
+        let is_needed = !lines.is_empty() && !span.is_empty();
+        is_needed.then_some(Statement::Loop { index, span, lines })
     }
 
     fn expression(&mut self, expression: &Expression) {

@@ -7,7 +7,7 @@ use wasm_encoder::{BlockType, Function, InstructionSink, MemArg, MemArgTarget, V
 use super::indices::Indices;
 use super::memory::{Memory, NUMBER, Region, missing_place_error};
 use crate::program::{Extent, Program};
-use crate::statements::{EmitError, EmitResult, Index};
+use crate::statements::{EmitError, EmitResult, Index, Span};
 
 /// Index of the imported global variable with the address of the module's numbers.
 pub(super) const BASE: u32 = 0;
@@ -138,23 +138,39 @@ impl<'m> Code<'m> {
         Ok(())
     }
 
-    /// Writes a loop over a variable between two indices.
-    pub(super) fn write_loop_between(
+    /// Writes a loop over a variable.
+    pub(super) fn write_loop_over(
         &mut self,
         index: &'static str,
-        (from, to): (&Index, &Index),
+        span: &Span,
         lines: impl FnOnce(&mut Self) -> EmitResult<()>,
     ) -> EmitResult<()> {
-        self.index(from)?;
+        let step = match (span.numbers(), span.reversed) {
+            (Some(numbers), false) => return self.write_loop(index, numbers, lines),
+            (_, false) => {
+                self.index(&span.from)?;
+                1
+            }
+            (_, true) => {
+                self.index(&span.to)?;
+                self.instructions().i32_const(1).i32_sub();
+                -1
+            }
+        };
         let (variable, outer) = self.loop_variable(index);
         let mut put = self.instructions();
         put.local_set(variable).block(BlockType::Empty);
         put.loop_(BlockType::Empty).local_get(variable);
-        self.index(to)?;
-        self.instructions().i32_ge_s().br_if(1);
+        if span.reversed {
+            self.index(&span.from)?;
+            self.instructions().i32_lt_s().br_if(1);
+        } else {
+            self.index(&span.to)?;
+            self.instructions().i32_ge_s().br_if(1);
+        }
         lines(self)?;
         let mut put = self.instructions();
-        put.local_get(variable).i32_const(1).i32_add();
+        put.local_get(variable).i32_const(step).i32_add();
         put.local_set(variable).br(0).end().end();
         self.restore(index, outer);
         Ok(())

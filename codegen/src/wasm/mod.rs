@@ -3,10 +3,9 @@
 //!
 //! `emit` assembles the module from its functions, memory and exports. `memory` is the layout of the arrays,
 //! `functions` writes the helpers, `indices` numbers them. `code` is a function under construction, into
-//! which `expressions`, `statements` and `cholesky` write; `names` lists reserved names.
+//! which `expressions` and `statements` write; `names` lists reserved names.
 //! [`statements`](crate::statements) decides the order of computation.
 
-mod cholesky;
 mod code;
 mod emit;
 mod expressions;

@@ -1,9 +1,13 @@
 //! Statements as instructions.
 
-use super::cholesky::Solution;
 use super::code::Code;
 use crate::program::PARTIAL_SUMS;
-use crate::statements::{EmitResult, Expression, Index, Place, Statement};
+use crate::statements::{
+    Array, Elements, EmitResult, Expression, Index, MatrixOperand, Place, Recorder, Span, Statement,
+};
+
+/// Name of a remainder of products; names of a model contain no space.
+const REMAINDER: &str = "the rest";
 
 impl Code<'_> {
     pub(super) fn statements(&mut self, statements: &[Statement]) -> EmitResult<()> {
@@ -23,31 +27,63 @@ impl Code<'_> {
                 Ok(())
             }
             Statement::Assign(place, value) => self.assign(place, value),
-            Statement::Loop {
+            Statement::Loop { index, span, lines } => {
+                self.write_loop_over(index, span, |code| code.statements(lines))
+            }
+            Statement::Remainder {
+                name,
+                first,
                 index,
-                length,
-                lines,
-            } => self.write_loop(index, (0, *length), |code| code.statements(lines)),
+                span,
+                product,
+            } => self.remainder((name, first), (index, span), product),
             Statement::Sum {
                 name,
                 length,
                 element,
             } => self.sum(name, *length, element),
-            Statement::Cholesky { name, matrix, rows } => self.cholesky(name, matrix, *rows),
+            Statement::Cholesky { name, matrix, rows } => {
+                let region = self.array(name, &[*rows, *rows])?;
+                self.zero(region, rows * rows)?;
+                let [matrix, factor] = [matrix.clone(), Array::local(name)]
+                    .map(|array| MatrixOperand::new(array, Elements::InRows));
+                let lines = Recorder::new(REMAINDER).factorise(*rows, &matrix, &factor);
+                self.statements(&lines)
+            }
             Statement::CholeskySolve {
                 name,
                 factor,
                 right,
                 rows,
                 columns,
-            } => self.cholesky_solve(&Solution {
-                name,
-                factor,
-                right,
-                rows: *rows,
-                columns: *columns,
-            }),
+            } => {
+                let lengths: Vec<usize> = [*rows].into_iter().chain(*columns).collect();
+                self.array(name, &lengths)?;
+                let elements = columns.map_or(Elements::InColumn, |_| Elements::InRows);
+                let both = [right.clone(), Array::local(name)]
+                    .map(|array| MatrixOperand::new(array, elements.clone()));
+                let size = (*rows, columns.map(Index::from));
+                let factor = MatrixOperand::new(factor.clone(), Elements::InRows);
+                let lines = Recorder::new(REMAINDER).solve(size, &factor, both.each_ref());
+                self.statements(&lines)
+            }
         }
+    }
+
+    /// Computes a named number less products, subtracted in order.
+    fn remainder(
+        &mut self,
+        (name, first): (&str, &Expression),
+        (index, span): (&'static str, &Span),
+        product: &Expression,
+    ) -> EmitResult<()> {
+        self.bind(name, first)?;
+        let rest = self.local_index(name)?;
+        self.write_loop_over(index, span, |code| {
+            code.expression(&Expression::subtract(&Expression::name(name), product))?;
+            code.instructions().local_set(rest);
+            Ok(())
+        })
     }
 
     /// Computes a named number.

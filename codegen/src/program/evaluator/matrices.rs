@@ -5,6 +5,7 @@ use eomgen_model_spec::function::Function;
 
 use super::number::Number;
 use super::operands::Operands;
+use crate::program::cholesky::{self, MatrixLoops, Range};
 use crate::program::{ScaledValue, ValueId};
 
 /// Computes left^T diag(weight) right.
@@ -99,22 +100,15 @@ pub(super) fn assemble<N: Number>(
     }
 }
 
-/// Computes the factor L of L L^T = matrix, row by row; the upper part of `out` becomes 0.
+/// Computes the factor L of L L^T = matrix; the upper part of `out` becomes 0.
 pub(super) fn cholesky<N: Number>(out: &mut [N], matrix: &[N], size: usize) {
     out.fill(N::constant(0.0));
-    for r in 0..size {
-        for c in 0..=r {
-            let rest = (0..c).fold(matrix[r * size + c], |rest, k| {
-                rest - out[r * size + k] * out[c * size + k]
-            });
-            out[r * size + c] = if r == c {
-                let pivot = rest.positive();
-                N::call(Function::Sqrt, pivot, pivot)
-            } else {
-                rest / out[c * size + c]
-            };
-        }
-    }
+    let mut execution = Execution {
+        left: (matrix, size),
+        right: (matrix, size),
+        out: (out, size),
+    };
+    cholesky::factorise(&mut execution, &size, &Operand::Left, &Operand::Out);
 }
 
 /// Solves for `columns` right-hand sides; with stride 0 all rows share one number.
@@ -124,32 +118,114 @@ pub(super) fn cholesky_solve<N: Number>(
     (factor, size, _): (&[N], usize, usize),
     (right, stride): (&[N], usize),
 ) {
-    for column in 0..columns {
-        let right = (right, stride * columns);
-        solve_column(out, (column, columns), factor, size, right);
+    let mut execution = Execution {
+        left: (factor, size),
+        right: (right, stride * columns),
+        out: (out, columns),
+    };
+    let both = [&Operand::Right, &Operand::Out];
+    cholesky::solve(&mut execution, [&size, &columns], &Operand::Left, both);
+}
+
+/// Matrices of an operation, each with the distance between its rows.
+struct Execution<'a, N> {
+    left: (&'a [N], usize),
+    right: (&'a [N], usize),
+    out: (&'a mut [N], usize),
+}
+
+enum Operand {
+    Left,
+    Right,
+    Out,
+}
+
+impl<N: Number> MatrixLoops for Execution<'_, N> {
+    type Index = usize;
+    type Number = N;
+    type Matrix = Operand;
+
+    #[inline(always)]
+    fn each(&mut self, _: &str, range: Range<usize>, mut body: impl FnMut(&mut Self, &usize)) {
+        match range {
+            Range::First(n) => (0..n).for_each(|i| body(self, &i)),
+            Range::Reversed(n) => (0..n).rev().for_each(|i| body(self, &i)),
+            Range::After(i, n) => (i + 1..n).for_each(|i| body(self, &i)),
+        }
+    }
+
+    #[inline(always)]
+    fn subtract_products(
+        &mut self,
+        first: N,
+        range: Range<usize>,
+        mut factors: impl FnMut(&mut Self, &usize) -> [N; 2],
+    ) -> N {
+        let mut rest = first;
+        self.each("k", range, |execution, k| {
+            let [a, b] = factors(execution, k);
+            rest = rest - a * b;
+        });
+        rest
+    }
+
+    #[inline(always)]
+    fn get_element(&mut self, matrix: &Operand, [row, column]: [&usize; 2]) -> N {
+        match matrix {
+            Operand::Left => self.left.0[row * self.left.1 + column],
+            Operand::Right => self.right.0[row * self.right.1 + column],
+            Operand::Out => self.out.0[row * self.out.1 + column],
+        }
+    }
+
+    #[inline(always)]
+    fn set_element(&mut self, _: &Operand, [row, column]: [&usize; 2], value: N) {
+        self.out.0[row * self.out.1 + column] = value;
+    }
+
+    #[inline(always)]
+    fn divide(&mut self, a: N, b: N) -> N {
+        a / b
+    }
+
+    #[inline(always)]
+    fn root_or_nan(&mut self, a: N) -> N {
+        let pivot = a.positive();
+        N::call(Function::Sqrt, pivot, pivot)
     }
 }
 
-/// Solves for one column of the right-hand side. Both arrays hold `columns` numbers in a row; with stride 0
-/// all rows of the right-hand side share one number.
-fn solve_column<N: Number>(
-    out: &mut [N],
-    (column, columns): (usize, usize),
-    factor: &[N],
-    size: usize,
-    (right, stride): (&[N], usize),
-) {
-    let at = |r: usize| r * columns + column;
-    for r in 0..size {
-        let rest = (0..r).fold(right[r * stride + column], |rest, k| {
-            rest - factor[r * size + k] * out[at(k)]
-        });
-        out[at(r)] = rest / factor[r * size + r];
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// L L^T of the integer factor with the rows (2), (1, 3) and (-4, 5, 1).
+    const MATRIX: [f64; 9] = [4.0, 2.0, -8.0, 2.0, 10.0, 11.0, -8.0, 11.0, 42.0];
+
+    #[test]
+    fn factor_and_solutions_of_integers_are_exact() {
+        let mut factor = [f64::NAN; 9];
+        cholesky(&mut factor, &MATRIX, 3);
+        assert_eq!(factor, [2.0, 0.0, 0.0, 1.0, 3.0, 0.0, -4.0, 5.0, 1.0]);
+        // Columns: the matrix times (1, 2, 3) and times (0, -1, 1).
+        let right = [-16.0, -10.0, 55.0, 1.0, 140.0, 31.0];
+        let mut x = [f64::NAN; 6];
+        cholesky_solve(&mut x, 2, (&factor, 3, 3), (&right, 1));
+        assert_eq!(x, [1.0, 0.0, 2.0, -1.0, 3.0, 1.0]);
     }
-    for r in (0..size).rev() {
-        let rest = (r + 1..size).fold(out[at(r)], |rest, k| {
-            rest - factor[k * size + r] * out[at(k)]
-        });
-        out[at(r)] = rest / factor[r * size + r];
+
+    #[test]
+    fn scalar_is_repeated_on_the_right_hand_side() {
+        let mut x = [f64::NAN; 2];
+        cholesky_solve(&mut x, 1, (&[1.0, 0.0, 1.0, 1.0], 2, 2), (&[3.0], 0));
+        assert_eq!(x, [3.0, 0.0]);
+    }
+
+    #[test]
+    fn pivot_that_is_not_positive_gives_nan() {
+        let mut factor = [0.0_f64; 4];
+        cholesky(&mut factor, &[1.0, 2.0, 2.0, 4.0], 2);
+        assert_eq!(factor[..3], [1.0, 0.0, 2.0]);
+        assert!(factor[3].is_nan());
     }
 }

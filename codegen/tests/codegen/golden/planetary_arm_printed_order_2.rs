@@ -273,22 +273,26 @@ static INTEGRAL_PHI_D2_BY_PHI_D2: [[f64; 2]; 2] = [
 fn cholesky<T: Scalar, const N: usize>(matrix: &[[T; N]; N]) -> [[T; N]; N] {
     let mut factor = [[T::number(0.0); N]; N];
     for i in 0..N {
-        for j in 0..i + 1 {
+        for j in 0..i {
             let mut rest = matrix[i][j];
             for k in 0..j {
                 rest = rest - factor[i][k] * factor[j][k];
             }
-            factor[i][j] = if i == j {
-                let root = sqrt(rest);
-                T::select_greater(rest, T::number(0.0), root, T::number(f64::NAN))
-            } else {
-                rest / factor[j][j]
-            };
+            factor[i][j] = rest / factor[j][j];
         }
+        let mut rest = matrix[i][i];
+        for k in 0..i {
+            rest = rest - factor[i][k] * factor[i][k];
+        }
+        factor[i][i] = T::select_greater(
+            rest,
+            T::number(0.0),
+            sqrt(rest),
+            T::number(f64::NAN),
+        );
     }
     factor
 }
-
 
 /// Solves L L^T x = right.
 #[inline(always)]
@@ -304,8 +308,7 @@ fn cholesky_solve<T: Scalar, const N: usize>(
         }
         x[i] = rest / factor[i][i];
     }
-    for j in 0..N {
-        let i = N - 1 - j;
+    for i in (0..N).rev() {
         let mut rest = x[i];
         for k in i + 1..N {
             rest = rest - factor[k][i] * x[k];
