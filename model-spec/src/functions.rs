@@ -2,27 +2,52 @@
 
 use crate::model::Function;
 
-const FUNCTIONS: [(&str, Function, &[&str]); 20] = [
-    ("sin", Function::Sin, &["x"]),
-    ("cos", Function::Cos, &["x"]),
-    ("tan", Function::Tan, &["x"]),
-    ("asin", Function::Asin, &["x"]),
-    ("acos", Function::Acos, &["x"]),
-    ("atan", Function::Atan, &["x"]),
-    ("atan2", Function::Atan2, &["y", "x"]),
-    ("sinh", Function::Sinh, &["x"]),
-    ("cosh", Function::Cosh, &["x"]),
-    ("tanh", Function::Tanh, &["x"]),
-    ("exp", Function::Exp, &["x"]),
-    ("ln", Function::Ln, &["x"]),
-    ("sqrt", Function::Sqrt, &["x"]),
-    ("abs", Function::Abs, &["x"]),
-    ("sign", Function::Sign, &["x"]),
-    ("min", Function::Min, &["a", "b"]),
-    ("max", Function::Max, &["a", "b"]),
-    ("deadzone", Function::Deadzone, &["p", "b"]),
-    ("contact", Function::Contact, &["p", "b"]),
-    ("above", Function::Above, &["p"]),
+use Property::{Cut, Even, Kink, Odd, Step};
+
+/// Property of a function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Property {
+    /// f(-x) = f(x).
+    Even,
+    /// f(-x) = -f(x).
+    Odd,
+    /// Switches between sides without a jump.
+    Kink,
+    /// Constant on each side.
+    Step,
+    /// Jump at the cut of an angle.
+    Cut,
+}
+
+/// Name, function, names of the arguments, and properties.
+type Entry = (
+    &'static str,
+    Function,
+    &'static [&'static str],
+    &'static [Property],
+);
+
+const FUNCTIONS: [Entry; 20] = [
+    ("sin", Function::Sin, &["x"], &[Odd]),
+    ("cos", Function::Cos, &["x"], &[Even]),
+    ("tan", Function::Tan, &["x"], &[Odd]),
+    ("asin", Function::Asin, &["x"], &[Odd]),
+    ("acos", Function::Acos, &["x"], &[]),
+    ("atan", Function::Atan, &["x"], &[Odd]),
+    ("atan2", Function::Atan2, &["y", "x"], &[Cut]),
+    ("sinh", Function::Sinh, &["x"], &[Odd]),
+    ("cosh", Function::Cosh, &["x"], &[Even]),
+    ("tanh", Function::Tanh, &["x"], &[Odd]),
+    ("exp", Function::Exp, &["x"], &[]),
+    ("ln", Function::Ln, &["x"], &[]),
+    ("sqrt", Function::Sqrt, &["x"], &[]),
+    ("abs", Function::Abs, &["x"], &[Even, Kink]),
+    ("sign", Function::Sign, &["x"], &[Odd, Step]),
+    ("min", Function::Min, &["a", "b"], &[Kink]),
+    ("max", Function::Max, &["a", "b"], &[Kink]),
+    ("deadzone", Function::Deadzone, &["p", "b"], &[Kink]),
+    ("contact", Function::Contact, &["p", "b"], &[Step]),
+    ("above", Function::Above, &["p"], &[Step]),
 ];
 
 /// Forms that are not functions of scalars.
@@ -59,7 +84,7 @@ impl Function {
     /// Returns the function of a name.
     pub fn from_name(name: &str) -> Option<Self> {
         let found = FUNCTIONS.iter().find(|(known, ..)| *known == name);
-        found.map(|(_, function, _)| *function)
+        found.map(|(_, function, ..)| *function)
     }
 
     /// Returns the name in a specification.
@@ -69,30 +94,41 @@ impl Function {
 
     /// Returns the names of the arguments.
     pub fn arguments(self) -> &'static [&'static str] {
-        self.entry().map_or(&[], |(_, _, arguments)| arguments)
+        self.entry().map_or(&[], |(_, _, arguments, _)| arguments)
     }
 
-    /// Returns true if the function has a kink or a jump.
+    /// Returns true if the function switches between sides.
     pub fn has_switches(self) -> bool {
-        matches!(
-            self,
-            Self::Abs
-                | Self::Sign
-                | Self::Min
-                | Self::Max
-                | Self::Deadzone
-                | Self::Contact
-                | Self::Above
-        )
+        self.has(Kink) || self.has(Step)
     }
 
     /// Returns true if the value of the function jumps: at its surface, or at the cut of an angle.
     pub fn has_jump(self) -> bool {
-        matches!(self, Self::Sign | Self::Contact | Self::Above | Self::Atan2)
+        self.has(Step) || self.has(Cut)
     }
 
-    fn entry(self) -> Option<&'static (&'static str, Self, &'static [&'static str])> {
-        FUNCTIONS.iter().find(|(_, function, _)| *function == self)
+    /// Returns true if the function jumps and is constant elsewhere.
+    pub fn is_step(self) -> bool {
+        self.has(Step)
+    }
+
+    /// Returns true if f(-x) = f(x).
+    pub fn is_even(self) -> bool {
+        self.has(Even)
+    }
+
+    /// Returns true if f(-x) = -f(x).
+    pub fn is_odd(self) -> bool {
+        self.has(Odd)
+    }
+
+    fn has(self, property: Property) -> bool {
+        self.entry()
+            .is_some_and(|(.., properties)| properties.contains(&property))
+    }
+
+    fn entry(self) -> Option<&'static Entry> {
+        FUNCTIONS.iter().find(|(_, function, ..)| *function == self)
     }
 }
 
@@ -116,14 +152,37 @@ pub fn reservation_reason(word: &str) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::function::call;
 
     #[test]
     fn every_function_is_found_by_name() {
-        for (name, function, arguments) in FUNCTIONS {
+        for (name, function, arguments, _) in FUNCTIONS {
             assert_eq!(Function::from_name(name), Some(function));
             assert_eq!((function.name(), function.arguments()), (name, arguments));
             assert!(reservation_reason(name).is_some());
         }
         assert_eq!(Function::from_name("dot"), None);
+    }
+
+    #[test]
+    fn properties_agree_with_values() {
+        for (name, function, arguments, _) in FUNCTIONS {
+            let value = |x: f64| call(function, x, 0.25);
+            let holds = |is_equal: &dyn Fn(f64) -> bool| [0.1, 0.4, 0.9].into_iter().all(is_equal);
+            if arguments.len() == 1 {
+                assert_eq!(
+                    holds(&|x| value(-x) == value(x)),
+                    function.is_even(),
+                    "{name}"
+                );
+                assert_eq!(
+                    holds(&|x| value(-x) == -value(x)),
+                    function.is_odd(),
+                    "{name}"
+                );
+            }
+            let is_constant = value(0.5) == value(0.75) && value(-0.5) == value(-0.75);
+            assert_eq!(is_constant, function.is_step(), "{name}");
+        }
     }
 }

@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 
 use eomgen_model_spec::ids::InputId;
-use eomgen_model_spec::model::{Function, Model};
+use eomgen_model_spec::model::Model;
 use eomgen_model_spec::span::Span;
 
 use crate::mechanics::forces::{guards, surfaces};
@@ -228,10 +228,7 @@ impl Steps {
 fn is_step(graph: &Graph, id: NodeId) -> bool {
     let jumps = match graph.operation(id) {
         Operation::Select { is_switch, .. } => *is_switch && graph.guarded_power(id).is_none(),
-        Operation::Call(function, _) => matches!(
-            function,
-            Function::Sign | Function::Above | Function::Contact
-        ),
+        Operation::Call(function, _) => function.is_step(),
         _ => false,
     };
     jumps && !graph.dependence(id).is_parameter_only()

@@ -1,6 +1,6 @@
 //! Observables and their time derivatives along the motion, with the derived accelerations.
 
-use eomgen_model_spec::model::{Function, Observable};
+use eomgen_model_spec::model::Observable;
 
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::translate::{DeriveError, Derived, Translator};
@@ -61,12 +61,7 @@ fn can_jump(graph: &Graph, node: NodeId) -> bool {
             return false;
         }
         match graph.operation(*id) {
-            Operation::Call(function, _) => {
-                matches!(
-                    function,
-                    Function::Sign | Function::Above | Function::Contact
-                )
-            }
+            Operation::Call(function, _) => function.is_step(),
             Operation::Select { is_switch, .. } => *is_switch,
             _ => false,
         }

@@ -9,7 +9,6 @@
 use std::collections::{HashMap, HashSet};
 
 use eomgen_model_spec::ids::{FieldId, InputId};
-use eomgen_model_spec::model::Function;
 
 use crate::symbolic::node_map::NodeMap;
 pub use crate::symbolic::operation::{
@@ -323,7 +322,7 @@ impl Graph {
             return 0;
         }
         let own = match operation {
-            Operation::Call(function, _) => !is_quick(*function),
+            Operation::Call(function, _) => !function.has_switches(),
             Operation::Power(..) => true,
             _ => false,
         };
@@ -418,18 +417,4 @@ impl Graph {
         found.sort_unstable();
         found
     }
-}
-
-/// Returns true if a function takes at most as long as a few additions.
-fn is_quick(function: Function) -> bool {
-    matches!(
-        function,
-        Function::Abs
-            | Function::Sign
-            | Function::Min
-            | Function::Max
-            | Function::Deadzone
-            | Function::Contact
-            | Function::Above
-    )
 }

@@ -448,17 +448,8 @@ impl Graph {
 
 /// Returns true if |function(x)| <= C |x| near 0.
 pub(super) fn vanishes_with_argument(function: Function) -> bool {
-    matches!(
-        function,
-        Function::Abs
-            | Function::Sin
-            | Function::Tan
-            | Function::Asin
-            | Function::Atan
-            | Function::Sinh
-            | Function::Tanh
-            | Function::Deadzone
-    )
+    function.is_odd() && !function.has_jump()
+        || matches!(function, Function::Abs | Function::Deadzone)
 }
 
 /// Returns the node with all reciprocals of roots of `argument` guarded; with a condition, only where it is 0.

@@ -306,21 +306,11 @@ impl Graph {
                 return self.constant(value);
             }
             if let Some(positive) = self.without_minus(a) {
-                match function {
-                    Function::Cos | Function::Cosh | Function::Abs => {
-                        return self.call(function, &[positive]);
-                    }
-                    Function::Sin
-                    | Function::Tan
-                    | Function::Asin
-                    | Function::Atan
-                    | Function::Sinh
-                    | Function::Tanh
-                    | Function::Sign => {
-                        let value = self.call(function, &[positive]);
-                        return self.negate(value);
-                    }
-                    _ => {}
+                if function.is_even() {
+                    return self.call(function, &[positive]);
+                } else if function.is_odd() {
+                    let value = self.call(function, &[positive]);
+                    return self.negate(value);
                 }
             }
         }
@@ -511,13 +501,11 @@ fn power_of_number(value: f64, exponent: i32) -> f64 {
 
 fn exact_value(function: Function, x: f64) -> Option<f64> {
     match function {
-        Function::Sin | Function::Tan | Function::Asin | Function::Atan if x == 0.0 => Some(0.0),
-        Function::Sinh | Function::Tanh if x == 0.0 => Some(0.0),
+        _ if x == 0.0 && function.is_odd() => Some(0.0),
         Function::Cos | Function::Cosh | Function::Exp if x == 0.0 => Some(1.0),
         Function::Ln if x == 1.0 => Some(0.0),
         Function::Sqrt if x >= 0.0 => Some(x.sqrt()),
         Function::Abs => Some(x.abs()),
-        Function::Sign if x == 0.0 => Some(0.0),
         Function::Sign => Some(x.signum()),
         Function::Above if x > 0.0 => Some(1.0),
         Function::Above if x <= 0.0 => Some(0.0),

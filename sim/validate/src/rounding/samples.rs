@@ -4,7 +4,6 @@ use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, Number, Point};
 use eomgen_codegen::rounding::{Format, Quantity, Ranges, ScalarOp, Scalars, quantities};
 use eomgen_codegen::statements::coefficient_values;
-use eomgen_model_spec::function::Function;
 use eomgen_model_spec::interval::Interval;
 
 use crate::double_double::DoubleDouble;
@@ -46,12 +45,10 @@ impl ErrorSampler {
             Format::Single => evaluator.in_single_precision(&coefficient_values(program)),
         };
         let jumps = scalars.list.iter().map(|scalar| scalar.op);
-        let jumps = jumps.filter(|op| {
-            matches!(
-                op,
-                ScalarOp::Select(_)
-                    | ScalarOp::Call(Function::Sign | Function::Above | Function::Contact, ..)
-            )
+        let jumps = jumps.filter(|op| match op {
+            ScalarOp::Select(_) => true,
+            ScalarOp::Call(function, ..) => function.is_step(),
+            _ => false,
         });
         let still = Interval {
             low: 0.0,

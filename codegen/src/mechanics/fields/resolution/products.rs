@@ -2,7 +2,7 @@
 //! constant along it.
 
 use eomgen_model_spec::ast::BinaryOperator;
-use eomgen_model_spec::model::{Expr, ExprKind, Function, Model};
+use eomgen_model_spec::model::{Expr, ExprKind, Model};
 
 use super::super::contents::{Contents, contents};
 use super::super::degree::whole_exponent;
@@ -53,10 +53,9 @@ pub(super) fn expand<'m>(model: &Model, integrand: &'m Expr) -> Expansion<'m> {
 pub(super) fn moving_jump<'m>(model: &Model, integrand: &'m Expr) -> Option<&'m Expr> {
     let mut found = None;
     integrand.visit(&mut |part| {
-        let ExprKind::Call(Function::Above | Function::Sign | Function::Contact, arguments) =
-            &part.kind
-        else {
-            return;
+        let arguments = match &part.kind {
+            ExprKind::Call(function, arguments) if function.is_step() => arguments,
+            _ => return,
         };
         let mut all = Contents::default();
         for argument in arguments {
