@@ -24,3 +24,27 @@ pub(super) fn check_header(name: &str) -> Result<(), EmitError> {
         hidden: lower,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Headers of C99, ISO/IEC 9899:1999, 7.1.2.
+    const C99: [&str; 24] = [
+        "assert", "complex", "ctype", "errno", "fenv", "float", "inttypes", "iso646", "limits",
+        "locale", "math", "setjmp", "signal", "stdarg", "stdbool", "stddef", "stdint", "stdio",
+        "stdlib", "string", "tgmath", "time", "wchar", "wctype",
+    ];
+
+    #[test]
+    fn headers_of_c99_are_rejected_in_any_case() {
+        for name in C99 {
+            for name in [name.to_owned(), name.to_uppercase()] {
+                let error = check_header(&name).map_err(|error| error.to_string());
+                let message = error.expect_err(&name);
+                assert!(message.contains("give the model another name"), "{message}");
+            }
+            assert_eq!(check_header(&format!("{name}_2")), Ok(()), "{name}");
+        }
+    }
+}
