@@ -197,12 +197,25 @@ pub fn file_place(path: &Path) -> Result<PathBuf> {
             &"it is not a file; give the name of a file, or - for stdout",
         )),
         Err(_) if path.file_name().is_none() => Err(failed(&"give the name of a file")),
-        Err(_) => match folder_of(path).ancestors().find(|folder| folder.exists()) {
-            Some(found) if !found.is_dir() => {
-                Err(failed(&format!("{} is not a folder", found.display())))
+        Err(_) => {
+            // The first name in use, also that of a link to nothing.
+            let mut folders = folder_of(path).ancestors();
+            match folders.find(|folder| folder.symlink_metadata().is_ok()) {
+                Some(found) if !found.is_dir() => Err(failed(&describe_no_folder(found))),
+                _ => Ok(path.to_owned()),
             }
-            _ => Ok(path.to_owned()),
-        },
+        }
+    }
+}
+
+fn describe_no_folder(path: &Path) -> String {
+    let shown = path.display();
+    match std::fs::read_link(path) {
+        Ok(target) if !path.exists() => format!(
+            "{shown} is a link to {}, which does not exist: create that folder, or remove the link",
+            target.display()
+        ),
+        _ => format!("{shown} is not a folder"),
     }
 }
 

@@ -10,6 +10,7 @@ use crate::document::SCHEMA;
 use crate::engines::{self, Submission};
 use crate::error::{Error, Result, print_json, print_text, warn};
 use crate::model::{load, note_dependent_constraints, order, orders};
+use crate::output::file_place;
 use crate::progress::Bar;
 use crate::settings::settings;
 use crate::sweep_files::finish;
@@ -29,6 +30,7 @@ pub fn run(options: &Sweep) -> Result {
     }
     let measures = sweep.measures().map_err(input_error)?;
     let job = sweep.job(&measures).map_err(input_error)?;
+    file_place(&options.out.join("sweep.csv"))?;
     let folder = Folder::open(&options.out, job).map_err(input_error)?;
     if let Some(engine) = options.engine {
         let Submission { document, text } = engines::submit(engine, options)?;

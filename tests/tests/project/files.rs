@@ -62,6 +62,24 @@ fn output_in_place_of_a_non_file_is_rejected() {
     assert_eq!(std::fs::read(&file).expect("the file"), b"kept");
 }
 
+#[cfg(unix)]
+#[test]
+fn output_folder_that_is_a_link_to_nothing_is_rejected() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let link = folder.path().join("link");
+    std::os::unix::fs::symlink("missing", &link).expect("a link");
+    for out in [path_text(&link), path_text(&link.join("deeper"))] {
+        let message = run_rejected(&["generate", &spec("pendulum"), "--out", &out]);
+        let cause = format!(
+            "{} is a link to missing, which does not exist",
+            link.display()
+        );
+        assert!(message.contains(&cause), "{message}");
+        assert!(message.contains("create that folder"), "{message}");
+    }
+    assert!(link.is_symlink());
+}
+
 #[test]
 fn inputs_are_never_replaced_by_outputs() {
     let folder = tempfile::tempdir().expect("a folder");
