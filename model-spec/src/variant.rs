@@ -483,7 +483,10 @@ fn check_value(parameter: &Parameter, value: f64) -> Result<(), ModelError> {
     if !value.is_finite() {
         let message = format!("the value of `{name}` evaluates to {value}");
         let error = ModelError::new(message).at(place);
-        return Err(error.help("look for a division by 0 or a square root of a negative number"));
+        return Err(error.help(match value.is_nan() {
+            true => "look for a division by 0 or a square root of a negative number",
+            false => "the value in SI units exceeds 1.8e308: look for a division by 0, or for a number that is too large",
+        }));
     }
     let shown = |value: f64| format!("{} {}", parameter.unit.from_si(value), parameter.unit);
     let bound = match (parameter.min, parameter.max) {

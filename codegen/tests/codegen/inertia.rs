@@ -82,6 +82,25 @@ fn missing_or_negative_inertia_is_rejected_at_its_coordinate() {
 }
 
 #[test]
+fn infinite_inertia_is_explained_by_a_large_parameter() {
+    let text = spec(
+        "1/2*m*dot(x)^2 + 1/2*m*(l/y)^2*dot(y)^2",
+        ", initial = 1e-200",
+    );
+    let found = found(&text).unwrap();
+    assert!(
+        found.message.contains("`y` has the inertia inf"),
+        "{}",
+        found.message
+    );
+    let help = found.help.unwrap();
+    assert!(
+        help.contains("exceeds 1.8e308") && help.contains("too large"),
+        "{help}"
+    );
+}
+
+#[test]
 fn inertia_that_vanishes_elsewhere_is_accepted() {
     for (kinetic, second) in [
         ("1/2*m*dot(x)^2 + 1/2*m*(y/l)^2*dot(y)^2", ", initial = 1"),

@@ -12,6 +12,7 @@ use super::checks::{
 use super::derived_outputs::DerivedOutputs;
 use super::oracle::{Oracle, OracleError};
 use super::outputs::Outputs;
+use super::overflow::name_overflowing_parameter;
 use super::variant::Variant;
 use eomgen_codegen::identity::find;
 use eomgen_codegen::program::Program;
@@ -73,7 +74,7 @@ pub struct Subject<'s> {
 /// Runs all checks and returns the certificate of `subject`. An error that prevents the checks, for
 /// example in the derivation of the variant, is reported as a failed check.
 pub fn certify(subject: &Subject<'_>) -> Certificate {
-    let (checks, coverage) = run_checks(subject).unwrap_or_else(|message| {
+    let (mut checks, coverage) = run_checks(subject).unwrap_or_else(|message| {
         let worst = Worst::from_deviation(f64::INFINITY, message);
         let check = Check::from_deviation("accelerations", worst, ROW_TOLERANCE);
         (vec![check], Coverage::default())
@@ -83,6 +84,7 @@ pub fn certify(subject: &Subject<'_>) -> Certificate {
     let unit = subject.unit.map(|(unit, ..)| unit);
     let sources = (emitted, subject.c_sources, casadi, unit);
     let about = certificate_header(subject.model, subject.order, subject.parameters, sources);
+    name_overflowing_parameter(&mut checks, &about.parameters);
     Certificate::new(about, Some(coverage), checks)
 }
 

@@ -41,6 +41,7 @@ pub mod meaning;
 pub mod model_certificate;
 pub mod oracle;
 pub mod outputs;
+mod overflow;
 pub mod random;
 pub mod references;
 mod regime_search;

@@ -106,6 +106,10 @@ struct Machine<'m> {
     moves: bool,
 }
 
+/// Help for an inertia that is not finite.
+const NOT_FINITE_HELP: &str = "a term of [kinetic] exceeds 1.8e308 or leaves the domain of a function: look for a parameter \
+                               that is too large, a division by 0, or a logarithm of 0";
+
 impl Machine<'_> {
     fn check_mass(&self, mass: &SparseRows) -> Result<(), Diagnostic> {
         match find_defect(mass) {
@@ -119,7 +123,10 @@ impl Machine<'_> {
             Defect::Entry(place, value) => self.single_diagnostic(*place, *value),
             Defect::Direction { rates, negative } => self.combined_diagnostic(rates, *negative),
         }
-        .with_optional_help(Some(self.help()))
+        .with_optional_help(Some(match lack {
+            Defect::Entry(_, value) if !value.is_finite() => NOT_FINITE_HELP.to_owned(),
+            _ => self.help(),
+        }))
     }
 
     fn single_diagnostic(&self, place: usize, value: f64) -> Diagnostic {
@@ -135,10 +142,11 @@ impl Machine<'_> {
             "{} `{name}` has {what} at the initial state: the mass matrix is not positive definite",
             self.kind(place)
         );
-        Diagnostic::error(message).with_span(
-            self.span(place),
-            "its kinetic energy does not grow with its rate",
-        )
+        let label = match value.is_finite() {
+            true => "its kinetic energy does not grow with its rate",
+            false => "its kinetic energy is not finite",
+        };
+        Diagnostic::error(message).with_span(self.span(place), label)
     }
 
     fn combined_diagnostic(&self, rates: &[f64], negative: bool) -> Diagnostic {
