@@ -89,6 +89,8 @@ pub enum SimulationError {
     TooFast,
     /// The state diverged.
     Diverged,
+    /// No state near that of the motion satisfies the constraints.
+    OffConstraints,
     /// The records give the motion, but not that of all states.
     StateNotRecorded,
     /// Stop was requested.
@@ -112,6 +114,9 @@ impl fmt::Display for SimulationError {
                 "the state diverged, or a function left its domain (for example sqrt \
              of a negative number)",
             ),
+            Self::OffConstraints => {
+                f.write_str("no state near the motion satisfies the constraints of the model")
+            }
             Self::Stopped => f.write_str(STOPPED),
             Self::TooMuchWork => f.write_str(TOO_MUCH_WORK),
         }

@@ -1,11 +1,13 @@
 //! Shared code of the integration tests: shipped specifications with their derived variants
 //! ([`models`]), generated models with their motions ([`motions`]) or certificates ([`certified`]),
 //! random correct models ([`smooth_models`]), the built program ([`program`]), commands printed in
-//! the docs ([`pages`]), synthetic records ([`measured`], with [`logistic_noise`], and [`moving_base`] with
-//! [`moving_machines`]) and the arm
+//! the docs ([`pages`]), synthetic records ([`measured`], with [`logistic_noise`], [`moving_base`] with
+//! [`moving_machines`], and [`constrained_records`] of [`constrained_machines`]) and the arm
 //! integrated in extended precision ([`taylor`]).
 
 pub mod certified;
+pub mod constrained_machines;
+pub mod constrained_records;
 pub mod logistic_noise;
 pub mod measured;
 pub mod models;

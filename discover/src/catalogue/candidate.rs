@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use eomgen_model_spec::edit::{self, Edit, EditError, NewParameter, NewValue, SetParameter};
-use eomgen_model_spec::model::{Model, Parameter, ParameterValue};
+use eomgen_model_spec::model::{Model, Parameter, ParameterValue, STABILISATION_RATE};
 
 use crate::catalogue::effect::{Change, Effect, SiteKind};
 use crate::catalogue::loads::{Load, find_loads};
@@ -425,7 +425,9 @@ pub fn shift_parameter(parameter: &Parameter) -> Option<Candidate> {
         return None;
     };
     let is_count = parameter.unit.text == "1" && from.fract() == 0.0;
-    if from == 0.0 || is_count {
+    // No effect on motions that satisfy the constraints.
+    let is_stabilisation = parameter.name == STABILISATION_RATE;
+    if from == 0.0 || is_count || is_stabilisation {
         return None;
     }
     let shifted = CandidateParameter {

@@ -11,7 +11,7 @@ use crate::fit::gauss_newton::{
 use crate::fit::initial_states::update_carried_prior;
 use crate::fit::jump_free_quotients::limit_quotient;
 use crate::fit::prior::InitialStatePrior;
-use crate::fit::sensitivity::WindowDerivatives;
+use crate::fit::sensitivity::{WindowDerivatives, move_along, range_along};
 use crate::fit::shooting::{Residual, Shooting};
 use crate::fit::variable_projection::compute_triangular_factor;
 use crate::ids::{UnknownId, WindowId};
@@ -143,17 +143,30 @@ fn central_differences(
             quotients.columns(ends, &vec![steps; initial_states.len()])
         })
         .collect();
-    let by_state: Vec<Columns> = (shooting.ranges.unwrap_or_default().iter().enumerate())
-        .map(|(state, range)| {
-            let sizes = near.iter().map(|of| {
-                let steepest = of.as_ref().map(|of| of.by_state.column(state).amax());
-                small_change(*range, steepest.unwrap_or(0.0))
+    let ranges = shooting.ranges.unwrap_or_default();
+    let all_states = DMatrix::identity(ranges.len(), ranges.len());
+    let directions: Vec<&DMatrix<f64>> = (near.iter())
+        .map(|of| of.as_ref().map_or(&all_states, |of| &of.directions))
+        .collect();
+    let most = directions.iter().map(|of| of.ncols()).max().unwrap_or(0);
+    let by_state: Vec<Columns> = (0..most)
+        .map(|number| {
+            let sizes = near.iter().zip(&directions).map(|(of, directions)| {
+                if number >= directions.ncols() {
+                    return 0.0;
+                }
+                let steepest = of.as_ref().map(|of| of.by_state.column(number).amax());
+                let range = range_along(&directions.column(number), ranges);
+                small_change(range, steepest.unwrap_or(0.0))
             });
             let sizes: Vec<f64> = sizes.collect();
             let ends = [1.0, -1.0].map(|sign| {
                 let mut moved = initial_states.clone();
-                let starts = moved.iter_mut().zip(&sizes);
-                starts.for_each(|(start, size)| start[state] += sign * size);
+                for ((start, size), directions) in moved.iter_mut().zip(&sizes).zip(&directions) {
+                    if number < directions.ncols() {
+                        *start = move_along(start, &directions.column(number), sign * size);
+                    }
+                }
                 shooting.compute_residuals(theta, &moved)
             });
             let steps: Vec<[f64; 2]> = sizes.iter().map(|size| [*size; 2]).collect();
@@ -176,7 +189,8 @@ fn central_differences(
                 })
             };
             Some(WindowDerivatives {
-                by_state: matrix(&by_state)?,
+                by_state: matrix(&by_state[..directions[window].ncols()])?,
+                directions: directions[window].clone(),
                 by_unknown: matrix(&by_unknown)?,
                 residual: DVector::from_vec(values),
                 end_state: last,

@@ -6,6 +6,7 @@
 
 use crate::ids::WindowId;
 use crate::interval::Interval;
+use crate::model::admissible_states::AdmissibleStates;
 use crate::model::unknowns::NormalPrior;
 use nalgebra::{DMatrix, DVector};
 
@@ -248,13 +249,16 @@ pub(crate) fn follow_unknowns(
         theta.len(),
         theta.iter().zip(&present.theta).map(|(new, old)| new - old),
     );
-    let moved = |damping: f64| -> Vec<Vec<f64>> {
+    let values = shooting.parameter_values(&theta);
+    let mut admissible = AdmissibleStates::new(shooting.model, &values);
+    let mut moved = |damping: f64| -> Vec<Vec<f64>> {
         let pairs = present.initial_states.iter().zip(windows);
+        let pairs = WindowId::first(windows.len()).zip(pairs);
         pairs
-            .map(|(start, window)| {
+            .map(|(id, (start, window))| {
                 let window = window.as_ref().filter(|_| shooting.ranges.is_some());
                 let step = window.and_then(|w| w.solve_initial_state_step(&change, damping, prior));
-                moved_start(shooting, start, step)
+                moved_start(shooting, &mut admissible, (id, start), step)
             })
             .collect()
     };
@@ -305,6 +309,8 @@ pub(crate) fn correct_initial_states(
         return estimate;
     }
     let held = DVector::zeros(shooting.unknowns.len());
+    let values = shooting.parameter_values(&estimate.theta);
+    let mut admissible = AdmissibleStates::new(shooting.model, &values);
     let mut best = estimate;
     let mut residuals = shooting.compute_residuals(&best.theta, &best.initial_states);
     for _ in 0..thresholds::MAX_STATE_CORRECTIONS {
@@ -320,7 +326,7 @@ pub(crate) fn correct_initial_states(
                 eliminate_initial_state(&here, prior, window, start)
                     .solve_initial_state_step(&held, 0.0, prior)
             });
-            moved_start(shooting, start, step)
+            moved_start(shooting, &mut admissible, (window, start), step)
         });
         let moved: Vec<Vec<f64>> = moved.collect();
         let corrected = shooting.compute_residuals(&best.theta, &moved);
@@ -348,13 +354,20 @@ pub(crate) fn correct_initial_states(
     best
 }
 
-/// Returns an initial state moved by a step, if there is one, to where the model lives.
-fn moved_start(shooting: &Shooting<'_>, start: &[f64], step: Option<DVector<f64>>) -> Vec<f64> {
+/// Returns an initial state of a window moved by a step, if there is one, to the nearest admissible state.
+fn moved_start(
+    shooting: &Shooting<'_>,
+    admissible: &mut AdmissibleStates<'_>,
+    (window, start): (WindowId, &[f64]),
+    step: Option<DVector<f64>>,
+) -> Vec<f64> {
     let Some(step) = step else {
         return start.to_vec();
     };
     let moved = start.iter().zip(step.iter()).map(|(x, d)| x + d);
-    shooting.model.clamp_state(moved.collect())
+    let window = &shooting.windows.windows[window];
+    let at = (window.times[0], shooting.windows.inputs(window));
+    admissible.find_nearest(moved.collect(), at)
 }
 
 fn total(estimate: &Estimate, prior: &InitialStatePrior, window: WindowId) -> f64 {
@@ -436,7 +449,7 @@ fn inner_solve_on_part(
             .find_map(|damping| {
                 let step = block.solve_initial_state_step(&held, *damping, prior)?;
                 let moved = present.iter().zip(step.iter()).map(|(x, d)| x + d);
-                let moved = sensitivities.clamp_state(moved.collect());
+                let moved = sensitivities.admissible_state(window, moved.collect());
                 let total = total(&sensitivities.compute_residual(window, &moved)?, &moved);
                 (total < cost).then_some((moved, total))
             });

@@ -3,7 +3,7 @@
 
 use crate::ids::WindowId;
 use eomgen_codegen::program::evaluator::Evaluator;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, DVectorView};
 
 use crate::fit::acceleration_differences::{AccelerationDifferences, PerturbedEvaluator};
 use crate::fit::jump_free_quotients::limit_quotient;
@@ -22,8 +22,11 @@ pub struct WindowDerivatives {
     /// Simulated minus measured, in standard deviations: a row per sample, a number per channel; 0
     /// for missing measurements.
     pub residual: DVector<f64>,
-    /// Derivatives by the initial state.
+    /// Derivatives along the directions.
     pub by_state: DMatrix<f64>,
+    /// Independent directions of the initial state, a column each: all states, or with constraints a basis of the changes
+    /// that they allow.
+    pub directions: DMatrix<f64>,
     /// Derivatives by the unknowns.
     pub by_unknown: DMatrix<f64>,
     /// State at the end of the window.
@@ -63,9 +66,15 @@ enum Neighbour<'a> {
 }
 
 impl<'a> SensitivityEvaluator<'a> {
-    /// Moves a state into the domain of the model.
-    pub fn clamp_state(&self, state: Vec<f64>) -> Vec<f64> {
-        self.shooting.model.clamp_state(state)
+    /// Moves an initial state of a window into the domain of the model and onto its constraints.
+    pub fn admissible_state(&self, window: WindowId, state: Vec<f64>) -> Vec<f64> {
+        let clamped = self.shooting.model.clamp_state(state);
+        let samples = &self.shooting.windows.windows[window];
+        let inputs = self.shooting.windows.inputs(samples);
+        let moved = self
+            .base
+            .move_onto_constraints(&clamped, samples.times[0], inputs);
+        moved.unwrap_or(clamped)
     }
 
     /// Creates the evaluator at these unknowns; `None` if the model cannot be simulated.
@@ -237,6 +246,7 @@ impl<'a> SensitivityEvaluator<'a> {
         Some(WindowDerivatives {
             residual,
             by_state,
+            directions: DMatrix::identity(start.len(), states),
             by_unknown,
             end_state: integrated.outputs.end_state,
         })
@@ -290,9 +300,16 @@ impl<'a> SensitivityEvaluator<'a> {
         if residual.iter().any(|r| !r.is_finite()) {
             return None;
         }
+        let directions = match shooting.ranges {
+            Some(ranges) => {
+                self.base
+                    .find_initial_directions(start, (times.times[0], inputs), ranges)?
+            }
+            None => DMatrix::zeros(start.len(), 0),
+        };
         let by_state = match derivatives {
             Some(derivatives) => self.columns(samples, times, start.len(), &derivatives),
-            None => self.by_state(window, start, &residual)?,
+            None => self.by_state(window, start, &residual, &directions)?,
         };
         let mut by_unknown = DMatrix::zeros(residual.len(), self.neighbours.len());
         let mut sensed = Vec::new();
@@ -338,6 +355,7 @@ impl<'a> SensitivityEvaluator<'a> {
         Some(WindowDerivatives {
             residual,
             by_state,
+            directions,
             by_unknown,
             end_state: outputs.end_state,
         })
@@ -392,29 +410,25 @@ impl<'a> SensitivityEvaluator<'a> {
         matrix
     }
 
-    /// The derivative by the initial state; no columns where that is given.
+    /// The derivative along directions of the initial state.
     fn by_state(
         &mut self,
         window: WindowId,
         start: &[f64],
         residual: &DVector<f64>,
+        directions: &DMatrix<f64>,
     ) -> Option<DMatrix<f64>> {
-        let shooting = self.shooting;
-        let Some(ranges) = shooting.ranges else {
-            return Some(DMatrix::zeros(residual.len(), 0));
-        };
-        let mut matrix = DMatrix::zeros(residual.len(), start.len());
-        let mut moved = start.to_vec();
-        for state in 0..start.len() {
-            let largest = thresholds::MAX_QUOTIENT_IN_RANGES * ranges[state];
-            let mut step = largest;
+        let ranges = self.shooting.ranges.unwrap_or_default();
+        let mut matrix = DMatrix::zeros(residual.len(), directions.ncols());
+        for (number, direction) in directions.column_iter().enumerate() {
+            let mut step = thresholds::MAX_QUOTIENT_IN_RANGES * range_along(&direction, ranges);
             // The step that moves the outputs as wanted is found by trying: what a state does
             // to them differs by orders of magnitude.
             for _ in 0..3 {
-                moved[state] = start[state] + step;
+                let moved = move_along(start, &direction, step);
                 let after = self.compute_residual(window, &moved)?;
                 let differences = after.values.iter().zip(residual.iter()).map(|(a, b)| a - b);
-                let mut column = matrix.column_mut(state);
+                let mut column = matrix.column_mut(number);
                 let mut furthest: f64 = 0.0;
                 for (slot, difference) in column.iter_mut().zip(differences) {
                     *slot = difference / step;
@@ -426,10 +440,25 @@ impl<'a> SensitivityEvaluator<'a> {
                 }
                 step *= wanted / furthest;
             }
-            moved[state] = start[state];
         }
         Some(matrix)
     }
+}
+
+/// Returns the largest multiple of a direction that moves no state by more than its range.
+pub(crate) fn range_along(direction: &DVectorView<'_, f64>, ranges: &[f64]) -> f64 {
+    let parts = direction
+        .iter()
+        .zip(ranges)
+        .filter(|(part, _)| **part != 0.0);
+    let multiples = parts.map(|(part, range)| range / part.abs());
+    multiples.fold(f64::INFINITY, f64::min)
+}
+
+/// Returns a state moved by a multiple of a direction.
+pub(crate) fn move_along(state: &[f64], direction: &DVectorView<'_, f64>, by: f64) -> Vec<f64> {
+    let pairs = state.iter().zip(direction.iter());
+    pairs.map(|(x, part)| x + by * part).collect()
 }
 
 /// Computes the residuals and derivatives of all windows. `level`: size of the residuals, in

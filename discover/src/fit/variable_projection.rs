@@ -13,7 +13,8 @@ pub struct ReducedBlock {
     /// R of the QR factorisation of the columns by state, by unknowns and of the residual, with the
     /// priors.
     pub factor: DMatrix<f64>,
-    states: usize,
+    /// Independent directions of the initial state.
+    directions: DMatrix<f64>,
 }
 
 /// Eliminates the initial state of a window.
@@ -26,8 +27,9 @@ pub fn eliminate_initial_state(
     let states = linear.by_state.ncols();
     let unknowns = linear.by_unknown.ncols();
     let rows = linear.residual.len();
+    let prior_rows = linear.directions.nrows();
     let mut matrix = DMatrix::zeros(
-        (rows + states).max(states + unknowns + 1),
+        (rows + prior_rows).max(states + unknowns + 1),
         states + unknowns + 1,
     );
     matrix
@@ -43,31 +45,32 @@ pub fn eliminate_initial_state(
         let weights = prior.deviation_rows(window);
         if states > 0 {
             matrix
-                .view_mut((rows, 0), (states, states))
-                .copy_from(&weights);
-            let deviation = DVector::from_fn(states, |state, _| start[state] - mean[state]);
+                .view_mut((rows, 0), (prior_rows, states))
+                .copy_from(&(&weights * &linear.directions));
+            let deviation = DVector::from_fn(prior_rows, |state, _| start[state] - mean[state]);
             let last = (rows, states + unknowns);
             matrix
-                .view_mut(last, (states, 1))
+                .view_mut(last, (prior_rows, 1))
                 .copy_from(&(weights * deviation));
         }
     }
     ReducedBlock {
         factor: matrix.qr().r(),
-        states,
+        directions: linear.directions.clone(),
     }
 }
 
 impl ReducedBlock {
     /// Returns the columns of unknowns and residual after the elimination.
     pub fn reduced_columns(&self) -> DMatrix<f64> {
-        let remaining = self.factor.ncols() - self.states;
+        let states = self.directions.ncols();
+        let remaining = self.factor.ncols() - states;
         self.factor
-            .view((self.states, self.states), (remaining, remaining))
+            .view((states, states), (remaining, remaining))
             .into_owned()
     }
 
-    /// Returns the step of the initial state for a step of the unknowns, with a damping in weights
+    /// Returns the step of the initial state, along its directions, for a step of the unknowns, with a damping in weights
     /// of its prior.
     pub fn solve_initial_state_step(
         &self,
@@ -75,20 +78,22 @@ impl ReducedBlock {
         damping: f64,
         prior: &InitialStatePrior,
     ) -> Option<DVector<f64>> {
-        let (n, p) = (self.states, unknowns.len());
-        let mut rows = DMatrix::zeros(2 * n.max(1), n + 1);
+        let (n, p) = (self.directions.ncols(), unknowns.len());
+        let damped_rows = self.directions.nrows();
+        let mut rows = DMatrix::zeros((n + damped_rows).max(2), n + 1);
         rows.view_mut((0, 0), (n, n))
             .copy_from(&self.factor.view((0, 0), (n, n)));
         let right =
             -(self.factor.view((0, n), (n, p)) * unknowns + self.factor.column(n + p).rows(0, n));
         rows.view_mut((0, n), (n, 1)).copy_from(&right);
         if !prior.sd.is_empty() && n > 0 {
-            let damped = prior.damping_rows() * damping.sqrt();
-            rows.view_mut((n, 0), (n, n)).copy_from(&damped);
+            let damped = prior.damping_rows() * &self.directions * damping.sqrt();
+            rows.view_mut((n, 0), (damped_rows, n)).copy_from(&damped);
         }
         let factor = rows.qr().r();
         let right = factor.column(n).rows(0, n).into_owned();
-        factor.view((0, 0), (n, n)).solve_upper_triangular(&right)
+        let step = factor.view((0, 0), (n, n)).solve_upper_triangular(&right)?;
+        Some(&self.directions * step)
     }
 }
 
@@ -100,7 +105,7 @@ pub struct StateProjection {
     pub residual: DVector<f64>,
     /// Derivatives by the unknowns.
     pub by_unknown: DMatrix<f64>,
-    /// By the initial state, with the priors' rows below.
+    /// Along the directions of the initial state, with the priors' rows below.
     by_state: DMatrix<f64>,
     /// Residuals of the rows of the priors.
     prior_residual: DVector<f64>,
@@ -115,18 +120,19 @@ impl StateProjection {
         start: &[f64],
     ) -> Self {
         let (rows, states) = linear.by_state.shape();
-        let mut by_state = DMatrix::zeros(rows + states, states);
+        let prior_rows = linear.directions.nrows();
+        let mut by_state = DMatrix::zeros(rows + prior_rows, states);
         by_state
             .view_mut((0, 0), (rows, states))
             .copy_from(&linear.by_state);
-        let mut prior_residual = DVector::zeros(states);
+        let mut prior_residual = DVector::zeros(prior_rows);
         if let Some(mean) = prior.mean.get(window.index()) {
             let weights = prior.deviation_rows(window);
             if states > 0 {
-                let deviation = DVector::from_fn(states, |state, _| start[state] - mean[state]);
+                let deviation = DVector::from_fn(prior_rows, |state, _| start[state] - mean[state]);
                 by_state
-                    .view_mut((rows, 0), (states, states))
-                    .copy_from(&weights);
+                    .view_mut((rows, 0), (prior_rows, states))
+                    .copy_from(&(&weights * &linear.directions));
                 prior_residual.copy_from(&(weights * deviation));
             }
         }
@@ -149,7 +155,7 @@ impl StateProjection {
         }
         let q = self.by_state.clone().qr().q();
         let mut along = q.rows(0, rows).transpose() * columns;
-        let of_prior = q.rows(rows, states).transpose() * &self.prior_residual;
+        let of_prior = q.rows(rows, q.nrows() - rows).transpose() * &self.prior_residual;
         let mut last = along.column_mut(count - 1);
         last += of_prior;
         whole - along.transpose() * along
@@ -157,12 +163,12 @@ impl StateProjection {
 
     /// Returns the part of a residual that the initial state cannot remove.
     pub fn project(&self, residual: &DVector<f64>) -> DVector<f64> {
-        let (rows, states) = (residual.len(), self.by_state.ncols());
-        if states == 0 {
+        let rows = residual.len();
+        if self.by_state.ncols() == 0 {
             return residual.clone();
         }
         let q = self.by_state.clone().qr().q();
-        let (of_residual, of_prior) = (q.rows(0, rows), q.rows(rows, states));
+        let (of_residual, of_prior) = (q.rows(0, rows), q.rows(rows, q.nrows() - rows));
         let along =
             of_residual.transpose() * residual + of_prior.transpose() * &self.prior_residual;
         residual - of_residual * along

@@ -9,6 +9,7 @@ use crate::fit::fit_result::Fit;
 use crate::fit::shooting::{SensorValues, Shooting};
 use crate::free_function::smoother::{LocalModel, LocalOutputs, Smoothed, Widths, smooth};
 use crate::free_function::transition::Transition;
+use crate::model::allowed_directions::find_allowed_directions;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::measured_outputs::OutputBuffers;
 use crate::model::problem::EstimationProblem;
@@ -42,9 +43,12 @@ pub(crate) struct ReferenceRecord {
     pub differences: Vec<DVector<f64>>,
     /// Derivatives of the sensor outputs by the state, in standard deviations.
     pub by_state: Vec<DMatrix<f64>>,
+    /// Independent directions of the state at each sample, a column each, SI; empty without constraints.
+    directions: Vec<DMatrix<f64>>,
 }
 
-/// Linearised step from a sample to the next.
+/// Linearised step from a sample to the next. With constraints it begins with the projection onto them, and drives are
+/// projected as well.
 pub(crate) struct ReferenceStep {
     /// Derivatives of the end by the state.
     pub transition: DMatrix<f64>,
@@ -111,6 +115,13 @@ impl ReferenceMotion {
 }
 
 impl ReferenceRecord {
+    /// Returns independent directions of the state at a sample, a column each: all states without constraints.
+    pub fn initial_directions(&self, sample: usize) -> DMatrix<f64> {
+        let count = self.states[sample].len();
+        let own = self.directions.get(sample).cloned();
+        own.unwrap_or_else(|| DMatrix::identity(count, count))
+    }
+
     /// Returns the point at the beginning or, with the same held inputs, at the end of a step.
     pub fn end_point(&self, step: usize, is_end: bool) -> Point<'_> {
         let sample = step + usize::from(is_end);
@@ -215,11 +226,56 @@ impl<'a> ScaledModel<'a> {
             }
         }
         let (widths, Smoothed { states: along, .. }) = best?;
+        let along = self.project_all(used, along)?;
         let states = match self.smooth_record(used, &first, widths, Some(&along)) {
-            Some(smoothed) => smoothed.states,
+            Some(smoothed) => self.project_all(used, smoothed.states)?,
             None => along,
         };
         self.linearise_along(used, &states)
+    }
+
+    /// Moves the scaled states at the samples onto the constraints.
+    fn project_all(
+        &self,
+        used: &UsedRecord<'_>,
+        states: Vec<DVector<f64>>,
+    ) -> Option<Vec<DVector<f64>>> {
+        if !self.simulation.has_constraints() {
+            return Some(states);
+        }
+        let projected = states.iter().enumerate().map(|(sample, state)| {
+            let moved = self.project(used, sample, state)?;
+            let pairs = moved.iter().zip(&self.ranges);
+            Some(DVector::from_iterator(
+                moved.len(),
+                pairs.map(|(x, range)| x / range),
+            ))
+        });
+        projected.collect()
+    }
+
+    /// Returns the state on the constraints, SI, that is nearest to a scaled state at a sample.
+    fn project(
+        &self,
+        used: &UsedRecord<'_>,
+        sample: usize,
+        state: &DVector<f64>,
+    ) -> Option<Vec<f64>> {
+        let (t, inputs) = (used.times[sample], &used.record.inputs);
+        let state = &self.unscale(state);
+        self.simulation.move_onto_constraints(state, t, inputs).ok()
+    }
+
+    /// Returns the derivatives of the projection onto the constraints at a state at a sample, scaled.
+    fn differentiate_projection(
+        &self,
+        used: &UsedRecord<'_>,
+        sample: usize,
+        state: &[f64],
+    ) -> Option<DMatrix<f64>> {
+        let at = (used.times[sample], &used.record.inputs);
+        self.simulation
+            .differentiate_projection(state, at, &self.ranges)
     }
 
     /// Smooths a record once. `along`: scaled states along which the model is linearised; the
@@ -265,7 +321,8 @@ impl<'a> ScaledModel<'a> {
         state: &DVector<f64>,
         end: Option<&DVector<f64>>,
     ) -> Option<LocalModel> {
-        let start = self.unscale(state);
+        let start = self.project(used, sample, state)?;
+        let projection = self.differentiate_projection(used, sample, &start)?;
         let times = &used.times[sample..sample + 2];
         let length = times[1] - times[0];
         let ends = self
@@ -287,7 +344,10 @@ impl<'a> ScaledModel<'a> {
         let jacobian = self.differentiate_rates(point);
         let transition = Transition::of_step(&(jacobian * length))?;
         let first = self.model.degrees_of_freedom();
-        let mut drive = transition.integral.columns(first, self.accelerations.len()) * length;
+        let count = self.accelerations.len();
+        let mut drive = transition.integral.columns(first, count)
+            * projection.view((first, first), (count, count))
+            * length;
         for (column, acceleration) in self.accelerations.iter().enumerate() {
             let factor = acceleration / self.ranges[first + column];
             drive
@@ -299,7 +359,7 @@ impl<'a> ScaledModel<'a> {
         Some(LocalModel {
             state: state.clone(),
             end: DVector::from_iterator(state.len(), reached),
-            transition: transition.exponential,
+            transition: transition.exponential * projection,
             drive,
         })
     }
@@ -351,7 +411,8 @@ impl<'a> ScaledModel<'a> {
     ) -> Option<LocalOutputs> {
         let t = used.times[sample];
         let inputs = &used.record.inputs.evaluate(t);
-        let own = self.unscale(state);
+        let own = self.project(used, sample, state)?;
+        let projection = self.differentiate_projection(used, sample, &own)?;
         let expected = self.measure(Point {
             t,
             state: &own,
@@ -380,7 +441,7 @@ impl<'a> ScaledModel<'a> {
             .then(|| LocalOutputs {
                 state: state.clone(),
                 difference,
-                by_state,
+                by_state: by_state * projection,
             })
     }
 
@@ -410,6 +471,7 @@ impl<'a> ScaledModel<'a> {
             });
         }
         let (mut differences, mut by_state) = (Vec::new(), Vec::new());
+        let mut directions = Vec::new();
         for (sample, state) in states.iter().enumerate() {
             let local = self.linearise_outputs(used, sample, state)?;
             differences.push(-local.difference);
@@ -418,6 +480,11 @@ impl<'a> ScaledModel<'a> {
                 ranges.len(),
                 |r, c| local.by_state[(r, c)] / ranges[c],
             ));
+            if self.simulation.has_constraints() {
+                let own = self.unscale(state);
+                let projection = self.differentiate_projection(used, sample, &own)?;
+                directions.push(find_allowed_directions(&projection, &ranges)?);
+            }
         }
         let inputs = (0..used.times.len()).map(|sample| {
             let next = used.times.get(sample + 1).unwrap_or(&used.times[sample]);
@@ -434,6 +501,7 @@ impl<'a> ScaledModel<'a> {
             steps,
             differences,
             by_state,
+            directions,
         })
     }
 }

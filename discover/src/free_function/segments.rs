@@ -351,8 +351,9 @@ fn build_segment(
     let states = record.states[0].len();
     let rows = samples * channels;
     let mut residual = DVector::zeros(rows);
-    let mut by_state = DMatrix::zeros(rows, states);
-    let mut motion = DMatrix::<f64>::identity(states, states);
+    let directions = record.initial_directions(first);
+    let mut by_state = DMatrix::zeros(rows, directions.ncols());
+    let mut motion = directions.clone();
     let mut defect = DVector::<f64>::zeros(states);
     for sample in 0..samples {
         let outputs = &record.by_state[first + sample];
@@ -387,6 +388,7 @@ fn build_segment(
     let linear = WindowDerivatives {
         residual,
         by_state,
+        directions,
         by_unknown: DMatrix::zeros(rows, 0),
         end_state: Vec::new(),
     };

@@ -2,9 +2,12 @@
 //! outputs, and steps that are short enough for the noise of the sensors. It is simulated in
 //! [`crate::model::simulation`].
 
+use eomgen_codegen::independence::rows::ConstraintRows;
 use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_codegen::program::{Program, ProgramGuard};
-use eomgen_compiled_model::{CompiledModel, Error, ExportedModel, Orders};
+use eomgen_compiled_model::{
+    CompiledModel, Error, ExportedModel, InitialChange, Orders, Projection,
+};
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::{Model, Parameter, ParameterValue};
@@ -28,6 +31,7 @@ use eomgen_records::dataset::Channel;
 use eomgen_records::record::Record;
 use eomgen_records::samples::typical_step;
 use eomgen_sim::exponential::{ExponentialIntegrator, UnsupportedModel};
+use eomgen_sim::inputs::HeldInputs;
 
 /// A derived model with its measured outputs.
 pub struct EstimationModel {
@@ -335,6 +339,7 @@ impl EstimationModel {
         let mut simulation = Simulation::new(of, evaluator, linear_outputs, longest_step);
         simulation.stop = self.stop.clone();
         simulation.work = self.work.clone();
+        simulation.use_constraints(self.compiled.projection(values));
         if self.measured.has_rates() {
             // A model without a derivation with sides is not held either.
             simulation.measure_sticking(self.compiled.sided_model(values).ok().flatten());
@@ -390,6 +395,32 @@ impl EstimationModel {
         if let Ok(Some(sided)) = self.compiled.sided_model(values) {
             simulation.use_sticking(sided);
         }
+    }
+
+    /// Returns the projection onto the constraints at these parameter values; `None` without constraints.
+    pub(crate) fn create_projection(&self, values: &[f64]) -> Option<Projection> {
+        self.compiled.projection(values)
+    }
+
+    /// Returns the values of a state at a time (s) that its projection onto the constraints changes, at the parameters of
+    /// the specification.
+    ///
+    /// # Errors
+    ///
+    /// The constraints that no near state satisfies, or that depend on each other there.
+    pub(crate) fn list_changes_by_constraints(
+        &self,
+        state: &[f64],
+        (t, inputs): (f64, &HeldInputs),
+    ) -> Result<Vec<InitialChange>, Error> {
+        let instance = self.compiled.with_declared_parameters()?;
+        let (_, changes) = instance.find_consistent_state(state, t, inputs)?;
+        Ok(changes)
+    }
+
+    /// Returns residuals and derivatives of the constraints at these parameter values; `None` without constraints.
+    pub(crate) fn create_constraint_rows(&self, values: &[f64]) -> Option<ConstraintRows> {
+        self.compiled.constraint_rows(values)
     }
 
     /// Creates an evaluator of the equations at these parameter values.
@@ -460,8 +491,6 @@ fn compile_model(text: &str, name: &str, order: Option<usize>) -> Result<Compile
 
 #[cfg(test)]
 mod tests {
-    use eomgen_sim::inputs::HeldInputs;
-
     use super::*;
 
     const SPEAKER: &str = r#"[model]

@@ -4,14 +4,31 @@
 use eomgen_analysis::qr_iteration;
 use nalgebra::{DMatrix, DVector};
 
+use crate::model::admissible_states::AdmissibleStates;
 use crate::model::estimation_model::EstimationModel;
+use crate::model::measured_coordinates::MeasuredCoordinates;
 use crate::model::simulation::Simulation;
 use crate::thresholds;
 use eomgen_records::dataset::{Channel, Initial, Quantity};
 use eomgen_records::record::Record;
 
-/// Estimates the first state of a record.
+/// Estimates the first state of a record. With constraints, it is on them.
 pub fn estimate_first_state(
+    model: &EstimationModel,
+    record: &Record,
+    channels: &[Channel],
+    initial: &Initial,
+) -> Vec<f64> {
+    let state = estimate_without_constraints(model, record, channels, initial);
+    let Some(t) = record.times.first() else {
+        return state;
+    };
+    let mut admissible = AdmissibleStates::new(model, &model.values);
+    admissible.find_nearest(state, (*t, &record.inputs))
+}
+
+/// Returns the first state of a record before its projection onto the constraints.
+pub(crate) fn estimate_without_constraints(
     model: &EstimationModel,
     record: &Record,
     channels: &[Channel],
@@ -64,6 +81,8 @@ fn apply_measurements(
     mut state: Vec<f64>,
 ) -> Vec<f64> {
     let degrees = model.degrees_of_freedom();
+    let initial = state.clone();
+    let mut is_measured = vec![false; degrees];
     let sensors = channels.iter().zip(&model.sensors);
     for ((channel, sensor), column) in sensors.zip(&record.channels) {
         let (value, slope) = fit_first_samples(&record.times, column);
@@ -73,11 +92,30 @@ fn apply_measurements(
             // A sensor of gain 0 does not show its quantity.
             if let Some(place) = place.filter(|_| number.is_finite()) {
                 state[place] = number;
+                if let Some(is_measured) = is_measured.get_mut(place) {
+                    *is_measured = true;
+                }
             }
         }
     }
     // Noise may put what is measured beyond where the model lives.
-    model.clamp_state(state)
+    let mut state = model.clamp_state(state);
+    if let Some(rows) = model.create_constraint_rows(&model.values) {
+        let at = (record.times[0], &record.inputs);
+        let mut start = AdmissibleStates::new(model, &model.values).find_nearest(initial, at);
+        let mut measured = MeasuredCoordinates {
+            rows,
+            is_holonomic: (model.specification().constraints.iter())
+                .map(|constraint| !constraint.is_nonholonomic)
+                .collect(),
+            is_measured,
+            sizes: model.typical_sizes()[..degrees].to_vec(),
+        };
+        if measured.move_to(&mut start, &state, at).is_some() {
+            state[..degrees].copy_from_slice(&start[..degrees]);
+        }
+    }
+    state
 }
 
 /// Returns value and slope at the first time of the parabola through a column's first samples. A

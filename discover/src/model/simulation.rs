@@ -2,16 +2,24 @@
 //! linear part, by exact propagation between switches if fixed steps would be too short, otherwise
 //! by Runge-Kutta steps or a solver with error control. A given motion is read from the records.
 //! Outputs are computed with the motion, and derivatives with tangent vectors.
+//!
+//! Motions with constraints begin at the projection of the requested state onto the constraints, so that a difference
+//! quotient by an initial state contains the derivative of the projection, and is 0 along directions that the
+//! constraints forbid. Runge-Kutta steps are projected at each sample. Between samples the constraints drift by less than
+//! the error of a step, which is a small part of the noise. Unlike a stabilising term, the projection leaves the
+//! eigenvalues of the motion, and thus the longest step, as they are, and measured accelerations contain no residual.
 
 use std::cell::RefCell;
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
-use eomgen_compiled_model::{DrivenModel, SidedModel, StickingMotion};
+use eomgen_compiled_model::{DrivenModel, Projection, SidedModel, StickingMotion};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{Method, Settings, SolveError, Trajectory, simulate_into};
 use eomgen_sim::piecewise_linear::Propagator;
+use nalgebra::DMatrix;
 
 use crate::error::SimulationError;
+use crate::model::allowed_directions::{differentiate_projection, find_allowed_directions};
 use crate::model::given_motion::GivenMotion;
 use crate::model::linear_outputs::LinearOutputs;
 use crate::model::longest_step::LongestStep;
@@ -44,6 +52,8 @@ pub struct Simulation<'m> {
     resting: Option<SidedModel>,
     /// Inputs of a model whose motion is given by the records.
     given: Option<GivenMotion>,
+    /// Projection onto the constraints.
+    constraints: Option<Projection>,
     /// The most steps of the solver with error control in one motion.
     most_steps: u64,
     /// Stop request that ends simulations.
@@ -121,6 +131,7 @@ impl<'m> Simulation<'m> {
             sided: None,
             resting: None,
             given: None,
+            constraints: None,
             most_steps: thresholds::MAX_SOLVER_STEPS,
             stop: StopRequest::default(),
             work: WorkLimit::default(),
@@ -158,6 +169,69 @@ impl<'m> Simulation<'m> {
     /// Selects the motion of the records instead of a simulated one.
     pub(crate) fn use_given_motion(&mut self, given: GivenMotion) {
         self.given = Some(given);
+    }
+
+    /// Adds the constraints of the model.
+    pub(crate) fn use_constraints(&mut self, constraints: Option<Projection>) {
+        self.constraints = constraints;
+    }
+
+    /// Returns the state on the constraints that is nearest to a state at a time (s) in the norm of the kinetic energy;
+    /// the state itself without constraints.
+    ///
+    /// # Errors
+    ///
+    /// No near state satisfies the constraints.
+    pub fn move_onto_constraints(
+        &self,
+        state: &[f64],
+        t: f64,
+        inputs: &HeldInputs,
+    ) -> Result<Vec<f64>, SimulationError> {
+        let mut found = state.to_vec();
+        if let Some(constraints) = &self.constraints {
+            let evaluator = &mut self.evaluator.borrow_mut();
+            let evaluations = constraints
+                .move_onto_constraints(evaluator, (t, &inputs.evaluate(t)), &mut found)
+                .ok_or(SimulationError::OffConstraints)?;
+            self.work.add(evaluations);
+        }
+        Ok(found)
+    }
+
+    /// Returns independent directions of an initial state, a column each: all states, or with constraints a basis of the
+    /// changes that the constraints allow, in ranges of the states; `None` off the constraints.
+    pub(crate) fn find_initial_directions(
+        &self,
+        state: &[f64],
+        (t, inputs): (f64, &HeldInputs),
+        ranges: &[f64],
+    ) -> Option<DMatrix<f64>> {
+        let derivative = self.differentiate_projection(state, (t, inputs), ranges)?;
+        match self.has_constraints() {
+            true => find_allowed_directions(&derivative, ranges),
+            false => Some(derivative),
+        }
+    }
+
+    /// Returns the derivatives of the projection onto the constraints at a state, in ranges of the states: the identity
+    /// without constraints; `None` off the constraints.
+    pub(crate) fn differentiate_projection(
+        &self,
+        state: &[f64],
+        (t, inputs): (f64, &HeldInputs),
+        ranges: &[f64],
+    ) -> Option<DMatrix<f64>> {
+        if !self.has_constraints() {
+            return Some(DMatrix::identity(state.len(), state.len()));
+        }
+        let mut project = |moved: &[f64]| self.move_onto_constraints(moved, t, inputs).ok();
+        differentiate_projection(state, ranges, &mut project)
+    }
+
+    /// Returns true if the model has constraints.
+    pub(crate) fn has_constraints(&self) -> bool {
+        self.constraints.is_some()
     }
 
     /// Limits the number of solver steps and of surface crossings; a motion that exceeds it fails.
@@ -304,9 +378,9 @@ impl<'m> Simulation<'m> {
                 return Ok(trajectory.states);
             }
         }
+        let initial = &self.move_onto_constraints(initial, *begin, inputs)?;
         if let Some(longest_step) = self.longest_step {
-            let states = self.by_runge_kutta(initial, samples, inputs, longest_step);
-            return states.ok_or(SimulationError::Diverged);
+            return self.by_runge_kutta(initial, samples, inputs, longest_step);
         }
         self.by_error_control(initial, samples, inputs)
     }
@@ -333,12 +407,13 @@ impl<'m> Simulation<'m> {
             };
             let driven = DrivenModel::new(&self.evaluator, inputs)
                 .with_typical_sizes(self.typical_sizes)
+                .with_projection(self.constraints.take())
                 .with_sides(self.sided.take(), settings.tolerance);
             let mut trajectory = Trajectory::default();
             let (span, asked) = ((samples[0], samples[samples.len() - 1]), samples);
             let asked = (initial, span, asked);
             let ended = simulate_into(&mut trajectory, &driven, asked, &settings, &mut |_| {});
-            self.sided = driven.into_sided_model();
+            (self.sided, self.constraints) = driven.into_parts();
             self.work.add(trajectory.statistics.evaluations);
             match ended {
                 Ok(()) => return Ok(trajectory.states),
@@ -352,21 +427,21 @@ impl<'m> Simulation<'m> {
         Err(SimulationError::Diverged)
     }
 
-    /// The states at the samples by classical Runge-Kutta steps, none of them longer than the longest; none
-    /// if they do not stay finite. Held inputs are looked at once per step.
+    /// The states at the samples by classical Runge-Kutta steps, none of them longer than the longest. Held inputs are
+    /// looked at once per step.
     fn by_runge_kutta(
         &mut self,
         initial: &[f64],
         samples: &[f64],
         inputs: &HeldInputs,
         longest_step: LongestStep,
-    ) -> Option<Vec<Vec<f64>>> {
+    ) -> Result<Vec<Vec<f64>>, SimulationError> {
         let mut state = initial.to_vec();
         let mut states = Vec::with_capacity(samples.len());
         states.push(state.clone());
         let mut method = RungeKutta::new(state.len());
-        let evaluator = self.evaluator.get_mut();
         for pair in samples.windows(2) {
+            let evaluator = self.evaluator.get_mut();
             let steps = longest_step.count_steps(pair[1] - pair[0]);
             let h = (pair[1] - pair[0]) / steps as f64;
             self.work.add(4 * steps as u64);
@@ -380,11 +455,14 @@ impl<'m> Simulation<'m> {
                 });
             }
             if state.iter().any(|x| !x.is_finite()) {
-                return None;
+                return Err(SimulationError::Diverged);
+            }
+            if self.constraints.is_some() {
+                state = self.move_onto_constraints(&state, pair[1], inputs)?;
             }
             states.push(state.clone());
         }
-        Some(states)
+        Ok(states)
     }
 
     /// Returns the quantities of the channels at the samples of a motion that starts at the first

@@ -15,6 +15,7 @@ use crate::fit::noise_floor::{NoiseFloor, compute_noise_floor};
 use crate::fit::null_model::fit_null_model;
 use crate::ids::UnknownId;
 use crate::model::channel_checks;
+use crate::model::constraint_checks::check_constraints;
 use crate::model::input_faults::add_declared_faults;
 use crate::model::problem::EstimationProblem;
 use crate::model::stop::StopRequest;
@@ -59,6 +60,8 @@ struct Null {
     fit: Fit,
     floor: NoiseFloor,
     force: Option<ResidualForce>,
+    /// Notes on the constraints.
+    notes: Vec<String>,
 }
 
 /// Compares a specification with records. `seed`: seed of the bootstrap of the noise floor.
@@ -76,7 +79,12 @@ pub fn compare(
     let Specification { path, text, order } = specification;
     let text = &add_declared_faults(text, path, &dataset.inputs)?;
     let problem = EstimationProblem::new(dataset, order, path, text);
-    let Null { fit, floor, force } = null(&problem, text, seed, progress)?;
+    let Null {
+        fit,
+        floor,
+        force,
+        notes: of_constraints,
+    } = null(&problem, text, seed, progress)?;
     let pictures = ResultFigures {
         playback: Playback::NotNeeded,
         overlay: draw_overlays(&problem, &fit, None),
@@ -88,7 +96,12 @@ pub fn compare(
         }),
     };
     let nuisances = list_nuisances(&problem, &fit);
-    let mut notes = [dataset.notes.clone(), describe_deviations(&nuisances)].concat();
+    let mut notes = [
+        dataset.notes.clone(),
+        of_constraints,
+        describe_deviations(&nuisances),
+    ]
+    .concat();
     notes.extend(note_input_delay(&dataset.inputs, fit.model.specification()));
     notes.extend(note_common_delay(&problem, &fit));
     notes.extend(note_held_input(&problem, &fit));
@@ -163,6 +176,7 @@ pub fn discover_until(
         fit,
         floor: before,
         force,
+        notes: of_constraints,
     } = null?;
     let mut location = describe_location(&problem, &fit, force.as_ref());
     stop.start_timer();
@@ -214,6 +228,7 @@ pub fn discover_until(
     let nuisances = list_nuisances(&problem, best);
     let mut notes = [
         problem.dataset.notes.clone(),
+        of_constraints,
         describe_deviations(&nuisances),
     ]
     .concat();
@@ -363,9 +378,18 @@ fn null(
     for note in channel_checks::check_channels(problem, text)? {
         progress(&format!("note: {note}"));
     }
+    let notes = check_constraints(problem, text)?;
+    for note in &notes {
+        progress(&format!("note: {note}"));
+    }
     progress("fitting the original model");
     let fit = fit_null_model(problem, text)?;
     let floor = compute_noise_floor(problem, &fit, seed);
     let force = estimate_residual_force(problem, &fit, None);
-    Ok(Null { fit, floor, force })
+    Ok(Null {
+        fit,
+        floor,
+        force,
+        notes,
+    })
 }

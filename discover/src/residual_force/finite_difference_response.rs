@@ -3,6 +3,7 @@
 
 use crate::ids::WindowId;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_compiled_model::Projection;
 use nalgebra::DMatrix;
 
 use crate::fit::shooting::{SensorValues, Shooting};
@@ -20,6 +21,7 @@ pub(crate) struct SteppedWindow<'s> {
     shooting: &'s Shooting<'s>,
     sensors: SensorValues,
     evaluator: Evaluator,
+    constraints: Option<Projection>,
     buffers: OutputBuffers,
     window: WindowId,
     longest_step: LongestStep,
@@ -56,12 +58,14 @@ impl<'s> SteppedWindow<'s> {
     /// Creates the window at these unknowns; `None` if the model needs a solver with error control.
     pub fn new(shooting: &'s Shooting<'s>, theta: &[f64], window: WindowId) -> Option<Self> {
         let model = shooting.model;
+        let values = shooting.parameter_values(theta);
         Some(Self {
             sensors: SensorValues {
                 bias: vec![0.0; shooting.channel_count()],
                 ..shooting.sensor_values(theta)
             },
-            evaluator: model.create_evaluator(&shooting.parameter_values(theta)),
+            evaluator: model.create_evaluator(&values),
+            constraints: model.create_projection(&values),
             buffers: model.measured.create_buffers(),
             longest_step: model.longest_step?,
             window,
@@ -239,10 +243,14 @@ impl<'s> SteppedWindow<'s> {
                     visited.steps.push(Step { middle, points });
                 }
             }
+            let given = &inputs.evaluate(*t);
+            if let Some(constraints) = &self.constraints {
+                constraints.move_onto_constraints(&mut self.evaluator, (*t, given), &mut state)?;
+            }
             let at = Point {
                 t: *t,
                 state: &state,
-                inputs: &inputs.evaluate(*t),
+                inputs: given,
             };
             let added = force.map(|(size, force)| (size, force.derivatives_at(place, forced)));
             self.measure(at, added, &mut measured);

@@ -99,7 +99,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         }
     }
 
-    pub(crate) fn with_projection(mut self, projection: Option<Projection>) -> Self {
+    /// Projects the state onto the constraints after every step.
+    pub fn with_projection(mut self, projection: Option<Projection>) -> Self {
         self.projection = projection;
         self
     }
@@ -148,10 +149,12 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         self
     }
 
-    /// Returns the model with sides, for use with another motion.
-    pub fn into_sided_model(self) -> Option<SidedModel> {
-        let sliding = self.sliding?;
-        Some(sliding.into_inner().into_sided_model())
+    /// Returns the model with sides and the projection onto the constraints, for use with another motion.
+    pub fn into_parts(self) -> (Option<SidedModel>, Option<Projection>) {
+        let sided = self
+            .sliding
+            .map(|sliding| sliding.into_inner().into_sided_model());
+        (sided, self.projection)
     }
 
     /// Returns time (s) and reason if the motion ended at a singular position of its constraints, where it
@@ -165,7 +168,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         self.evaluate_at(t, state, |evaluator, point| {
             evaluator.rates(point, &mut rates)
         });
-        let mut watch = projection.singularity_watch.borrow_mut();
+        let mut watch = projection.singularity_watch.as_ref()?.borrow_mut();
         watch.find_end((t, state), &rates, self.inputs.borrow())
     }
 

@@ -9,7 +9,6 @@ use eomgen_codegen::independence::dependence::dependent_combinations;
 use eomgen_codegen::independence::vectors::norm;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::ode::UNMOVED_SIZE_FRACTION;
 
 use crate::contacts::Start;
 use crate::displacements::generic_weight;
@@ -17,10 +16,10 @@ use crate::driven_model::DrivenModel;
 use crate::error::Error;
 use crate::labels::{ConstraintLabel, Labels};
 use crate::motion_model::MotionModel;
-use crate::projection::{InitialChange, LARGE_RATE_PER_S, Projection};
+use crate::projection::{
+    InitialChange, LARGE_RATE_PER_S, MAX_INITIAL_CORRECTIONS, Projection, find_unmoved_sizes,
+};
 use crate::singular_positions::SingularityWatch;
-
-const MAX_INITIAL_CORRECTIONS: usize = 100;
 
 /// Derivatives are dependent if less than this fraction of one remains after the others are
 /// eliminated.
@@ -83,25 +82,16 @@ impl dyn MotionModel + '_ {
         };
         let degrees = rows.degrees_of_freedom();
         Ok(Some(Projection {
-            singularity_watch: RefCell::new(SingularityWatch::new(
+            singularity_watch: Some(RefCell::new(SingularityWatch::new(
                 rows,
                 names,
                 self.labels().constraint_excess,
-            )),
-            unmoved_sizes: self.unmoved_sizes(degrees),
+            ))),
+            unmoved_sizes: find_unmoved_sizes(&self.labels().typical_sizes, degrees),
             positive_rate_model: at(LARGE_RATE_PER_S)?,
             negative_rate_model: at(-LARGE_RATE_PER_S)?,
             stabilisation_rate: self.stabilisation_rate(),
         }))
-    }
-
-    /// Returns the largest size of an unmoved coordinate and of an unmoved rate.
-    fn unmoved_sizes(&self, degrees: usize) -> [f64; 2] {
-        let sizes = &self.labels().typical_sizes;
-        [0, 1].map(|kind| {
-            let sizes = sizes[kind * degrees..(kind + 1) * degrees].iter();
-            UNMOVED_SIZE_FRACTION * sizes.fold(f64::MIN_POSITIVE, |most, size| most.max(*size))
-        })
     }
 
     /// Returns the state nearest to `state` in the norm of the kinetic energy at which the constraints hold, for a motion

@@ -160,7 +160,7 @@ pub use operating_point::{OperatingPoint, Setting};
 pub use overlaps::Overlap;
 #[cfg(feature = "derive")]
 pub use prescribed_inputs::{list_undriven_inputs, split_assignments, with_prescribed_inputs};
-pub use projection::InitialChange;
+pub use projection::{InitialChange, Projection};
 #[cfg(feature = "derive")]
 pub use resumable::Simulation;
 #[cfg(feature = "derive")]

@@ -1,9 +1,11 @@
 //! Compiled models: equations, program, machine code and piecewise-linear form of a specification.
 
+use std::cell::RefCell;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-use eomgen_codegen::independence::constraint_program::constraint_program;
+use eomgen_codegen::independence::constraint_program::{constraint_program, residual_places};
+use eomgen_codegen::independence::rows::ConstraintRows;
 use eomgen_codegen::mechanics::equations::Equations;
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, MachineCode};
@@ -11,7 +13,7 @@ use eomgen_codegen::variant::{Variant, lower_corners, lower_for_gradients, lower
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::dimension::Dimension;
-use eomgen_model_spec::model::Model;
+use eomgen_model_spec::model::{Model, STABILISATION_RATE};
 use eomgen_model_spec::source::Source;
 use eomgen_model_spec::unit::Unit;
 use eomgen_sim::piecewise_linear::{ExactError, PiecewiseLinear};
@@ -21,6 +23,7 @@ use crate::error::Error;
 use crate::evaluation::prepare_evaluator;
 use crate::jacobian_program::{ALONG_DIRECTION, ENTRY_BY_ENTRY, JacobianProgram};
 use crate::labels::{ConstraintLabel, ImpactLabel, Labels};
+use crate::projection::{LARGE_RATE_PER_S, Projection, find_unmoved_sizes};
 use crate::statistics::Quantity;
 use crate::sticking::SidedModel;
 use crate::typical_sizes::{TypicalSizes, compute_typical_sizes};
@@ -320,6 +323,42 @@ impl CompiledModel {
             lower_for_gradients(&self.model, &self.equations).map(JacobianProgram::new)
         });
         made.as_ref().map_err(|found| found.clone().into())
+    }
+
+    /// Returns residuals and derivatives of the constraints at these values of the independent parameters, SI; `None`
+    /// without constraints.
+    pub fn constraint_rows(&self, parameters: &[f64]) -> Option<ConstraintRows> {
+        let values = self.model.parameter_values().ok()?;
+        let program = self.constraint_program(&values)?;
+        let residuals = residual_places(&self.model, program);
+        let mut rows = ConstraintRows::new(program.clone(), residuals);
+        rows.prepare(parameters);
+        Some(rows)
+    }
+
+    /// Returns the projection onto the constraints at these values of the independent parameters, SI, for motions that
+    /// do not stop at singular positions; `None` without constraints.
+    pub fn projection(&self, parameters: &[f64]) -> Option<Projection> {
+        if self.model.constraints.is_empty() {
+            return None;
+        }
+        let known = self.program.parameters.iter();
+        let place = (known.map(|own| &own.quantity.name)).position(|n| n == STABILISATION_RATE)?;
+        let at = |rate: f64| {
+            let mut values = parameters.to_vec();
+            values[place] = rate;
+            RefCell::new(self.evaluator(&values))
+        };
+        Some(Projection {
+            positive_rate_model: at(LARGE_RATE_PER_S),
+            negative_rate_model: at(-LARGE_RATE_PER_S),
+            stabilisation_rate: parameters[place],
+            unmoved_sizes: find_unmoved_sizes(
+                self.typical_sizes(),
+                self.program.degrees_of_freedom(),
+            ),
+            singularity_watch: None,
+        })
     }
 
     /// Returns the model in which the sides of switching surfaces are inputs, at these values of

@@ -12,6 +12,7 @@ use std::cell::RefCell;
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::UNMOVED_SIZE_FRACTION;
 
 use crate::singular_positions::SingularityWatch;
 
@@ -29,18 +30,21 @@ const MAX_STEP_CORRECTIONS: usize = 8;
 /// Its multiples differ from each other and from whole numbers, so that no two rates are equal.
 const GOLDEN_RATIO: f64 = 1.618_033_988_749_895;
 
+/// Maximum number of corrections of a state that need not be near the constraints.
+pub(crate) const MAX_INITIAL_CORRECTIONS: usize = 100;
+
 /// Projection of states onto the constraints, at one set of parameters.
-pub(crate) struct Projection {
+pub struct Projection {
     /// Model with the stabilisation rate w.
-    pub positive_rate_model: RefCell<Evaluator>,
+    pub(crate) positive_rate_model: RefCell<Evaluator>,
     /// Model with the stabilisation rate -w.
-    pub negative_rate_model: RefCell<Evaluator>,
+    pub(crate) negative_rate_model: RefCell<Evaluator>,
     /// Stabilisation rate of the model itself, 1/s.
-    pub stabilisation_rate: f64,
+    pub(crate) stabilisation_rate: f64,
     /// Sizes of coordinates and of rates that have not moved.
-    pub unmoved_sizes: [f64; 2],
-    /// Detector of singular positions along the motion.
-    pub singularity_watch: RefCell<SingularityWatch>,
+    pub(crate) unmoved_sizes: [f64; 2],
+    /// Detector of singular positions along the motion, if it stops there.
+    pub(crate) singularity_watch: Option<RefCell<SingularityWatch>>,
 }
 
 /// Maximum number of changed initial values in a sentence.
@@ -91,6 +95,22 @@ fn round_to_six_digits(value: f64) -> f64 {
 type StateObserver<'o> = &'o mut dyn FnMut(&[f64]);
 
 impl Projection {
+    /// Moves a state at a time (s) onto the constraints, to the nearest one in the norm of the kinetic energy, and
+    /// returns the number of evaluations of the rates. `own` evaluates the model itself. Returns `None` and leaves the
+    /// state as it is if no near state satisfies the constraints.
+    pub fn move_onto_constraints(
+        &self,
+        own: &mut Evaluator,
+        at: (f64, &[f64]),
+        state: &mut [f64],
+    ) -> Option<u64> {
+        let mut found = state.to_vec();
+        let evaluations =
+            self.correct(own, at, &mut found, (MAX_INITIAL_CORRECTIONS, &mut |_| {}))?;
+        state.copy_from_slice(&found);
+        Some(evaluations)
+    }
+
     /// Corrects a state in place with at most `most` corrections. Calls `observe` with the state before each of them.
     /// Returns the number of evaluations of the rates, or `None` if the corrections do not converge. The state stays
     /// finite if it was.
@@ -202,15 +222,22 @@ impl Projection {
             Some(_) => &*state,
             None => &arrived,
         };
-        let passes = self
-            .singularity_watch
-            .borrow_mut()
-            .passes_singularity(t, reached, inputs);
+        let watch = self.singularity_watch.as_ref();
+        let passes =
+            watch.is_some_and(|watch| watch.borrow_mut().passes_singularity(t, reached, inputs));
         if passes || evaluations.is_none() {
             state.fill(f64::NAN);
         }
         evaluations.unwrap_or(1)
     }
+}
+
+/// Returns the largest size of an unmoved coordinate and of an unmoved rate, from the typical sizes of the states.
+pub(crate) fn find_unmoved_sizes(typical_sizes: &[f64], degrees: usize) -> [f64; 2] {
+    [0, 1].map(|kind| {
+        let sizes = typical_sizes[kind * degrees..(kind + 1) * degrees].iter();
+        UNMOVED_SIZE_FRACTION * sizes.fold(f64::MIN_POSITIVE, |most, size| most.max(*size))
+    })
 }
 
 fn is_finite(corrections: &[Vec<f64>; 3], degrees: usize) -> bool {

@@ -27,14 +27,6 @@ use crate::samples::MIN_SAMPLES;
 /// Problems of the dataset file, or the first problem of a record, with its place.
 pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
     let description = Description::read(path, model)?;
-    if let Some(constraint) = model.constraints.first() {
-        return Err(Refusal::Record(format!(
-            "{}: the model has constraints (`{}`), which `compare` and `discover` do not support yet; \
-             `simulate` does",
-            path.display(),
-            constraint.name
-        )));
-    }
     if let Some(impact) = model.impacts.first() {
         return Err(Refusal::Record(format!(
             "{}: the model has impacts (`{}`), which `compare` and `discover` do not support yet; \

@@ -51,6 +51,22 @@ pub(crate) fn given_columns<'d>(
             ),
         );
     }
+    if let Some(constraint) = model.constraints.first() {
+        found.push(
+            Diagnostic::error(format!(
+                "[motion] cannot be used with constraints, such as {}",
+                quote(&constraint.name)
+            ))
+            .with_span(
+                first.name.span,
+                "the accelerations of all coordinates do not determine the inputs",
+            )
+            .with_help(
+                "use the motion as [channels] and the forces as [inputs], or write the model in independent \
+                 coordinates",
+            ),
+        );
+    }
     if !matches!(description.initial, InitialState::Estimate) {
         found.push(
             Diagnostic::error("[initial] is not used if the motion is given")

@@ -2,6 +2,7 @@
 
 mod arm;
 mod blind;
+mod constraints;
 mod effects_files;
 mod effects_found;
 mod effects_placed;

@@ -1,5 +1,6 @@
 //! Measured records: reading, rejection, comparison with simulations.
 
+mod constraints;
 mod discovery_runs;
 mod driven_simulations;
 mod free_decays;

@@ -1,0 +1,57 @@
+//! Changes of a state that constraints allow, from the derivative of the projection onto the constraints.
+//!
+//! The derivative D of a projection at a point on the constraints satisfies D D = D. Its singular values are 0, or at least
+//! 1 in any scales of the states, so that the limit 1/2 gives its rank.
+
+use eomgen_analysis::qr_iteration;
+use nalgebra::DMatrix;
+
+use crate::thresholds;
+
+/// Least singular value of an allowed direction.
+const MIN_SINGULAR_VALUE: f64 = 0.5;
+
+/// Projection of a state onto the constraints; `None` if there is none near it.
+pub(crate) type ProjectState<'p> = dyn FnMut(&[f64]) -> Option<Vec<f64>> + 'p;
+
+/// Returns the derivatives of the projection at a state, in ranges of the states; `None` off the constraints.
+pub(crate) fn differentiate_projection(
+    state: &[f64],
+    ranges: &[f64],
+    project: &mut ProjectState<'_>,
+) -> Option<DMatrix<f64>> {
+    let count = state.len();
+    let mut derivative = DMatrix::zeros(count, count);
+    let mut moved = state.to_vec();
+    for column in 0..count {
+        let step = thresholds::REFERENCE_QUOTIENT_IN_RANGES;
+        let [after, before] = [step, -step].map(|step| {
+            moved[column] = state[column] + step * ranges[column];
+            project(&moved)
+        });
+        moved[column] = state[column];
+        let (after, before) = (after?, before?);
+        for row in 0..count {
+            let quotient = (after[row] - before[row]) / (2.0 * step);
+            derivative[(row, column)] = quotient / ranges[row];
+        }
+    }
+    Some(derivative)
+}
+
+/// Returns a basis of the allowed directions, a column each, SI, from the derivatives of the projection in ranges of the
+/// states. The columns are orthonormal in these ranges.
+pub(crate) fn find_allowed_directions(
+    derivative: &DMatrix<f64>,
+    ranges: &[f64],
+) -> Option<DMatrix<f64>> {
+    let factors = qr_iteration::svd(derivative)?;
+    let basis = factors.u?;
+    let singular = factors.singular_values.iter().enumerate();
+    let allowed = singular.filter(|(_, value)| **value > MIN_SINGULAR_VALUE);
+    let mut basis = basis.select_columns(&allowed.map(|(place, _)| place).collect::<Vec<usize>>());
+    for (mut row, range) in basis.row_iter_mut().zip(ranges) {
+        row *= *range;
+    }
+    Some(basis)
+}

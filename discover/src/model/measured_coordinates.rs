@@ -1,0 +1,115 @@
+//! Positions of a constrained machine from those that sensors measure.
+//!
+//! The measured coordinates move from the initial state of the specification to their values in small steps, and the others
+//! follow by Newton's method on the constraints. A linkage thus stays in its branch of assembly, however far its crank
+//! turned. A projection of the measured values alone would move them by as much as the others, or end in another branch.
+
+use eomgen_analysis::qr_iteration;
+use eomgen_codegen::independence::rows::ConstraintRows;
+use eomgen_codegen::independence::vectors::norm;
+use eomgen_codegen::program::evaluator::Point;
+use eomgen_sim::inputs::HeldInputs;
+use nalgebra::{DMatrix, DVector};
+
+/// Longest step of a measured coordinate, in its typical size: 0.1 rad for an angle.
+const LONGEST_STEP: f64 = 0.1;
+
+/// Maximum number of steps: 16 turns of a crank.
+const MAX_STEPS: usize = 1000;
+
+/// Maximum number of Newton corrections in a step.
+const MAX_CORRECTIONS: usize = 20;
+
+/// Size of the correction of a measured coordinate, relative to that of another one.
+const MEASURED_SHARE: f64 = 1e-3;
+
+/// Singular value of the scaled constraints, relative to the largest, below which they depend on each other.
+const MIN_SINGULAR_FRACTION: f64 = 1e-9;
+
+/// Correction, relative to the typical sizes, at which the constraints hold. The projection onto the constraints follows.
+const LAST_CORRECTION: f64 = 1e-9;
+
+/// Coordinates that sensors measure, and the constraints that determine the others.
+pub(crate) struct MeasuredCoordinates {
+    /// Residuals and derivatives of the constraints.
+    pub rows: ConstraintRows,
+    /// True for each constraint on coordinates, false for one on rates.
+    pub is_holonomic: Vec<bool>,
+    /// True for each measured coordinate.
+    pub is_measured: Vec<bool>,
+    /// Typical sizes of the coordinates, SI.
+    pub sizes: Vec<f64>,
+}
+
+impl MeasuredCoordinates {
+    /// Moves a state on the constraints to the measured coordinates of another state, at a time (s); `None` if the
+    /// constraints cannot be satisfied on the way.
+    pub fn move_to(
+        &mut self,
+        state: &mut [f64],
+        measured: &[f64],
+        (t, inputs): (f64, &HeldInputs),
+    ) -> Option<()> {
+        let inputs = &inputs.evaluate(t);
+        let places = 0..self.sizes.len();
+        let places: Vec<usize> = places.filter(|place| self.is_measured[*place]).collect();
+        let distance =
+            |place: &usize| (measured[*place] - state[*place]).abs() / self.sizes[*place];
+        let furthest = places.iter().map(distance).fold(0.0, f64::max);
+        let steps = ((furthest / LONGEST_STEP).ceil() as usize).clamp(1, MAX_STEPS);
+        for step in 0..steps {
+            let part = 1.0 / (steps - step) as f64;
+            for place in &places {
+                state[*place] += part * (measured[*place] - state[*place]);
+            }
+            self.satisfy_constraints(state, (t, inputs))?;
+        }
+        Some(())
+    }
+
+    /// Corrects the coordinates until the constraints hold.
+    fn satisfy_constraints(&mut self, state: &mut [f64], (t, inputs): (f64, &[f64])) -> Option<()> {
+        for _ in 0..MAX_CORRECTIONS {
+            let point = Point { t, state, inputs };
+            let mut rows = self.rows.derivatives(point);
+            let mut residuals = self.rows.residuals(point);
+            let shares = self.shares();
+            let all = rows.iter_mut().zip(&mut residuals).zip(&self.is_holonomic);
+            for ((row, residual), is_holonomic) in all {
+                row.iter_mut()
+                    .zip(&shares)
+                    .for_each(|(a, share)| *a *= share);
+                let length = norm(row);
+                let acts = *is_holonomic && length > 0.0;
+                let factor = if acts { 1.0 / length } else { 0.0 };
+                row.iter_mut().for_each(|a| *a *= factor);
+                *residual *= factor;
+            }
+            let matrix = DMatrix::from_fn(rows.len(), shares.len(), |row, k| rows[row][k]);
+            let factors = qr_iteration::svd(&matrix)?;
+            let least = MIN_SINGULAR_FRACTION * factors.singular_values.max();
+            let change = factors.solve(&DVector::from_vec(residuals), least).ok()?;
+            let mut largest = 0.0_f64;
+            for (place, (part, share)) in change.iter().zip(&shares).enumerate() {
+                state[place] -= part * share;
+                largest = largest.max((part * share / self.sizes[place]).abs());
+            }
+            if largest <= LAST_CORRECTION {
+                return Some(());
+            }
+            if !largest.is_finite() {
+                return None;
+            }
+        }
+        None
+    }
+
+    fn shares(&self) -> Vec<f64> {
+        let sizes = self.sizes.iter().zip(&self.is_measured);
+        let share = |(size, is_measured): (&f64, &bool)| match is_measured {
+            true => MEASURED_SHARE * size,
+            false => *size,
+        };
+        sizes.map(share).collect()
+    }
+}
