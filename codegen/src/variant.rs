@@ -265,7 +265,7 @@ fn differentiate(
         let terms = model.kinetic.iter().chain(&model.potential);
         let spans = terms.chain(&model.dissipation).map(|term| term.value.span);
         let mut spans = spans.chain(model.forces.iter().map(|force| force.value.span));
-        let message = match error.term.and_then(|place| spans.nth(place)) {
+        let message = match error.term().and_then(|place| spans.nth(place)) {
             Some(span) => message.with_span(span, "in this term"),
             None => message,
         };

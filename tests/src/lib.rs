@@ -8,6 +8,7 @@
 pub mod certified;
 pub mod constrained_machines;
 pub mod constrained_records;
+pub mod contact_machines;
 pub mod logistic_noise;
 pub mod measured;
 pub mod models;

@@ -112,7 +112,7 @@ pub enum Solver {
     Adams,
     /// Implicit Radau IIA method of order 5 with exact Jacobians, for stiff models.
     Radau,
-    /// Classical Runge-Kutta method of order 4 with steps of --step, for smooth models; the method of the emitted `step`.
+    /// Classical Runge-Kutta method of order 4 with steps of --step, with friction and impacts at the ends of steps; the method of the emitted `step`.
     /// Inputs are held during a step.
     Fixed,
 }

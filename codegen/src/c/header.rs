@@ -99,6 +99,7 @@ pub(super) fn header(
     );
     let mut declared = sizes(file);
     declared += &jacobians::sizes(program);
+    declared += &step::sizes(program);
     declared += &structures(file, prepared)?;
     declared += &types::declarations(program);
     for stage in stages {

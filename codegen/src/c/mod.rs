@@ -20,6 +20,7 @@ mod header;
 mod jacobians;
 mod names;
 mod primitives;
+mod reactions;
 mod real;
 mod regimes;
 mod sine_and_cosine;

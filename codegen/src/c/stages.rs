@@ -17,6 +17,7 @@ fn arguments(stage: &Stage) -> Vec<(&'static str, &'static str)> {
         Argument::InputDirection => ("const NAME_inputs *", "input_direction"),
         Argument::PointDirection => ("const NAME_real *", "direction"),
         Argument::Weights => ("const NAME_real *", "weights"),
+        Argument::Sides => ("const NAME_real *", "sides"),
     }));
     match &stage.outcome {
         Outcome::Rates => all.push(("NAME_real *", "rates")),
@@ -147,6 +148,8 @@ fn length(program: &Program, size: &Size) -> usize {
         }
         Size::Parameters => program.parameters.len(),
         Size::Point => program.point_length(),
+        Size::ReactionFunctions => program.reaction_sizes()[0],
+        Size::ReactionEffects => program.reaction_sizes()[1],
         Size::Nonzeros(name) => {
             let mut jacobians = program.outputs.jacobians.iter();
             let jacobian = jacobians.find(|jacobian| jacobian.name == *name);

@@ -26,11 +26,11 @@ use crate::mechanics::discs::{divides_by_speed, find_discs};
 use crate::mechanics::equations::Equations;
 use crate::mechanics::forces::{can_be_constant, depends_on_motion, jumps_with_time};
 use crate::mechanics::guard::Guard;
-use crate::mechanics::outputs::{Side, SlidingSurface, guard_rate};
+use crate::mechanics::outputs::{Column, Side, SlidingSurface, derive_along, guard_rate};
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::sides::Sides;
 use crate::symbolic::differentiate::derive_by_scalar;
-use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape};
+use crate::symbolic::graph::{Argument, Dependence, Graph, NodeId, Operation, Shape, Variable};
 use crate::symbolic::substitute::substitute;
 
 /// Returns true if there can be surfaces that hold the motion, judged without derivatives.
@@ -158,6 +158,89 @@ pub(crate) fn add_side_inputs(equations: &mut Equations, may_hold: bool) -> Opti
         others,
         sliding: found,
     })
+}
+
+/// Rates with the sides of frictions as an argument.
+pub(crate) struct HeldRates {
+    pub accelerations: RowNodes,
+    pub first_order_rates: Vec<NodeId>,
+    /// Function of each friction.
+    pub functions: Vec<NodeId>,
+    /// Change of the rates by the sign of each friction.
+    pub columns: Vec<Column>,
+}
+
+/// Returns the rates with the sides of all frictions that can hold the motion as an argument.
+pub(crate) fn hold_frictions(equations: &mut Equations) -> HeldRates {
+    let jumping = jumping_guards(equations);
+    let candidates = guards_that_may_hold(equations).into_iter();
+    let mut guards: Vec<usize> = (candidates.map(|(guard, _)| guard))
+        .filter(|guard| jumping.contains(guard))
+        .collect();
+    loop {
+        let held = rates_with_sides(equations, &guards);
+        let graph = &mut equations.graph;
+        let own = held.functions.iter().zip(&held.columns);
+        let effects: Vec<NodeId> = own
+            .map(|(function, column)| derive_along(graph, *function, column))
+            .collect();
+        if effects.iter().all(|effect| !graph.is_zero(*effect)) {
+            return held;
+        }
+        let mut effects = effects.into_iter();
+        guards.retain(|_| effects.next().is_some_and(|effect| !graph.is_zero(effect)));
+    }
+}
+
+fn rates_with_sides(equations: &mut Equations, guards: &[usize]) -> HeldRates {
+    let leaf =
+        |side: usize| Operation::Argument(Argument::Sides, Variable::Input(InputId::new(side)));
+    let roots = equations.rate_nodes();
+    let given = (&mut equations.graph, &equations.guards[..]);
+    let mut known = Sides::replace_jumps(given, &roots, &|guard| {
+        guards.iter().position(|own| *own == guard).map(leaf)
+    })
+    .known;
+    let graph = &mut equations.graph;
+    let mut with_sides = |graph: &mut Graph, nodes: &[NodeId]| -> Vec<NodeId> {
+        let replaced = nodes.iter();
+        replaced
+            .map(|node| substitute(graph, *node, &|_, _| None, &mut known))
+            .collect()
+    };
+    let rows = &equations.accelerations.rows;
+    let accelerations = RowNodes {
+        scalars: with_sides(graph, &rows.scalars),
+        modal: with_sides(graph, &rows.modal),
+    };
+    let first_order_rates = with_sides(graph, &equations.state_rates);
+    // The sign 2 side - 1 changes twice as much as the side.
+    let by_sign = |graph: &mut Graph, side: usize, nodes: &[NodeId]| -> Vec<NodeId> {
+        let own = graph.intern(leaf(side));
+        let derivatives = nodes.iter();
+        derivatives
+            .map(|node| {
+                let by_side = derive_by_scalar(graph, *node, own);
+                graph.combine(&[(0.5, by_side)])
+            })
+            .collect()
+    };
+    let columns = (0..guards.len()).map(|side| {
+        let rates = RowNodes {
+            scalars: by_sign(graph, side, &accelerations.scalars),
+            modal: by_sign(graph, side, &accelerations.modal),
+        };
+        (rates, by_sign(graph, side, &first_order_rates))
+    });
+    HeldRates {
+        columns: columns.collect(),
+        functions: guards
+            .iter()
+            .map(|guard| equations.guards[*guard].value)
+            .collect(),
+        accelerations,
+        first_order_rates,
+    }
 }
 
 /// Function with a side.

@@ -111,6 +111,7 @@ fn kind(op: &Op) -> &'static str {
         Op::Argument(Argument::Direction, _) => "direction",
         Op::Argument(Argument::PointDirection, _) => "point direction",
         Op::Argument(Argument::Weights, _) => "weights",
+        Op::Argument(Argument::Sides, _) => "sides",
         Op::Negate(_) => "negate",
         Op::Add(..) => "add",
         Op::Subtract(..) => "subtract",
@@ -152,6 +153,7 @@ pub(super) fn leaf_name(program: &Program, op: &Op) -> Option<String> {
         Op::State(index) => variable(&Variable::State(*index)),
         Op::Input(index) => variable(&Variable::Input(*index)),
         Op::Time => "t".to_owned(),
+        Op::Argument(Argument::Sides, Variable::Input(index)) => format!("side_{}", index.index()),
         Op::Argument(_, of) => variable(of),
         _ => return None,
     })

@@ -285,7 +285,8 @@ encode_structures! {
     JacobianBlock<ValueId> { row, rows, column, columns, diagonal, value }
     Outputs<ValueId, RowValues> {
         sliding, sides, corners, jacobians;
-        kinds, bias_forces, inverse_dynamics, guard_rates, products, gradient_derivative, regimes
+        kinds, bias_forces, inverse_dynamics, guard_rates, products, gradient_derivative, reactions,
+        regimes
     }
     Program {
         parameters, coordinates, fields, first_order, inputs, observables, tables, values,
@@ -311,6 +312,7 @@ encode_enumerations! {
         1 => Direction,
         2 => PointDirection,
         3 => Weights,
+        4 => Sides,
     }
     Variable {
         0 => Coordinate(id),

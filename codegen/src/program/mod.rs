@@ -37,7 +37,7 @@ pub use crate::mechanics::outputs::{
     BlockPlace, Decision, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Output,
     Outputs, Products, SURFACES_OF_A_REGIME, Switch,
 };
-pub use crate::mechanics::outputs::{Corners, RateRow, SlidingSurface};
+pub use crate::mechanics::outputs::{Corners, RateRow, Reactions, SlidingSurface};
 pub use crate::symbolic::arguments::Arguments;
 pub use crate::symbolic::variable::{Argument, Variable};
 pub use controllers::{ControlOp, ControlValues, MeasuredSource, ProgramController};

@@ -6,7 +6,7 @@ use super::quantity::Quantity;
 use super::trace::Trace;
 use super::value::{Extent, Op, Value, ValueId};
 use crate::mechanics::impact::Impact;
-use crate::mechanics::outputs::{Outputs, Products};
+use crate::mechanics::outputs::{Outputs, Products, Reactions};
 use crate::symbolic::variable::Variable;
 use eomgen_model_spec::ids::FieldId;
 
@@ -159,7 +159,56 @@ impl Products<ValueId, RowValues> {
     }
 }
 
+impl Reactions<ValueId, RowValues> {
+    /// Returns the values of the rates with sides.
+    pub(crate) fn rate_roots(&self) -> Vec<ValueId> {
+        let mut roots = self.accelerations.all();
+        roots.extend(&self.first_order_rates);
+        roots
+    }
+
+    /// Returns the functions of the reactions, then the distances of the contacts.
+    pub(crate) fn function_roots(&self) -> Vec<ValueId> {
+        let functions = self.functions.iter().chain(&self.distances);
+        functions.copied().collect()
+    }
+
+    /// Returns the effects, the coefficients of restitution and of friction, then the columns.
+    pub(crate) fn effect_roots(&self) -> Vec<ValueId> {
+        let mut roots = self.effects.clone();
+        roots.extend(&self.restitutions);
+        roots.extend(
+            self.coefficients
+                .iter()
+                .map(|(_, coefficient)| *coefficient),
+        );
+        for (rates, first_order) in &self.columns {
+            roots.extend(rates.all());
+            roots.extend(first_order);
+        }
+        roots
+    }
+
+    /// Returns the number of effects and coefficients before the columns.
+    pub fn first_column(&self) -> usize {
+        self.effects.len() + self.restitutions.len() + self.coefficients.len()
+    }
+}
+
 impl Program {
+    /// Returns the number of functions and distances of the reactions, and of their effects, coefficients and columns;
+    /// zeros without reactions.
+    pub fn reaction_sizes(&self) -> [usize; 2] {
+        let Some(known) = &self.outputs.reactions else {
+            return [0; 2];
+        };
+        let column = self.states() - self.degrees_of_freedom();
+        [
+            known.functions.len() + known.distances.len(),
+            known.first_column() + known.columns.len() * column,
+        ]
+    }
+
     /// Returns a value.
     pub fn value(&self, id: ValueId) -> &Value {
         &self.values[id.0]

@@ -95,6 +95,7 @@ fn infer(program: &Program, op: &Op, units: &[ValueUnit]) -> ValueUnit {
         Op::Argument(Argument::Accelerations, variable) => {
             variable_unit(program, *variable).divide(second_squared())
         }
+        Op::Argument(Argument::Sides, _) => NUMBER,
         // Directions and weights have the units of the caller.
         Op::Argument(..) => ValueUnit::Unknown,
         Op::Negate(a) | Op::Total(a) => of(a),

@@ -4,7 +4,7 @@ use super::expression::array;
 use super::literals::number;
 use crate::identity::unsealed;
 use crate::statements::layout::block;
-use crate::statements::{DataElements, File, Indices, data_arrays, indices};
+use crate::statements::{DataElements, File, Indices, data_arrays, indices, reaction_constants};
 
 pub(super) fn constants(file: &File<'_>) -> String {
     let program = file.program;
@@ -40,7 +40,8 @@ pub(super) fn constants(file: &File<'_>) -> String {
         file.guard_count(),
         program.spec_hash,
         env!("CARGO_PKG_VERSION"),
-    ) + &names(file)
+    ) + &reactions(file)
+        + &names(file)
         + &data(file)
         + &index_modules(file)
         + &identity(file)
@@ -67,6 +68,14 @@ fn identity(file: &File<'_>) -> String {
          pub static IDENTITY: [u8; {}] = *b\"{text}\";\n",
         text.len()
     )
+}
+
+fn reactions(file: &File<'_>) -> String {
+    let constants = reaction_constants(file.program);
+    let constants = constants.iter();
+    constants
+        .map(|(name, count, doc)| format!("/// {doc}\npub const {name}: usize = {count};\n"))
+        .collect()
 }
 
 fn names(file: &File<'_>) -> String {

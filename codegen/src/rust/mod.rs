@@ -16,6 +16,7 @@ mod jacobians;
 mod kernels;
 mod literals;
 mod piecewise;
+mod reactions;
 mod regimes;
 mod scalar;
 mod signature;

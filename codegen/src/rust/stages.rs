@@ -55,6 +55,7 @@ pub(super) fn function(file: &File<'_>, stage: &Stage, writer: &mut Writer) -> S
             }
             Argument::PointDirection => arguments += "direction: &[T; POINT],\n",
             Argument::Weights => arguments += "weights: &[T; STATES],\n",
+            Argument::Sides => arguments += "sides: &[T; SIDES],\n",
         }
     }
     writer.notes.clone_from(&stage.notes);
@@ -119,6 +120,8 @@ fn length(size: &Size) -> String {
         Size::Guards => "GUARDS".to_owned(),
         Size::Parameters => "PARAMETERS".to_owned(),
         Size::Point => "POINT".to_owned(),
+        Size::ReactionFunctions => "REACTION_FUNCTIONS".to_owned(),
+        Size::ReactionEffects => "REACTION_EFFECTS".to_owned(),
         Size::Nonzeros(jacobian) => format!("{}_NONZEROS", jacobian.to_uppercase()),
     }
 }

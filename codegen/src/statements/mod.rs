@@ -22,6 +22,7 @@ mod names;
 mod needed;
 mod operands;
 mod preparation;
+mod reactions;
 mod requested;
 mod roots;
 mod rows;
@@ -53,5 +54,5 @@ pub(crate) use stages::{
     RATES_ORDER_DOC, describe_rate_limits, guards, mass_matrix, observables, rates,
 };
 pub(crate) use statement::{Place, Statement};
-pub(crate) use step::STEP_DOC;
+pub(crate) use step::{describe_step, reaction_constants};
 pub(crate) use used::UsedNames;

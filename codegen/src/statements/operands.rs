@@ -251,5 +251,6 @@ fn argument_name(argument: Argument) -> &'static str {
         Argument::Accelerations => "accelerations",
         Argument::Direction | Argument::PointDirection => "direction",
         Argument::Weights => "weights",
+        Argument::Sides => "sides",
     }
 }

@@ -1,5 +1,5 @@
 //! Stages on request: bias forces, inverse dynamics, rates of the guards, products with the Jacobian,
-//! Jacobians and the rates in a regime.
+//! Jacobians and the rates in a regime. `reactions` builds those of steps with frictions and contacts.
 
 use super::body::Body;
 use super::emit_error::EmitResult;
@@ -7,6 +7,7 @@ use super::expression::Expression;
 use super::file::File;
 use super::index::Index;
 use super::needed::RequiredFunctions;
+use super::reactions::reaction_stages;
 use super::roots::entry_roots;
 use super::rows::write_row_values;
 use super::stage::{Argument, Outcome, Size, Stage};
@@ -48,6 +49,9 @@ pub fn requested_stages(file: &File<'_>, needed: &mut RequiredFunctions) -> Emit
     }
     if let Some(derivative) = &outputs.gradient_derivative {
         stages.push(gradient_derivative(file, derivative, needed)?);
+    }
+    if let Some(known) = &outputs.reactions {
+        stages.extend(reaction_stages(file, known, needed)?);
     }
     Ok(stages)
 }
@@ -306,6 +310,8 @@ pub fn rates_in_regime(
     let switches = switches.iter().map(|switch| (switch.value, switch.decided));
     let roots = file.program.rate_roots();
     let body = file.body_in_regime(&roots, needed, switches.collect())?;
+    let program = file.program;
+    let rates = (&program.accelerations, &program.first_order_rates[..]);
     let doc = format!(
         "Rates of the state in a regime, written to `rates`. They equal those of [`rates_into`] if\n\
          [`regime`] is `REGIME` and half-widths are not negative. Outside the regime its equations\n\
@@ -314,6 +320,6 @@ pub fn rates_in_regime(
     );
     Ok(Some(Stage {
         arguments: vec![Argument::Regime],
-        ..rates_stage(body, "rates_in_regime_into", doc)?
+        ..rates_stage(body, rates, "rates_in_regime_into", doc)?
     }))
 }

@@ -62,6 +62,11 @@ fn output_roots(program: &Program) -> Vec<ValueId> {
     if let Some(derivative) = &outputs.gradient_derivative {
         roots.extend(derivative.rows.iter().map(|row| row.value));
     }
+    if let Some(known) = &outputs.reactions {
+        roots.extend(known.rate_roots());
+        roots.extend(known.function_roots());
+        roots.extend(known.effect_roots());
+    }
     for jacobian in &outputs.jacobians {
         roots.extend(entry_roots(program, jacobian));
     }

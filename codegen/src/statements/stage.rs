@@ -20,6 +20,8 @@ pub enum Argument {
     PointDirection,
     /// Weight of each rate.
     Weights,
+    /// Side of each friction that can hold the motion.
+    Sides,
 }
 
 /// Length of an array that a stage returns.
@@ -37,6 +39,10 @@ pub enum Size {
     Point,
     /// Number of structural nonzeros of the Jacobian with this name.
     Nonzeros(&'static str),
+    /// Number of functions and distances of the reactions.
+    ReactionFunctions,
+    /// Number of effects and columns of the reactions.
+    ReactionEffects,
 }
 
 /// Result of a stage.

@@ -10,7 +10,7 @@ use super::roots::mass_roots;
 use super::rows::write_row_values;
 use super::stage::{Outcome, Size, Stage};
 use super::statement::{Place, Statement};
-use crate::program::{Extent, Op, Program, ValueId};
+use crate::program::{Extent, Op, Program, RowValues, ValueId};
 use eomgen_model_spec::ids::FieldId;
 
 /// Documentation of the arguments and results of the rates.
@@ -35,8 +35,10 @@ const MAX_UNROLLED_COPY: usize = 8;
 /// Builds the stage of the rates.
 pub fn rates(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Stage> {
     let body = file.body(&file.program.rate_roots(), needed)?;
+    let program = file.program;
     rates_stage(
         body,
+        (&program.accelerations, &program.first_order_rates),
         "rates_into",
         format!(
             "Rates of the state, written to `rates`.\n\n{RATES_ORDER_DOC}{}",
@@ -60,18 +62,18 @@ pub fn describe_rate_limits(file: &File<'_>) -> String {
     said
 }
 
-/// Builds a stage that writes the rates from a body that has their values.
+/// Builds a stage that writes the rates from a body that has the values of the accelerations and of the first-order rates.
 pub(super) fn rates_stage(
     mut body: Body<'_>,
+    (accelerations, first_order_rates): (&RowValues, &[ValueId]),
     name: &'static str,
     doc: String,
 ) -> EmitResult<Stage> {
     let degrees = body.program.degrees_of_freedom();
     let computed = body.take_statements();
     write_rates_of_positions(&mut body, degrees);
-    let accelerations = &body.program.accelerations;
     write_row_values(&mut body, "rates", degrees, accelerations)?;
-    for (place, id) in body.program.first_order_rates.iter().enumerate() {
+    for (place, id) in first_order_rates.iter().enumerate() {
         let value = body.scalar(*id)?;
         body.assign(Place::new("rates", [(2 * degrees + place).into()]), value);
     }

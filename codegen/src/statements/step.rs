@@ -1,5 +1,44 @@
-//! Documentation of the step of the classical Runge-Kutta method, shared by the languages.
+//! Documentation of the step, shared by the languages.
 
-/// Documentation of the emitted function.
-pub const STEP_DOC: &str = "Step of length h (s) of the classical Runge-Kutta method of order 4, with held inputs. It has\n\
-                            the bits of `eomgen simulate --solver fixed`. Switches and impacts are not located.";
+use crate::program::Program;
+
+const HEAD: &str = "Step of length h (s) of the classical Runge-Kutta method of order 4, with held inputs. It has\n\
+                    the bits of `eomgen simulate --solver fixed`. Switches are not located.";
+
+const REACTIONS: &str = "\n\n\
+    Frictions that can hold the motion have one value over the step, so that a friction at rest\n\
+    holds. Contacts that are closed at the end of the step receive impulses, with Newton's law of\n\
+    restitution. The state becomes NaN if these reactions do not settle.";
+
+/// Returns name, value and documentation of the sizes of arrays of reactions; nothing without reactions.
+pub fn reaction_constants(program: &Program) -> Vec<(&'static str, usize, &'static str)> {
+    let Some(known) = &program.outputs.reactions else {
+        return Vec::new();
+    };
+    let [functions, effects] = program.reaction_sizes();
+    let mut constants = vec![
+        (
+            "REACTION_FUNCTIONS",
+            functions,
+            "Number of functions of reactions and of distances of contacts.",
+        ),
+        (
+            "REACTION_EFFECTS",
+            effects,
+            "Number of effects of reactions, coefficients of contacts and elements of columns.",
+        ),
+    ];
+    if known.sides() > 0 {
+        let doc = "Number of frictions that can hold the motion.";
+        constants.insert(0, ("SIDES", known.sides(), doc));
+    }
+    constants
+}
+
+/// Returns the documentation of the emitted function.
+pub fn describe_step(program: &Program) -> String {
+    match program.outputs.reactions {
+        Some(_) => HEAD.to_owned() + REACTIONS,
+        None => HEAD.to_owned(),
+    }
+}

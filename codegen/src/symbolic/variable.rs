@@ -34,4 +34,6 @@ pub enum Argument {
     PointDirection,
     /// Weight of each rate of the state, in the order of the state.
     Weights,
+    /// Sides of the frictions that can hold the motion, 0 to 1; as variable, the input with the number of the friction.
+    Sides,
 }

@@ -1,7 +1,7 @@
-//! Classical Runge-Kutta method of order 4 with fixed steps. Emitted code has the same method with the same order of
-//! operations, as `step`, so that a simulation and a loop on a processor have the same bits.
+//! Motion by steps of fixed length. Emitted code has the same method with the same order of operations, as `step`, so that
+//! a simulation and a loop on a processor have the same bits.
 
-use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::evaluator::{Evaluator, Point, StepMemory};
 use eomgen_model_spec::argument::Argument;
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{Settings, Trajectory};
@@ -24,8 +24,7 @@ pub struct FixedSteps {
     /// Time reached as requested, which may differ from that of the step by rounding, s.
     reached: f64,
     state: Vec<f64>,
-    stage: Vec<f64>,
-    rates: [Vec<f64>; 4],
+    memory: StepMemory,
 }
 
 impl Instance<'_> {
@@ -44,9 +43,11 @@ impl Instance<'_> {
                 Argument::StepLength.with_number("1e-4")
             )));
         }
-        if let Some(reason) = self.find_event() {
+        let mut inputs = self.model().model().inputs.iter();
+        if let Some(prescribed) = inputs.find(|input| input.rate.is_some()) {
             return Err(Error::Request(format!(
-                "the solver fixed locates no events, but {reason}: use {}",
+                "the solver fixed cannot be used: {}; use {}",
+                describe_prescribed_motion(&prescribed.name),
                 Argument::Solver.with_text("rk")
             )));
         }
@@ -56,37 +57,16 @@ impl Instance<'_> {
                 "a state has {count} finite entries"
             )));
         }
-        let zeros = || vec![0.0; count];
+        let evaluator = self.stepper()?;
         Ok(FixedSteps {
-            evaluator: self.evaluator()?,
+            memory: evaluator.create_step_memory(),
+            evaluator,
             start: t,
             step,
             count: 0,
             reached: t,
             state: state.to_vec(),
-            stage: zeros(),
-            rates: [zeros(), zeros(), zeros(), zeros()],
         })
-    }
-
-    /// Returns why the motion needs events or a projection.
-    fn find_event(&self) -> Option<String> {
-        let (model, program) = (self.model().model(), self.model().program());
-        if let Some(impact) = model.impacts.first() {
-            return Some(format!("the impact `{}` is one", impact.name));
-        }
-        if let Some(constraint) = model.constraints.first() {
-            let name = &constraint.name;
-            return Some(format!("the constraint `{name}` needs projections onto it"));
-        }
-        if let Some(guard) = program.guards.first() {
-            return Some(format!(
-                "the equations switch where `{}` is zero",
-                guard.formula
-            ));
-        }
-        let prescribed = model.inputs.iter().find(|input| input.rate.is_some());
-        prescribed.map(|input| describe_prescribed_motion(&input.name))
     }
 }
 
@@ -195,35 +175,14 @@ impl FixedSteps {
 
     /// Takes a step. Returns the index of a state that is not finite.
     fn take_step(&mut self, inputs: &[f64]) -> Option<usize> {
-        let (t, h) = (self.time(), self.step);
-        let half = 0.5 * h;
+        let at = (self.time(), self.step);
         let Self {
             evaluator,
             state,
-            stage,
-            rates: [k1, k2, k3, k4],
+            memory,
             ..
         } = self;
-        let mut rates = |t: f64, state: &[f64], out: &mut [f64]| {
-            evaluator.rates(Point { t, state, inputs }, out);
-        };
-        let advance = |from: &[f64], h: f64, rates: &[f64], to: &mut [f64]| {
-            for ((to, from), rate) in to.iter_mut().zip(from).zip(rates) {
-                *to = from + h * rate;
-            }
-        };
-        rates(t, state, k1);
-        advance(state, half, k1, stage);
-        rates(t + half, stage, k2);
-        advance(state, half, k2, stage);
-        rates(t + half, stage, k3);
-        advance(state, h, k3, stage);
-        rates(t + h, stage, k4);
-        let sixth = h / 6.0;
-        for (place, state) in state.iter_mut().enumerate() {
-            let inner = k2[place] + k3[place];
-            *state += sixth * (k1[place] + k4[place] + 2.0 * inner);
-        }
+        evaluator.step(at, state, inputs, memory);
         self.count += 1;
         self.state.iter().position(|entry| !entry.is_finite())
     }

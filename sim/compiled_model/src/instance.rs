@@ -206,6 +206,11 @@ impl<'m> Instance<'m> {
         require_positive_pivots(self.evaluator_unchecked())
     }
 
+    /// Returns an evaluator for steps of fixed length.
+    pub(crate) fn stepper(&self) -> Result<Evaluator, Error> {
+        require_positive_pivots(self.model.stepper(&self.parameters)?)
+    }
+
     /// Returns an evaluator without machine code, for a few evaluations.
     ///
     /// # Errors

@@ -7,9 +7,12 @@ use std::sync::{Arc, OnceLock};
 use eomgen_codegen::independence::constraint_program::{constraint_program, residual_places};
 use eomgen_codegen::independence::rows::ConstraintRows;
 use eomgen_codegen::mechanics::equations::Equations;
+use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, MachineCode};
-use eomgen_codegen::variant::{Variant, lower_corners, lower_for_gradients, lower_with_sides};
+use eomgen_codegen::variant::{
+    Variant, lower_corners, lower_for_gradients, lower_with_derivatives, lower_with_sides,
+};
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::dimension::Dimension;
@@ -86,6 +89,9 @@ pub struct CompiledModel {
     /// Program whose rates take the sides of surfaces as inputs, and its machine code.
     sided: OnceLock<Result<Option<Program>, Diagnostics>>,
     sided_code: OnceLock<Option<Arc<dyn MachineCode>>>,
+    /// Program with the output `step`, and its machine code.
+    stepped: OnceLock<Result<Program, Diagnostics>>,
+    stepped_code: OnceLock<Option<Arc<dyn MachineCode>>>,
     corners: OnceLock<Result<Option<Program>, Diagnostics>>,
     constraints: OnceLock<Option<Program>>,
     typical_sizes: OnceLock<Vec<f64>>,
@@ -148,6 +154,8 @@ impl CompiledModel {
             corners: OnceLock::new(),
             sided: OnceLock::new(),
             sided_code: OnceLock::new(),
+            stepped: OnceLock::new(),
+            stepped_code: OnceLock::new(),
             constraints: OnceLock::new(),
             typical_sizes: OnceLock::new(),
             labels: OnceLock::new(),
@@ -389,6 +397,19 @@ impl CompiledModel {
             .get_or_init(|| lower_with_sides(&self.model, &self.equations));
         let made = made.as_ref().map_err(|found| Error::from(found.clone()))?;
         Ok(made.as_ref())
+    }
+
+    /// Returns an evaluator for steps of fixed length, at these values of the independent parameters, SI.
+    ///
+    /// # Errors
+    /// A model without such steps.
+    pub(crate) fn stepper(&self, parameters: &[f64]) -> Result<Evaluator, Error> {
+        let made = self
+            .stepped
+            .get_or_init(|| lower_with_derivatives(&self.model, &self.equations, &[Output::Step]));
+        let program = made.as_ref().map_err(|found| Error::from(found.clone()))?;
+        let code = self.stepped_code.get_or_init(|| eomgen_jit::code(program));
+        Ok(prepare_evaluator(program, code.as_ref(), parameters))
     }
 
     /// Returns the corners of a motion at these values of the independent parameters, SI. `None` if

@@ -3,12 +3,12 @@
 
 use eomgen_codegen::program::Op;
 use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, Point, Stretch};
-use eomgen_sim::ode::UNMOVED_SIZE_FRACTION;
+use eomgen_sim::ode::{Trajectory, UNMOVED_SIZE_FRACTION};
 
 use crate::audit::{TOLERANCE_ERROR_FACTOR, find_allowed_change};
 use crate::error::Error;
 use crate::instance::Instance;
-use crate::motion::Motion;
+use crate::motion::{Motion, Solver};
 
 /// A sample at which bodies overlap.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +41,7 @@ impl Overlap {
 
 impl Instance<'_> {
     /// Returns the first sample at which bodies overlap by more than the solver's errors at this
-    /// relative tolerance can explain.
+    /// relative tolerance can explain. Steps of fixed length meet a contact up to a step late.
     ///
     /// # Errors
     /// Same as [`Instance::evaluator`].
@@ -55,7 +55,9 @@ impl Instance<'_> {
             return Ok(None);
         }
         let mut evaluator = self.evaluator()?;
+        let degrees = evaluator.program().degrees_of_freedom();
         let trajectory = &motion.trajectory;
+        let step = (motion.solver == Solver::Fixed).then(|| mean_step(trajectory));
         let typical = self.model().typical_sizes().iter();
         let mut sizes: Vec<f64> = typical.map(|size| UNMOVED_SIZE_FRACTION * size).collect();
         for (&t, state) in trajectory.times.iter().zip(&trajectory.states) {
@@ -73,9 +75,13 @@ impl Instance<'_> {
                     self::evaluate_distances(&mut evaluator, point)[place]
                 };
                 let change = find_allowed_change(state, &sizes, tolerance, of_impact);
+                let moved = step.map_or(0.0, |step| {
+                    let moves = moves_in_step(&sizes, step, degrees);
+                    find_allowed_change(state, &moves, 1.0, of_impact)
+                });
                 let point = Point { t, state, inputs };
                 let rounding = find_largest_distance(&mut evaluator, point, place) - distance;
-                let tolerance = TOLERANCE_ERROR_FACTOR * change + rounding;
+                let tolerance = TOLERANCE_ERROR_FACTOR * change + rounding + moved;
                 if distance.is_nan() || *distance < -tolerance {
                     return Ok(Some(Overlap {
                         impact: impacts[place].name.clone(),
@@ -125,4 +131,20 @@ fn evaluate_distances(evaluator: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
     let mut distances = vec![0.0; evaluator.program().impacts.len()];
     evaluator.distances(point, &mut distances);
     distances
+}
+
+/// Returns the mean length of the steps of a motion, s.
+fn mean_step(trajectory: &Trajectory) -> f64 {
+    match (trajectory.times.first(), trajectory.times.last()) {
+        (Some(first), Some(last)) if trajectory.statistics.steps > 0 => {
+            (last - first) / trajectory.statistics.steps as f64
+        }
+        _ => 0.0,
+    }
+}
+
+/// Returns the largest change of each state in a step, for the sizes of the states: coordinates move with their rates.
+fn moves_in_step(sizes: &[f64], step: f64, degrees: usize) -> Vec<f64> {
+    let rates = sizes[degrees..2 * degrees].iter().map(|rate| step * rate);
+    rates.chain(sizes[degrees..].iter().map(|_| 0.0)).collect()
 }

@@ -6,6 +6,7 @@ mod bench_of_a_model;
 mod casadi;
 mod checked_in_variants;
 mod closed_loop;
+mod contact_steps;
 mod controllers;
 mod families;
 mod family_interface;

@@ -41,7 +41,7 @@ fn fixed_steps_converge_with_order_four() {
 }
 
 #[test]
-fn models_with_events_and_times_between_steps_are_rejected() {
+fn prescribed_motion_and_times_between_steps_are_rejected() {
     let shipped = |name: &str| path(name).display().to_string();
     let regulator = project().join("examples/closed_loop/regulator.toml");
     let regulator = regulator.display().to_string();
@@ -49,16 +49,6 @@ fn models_with_events_and_times_between_steps_are_rejected() {
     let table = folder.path().join("rows.csv");
     let out = table.display().to_string();
     for (spec, options, part) in [
-        (
-            shipped("planetary_arm"),
-            "--step 1e-5",
-            "the equations switch where `x_sp - b_sp` is zero",
-        ),
-        (
-            shipped("chaplygin_sleigh"),
-            "--step 0.01",
-            "the constraint `edge` needs projections",
-        ),
         (
             shipped("crane"),
             "--step 0.01",

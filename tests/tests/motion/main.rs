@@ -4,6 +4,7 @@ mod chains_against_walls;
 mod chambers;
 mod constraints;
 mod contact_friction;
+mod contact_steps;
 mod contacts_without_force;
 mod continued;
 mod continued_controllers;

@@ -9,6 +9,7 @@ use super::jacobian::{
 };
 use super::matrix_derivatives::holds_moving_diagonal;
 use super::output::Output;
+use super::reactions::{StepObstacle, derive_reactions};
 use super::regimes::switches;
 use super::types::{Jacobian, Outputs, Products};
 use crate::mechanics::equations::Equations;
@@ -26,11 +27,11 @@ pub const TANGENTS: &str = "tangents";
 /// Derives the requested outputs.
 ///
 /// # Errors
-/// `MovingDiagonal`, for products and Jacobians.
+/// [`OutputError::MovingDiagonal`], for products and Jacobians, and [`OutputError::Step`], for steps.
 pub fn derive_outputs(
     equations: &mut Equations,
     outputs: &[Output],
-) -> Result<Outputs<NodeId, RowNodes>, MovingDiagonal> {
+) -> Result<Outputs<NodeId, RowNodes>, OutputError> {
     let mut result = Outputs {
         kinds: outputs.to_vec(),
         ..Outputs::default()
@@ -54,7 +55,7 @@ pub fn derive_outputs(
         roots.extend(&equations.observables);
         roots.push(equations.power);
         if holds_moving_diagonal(&equations.graph, &roots) {
-            return Err(MovingDiagonal::find(equations));
+            return Err(OutputError::MovingDiagonal(MovingDiagonal::find(equations)));
         }
     }
     if has(Output::BiasForces) || has(Output::InverseDynamics) {
@@ -88,8 +89,41 @@ pub fn derive_outputs(
         result.products = Some(products);
     }
     result.regimes = has(Output::Regimes).then(|| switches(equations));
+    if has(Output::Step) {
+        result.reactions = derive_reactions(equations).map_err(OutputError::Step)?;
+    }
     Ok(result)
 }
+
+/// Output that cannot be derived.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OutputError {
+    /// Jacobian.
+    MovingDiagonal(MovingDiagonal),
+    /// Step of fixed length.
+    Step(StepObstacle),
+}
+
+impl OutputError {
+    /// Returns the index of the term at fault in [`Equations::terms`], if it is known.
+    pub fn term(self) -> Option<usize> {
+        match self {
+            Self::MovingDiagonal(found) => found.term,
+            Self::Step(_) => None,
+        }
+    }
+}
+
+impl std::fmt::Display for OutputError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::MovingDiagonal(found) => found.fmt(f),
+            Self::Step(found) => found.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for OutputError {}
 
 /// Sum over modes that weights the square of each mode shape by a function of the state. Its Jacobian is not
 /// implemented.
@@ -115,8 +149,6 @@ impl std::fmt::Display for MovingDiagonal {
         )
     }
 }
-
-impl std::error::Error for MovingDiagonal {}
 
 fn bias_forces(equations: &mut Equations) -> RowNodes {
     let graph = &mut equations.graph;

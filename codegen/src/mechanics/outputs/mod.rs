@@ -3,7 +3,8 @@
 //! `output` lists them, `types` defines their structure, `derive` derives them. `jacobian` differentiates by
 //! state, inputs and parameters, `adjoint` and `adjoint_matrices` derive products with weights by reverse
 //! accumulation, `hessian` second derivatives of the weighted rates, `matrix_derivatives` derivatives of
-//! modal matrices, and `regimes` the surfaces that decide each branch.
+//! modal matrices, `regimes` the surfaces that decide each branch, and `reactions` frictions and contacts for steps of
+//! fixed length.
 
 #[cfg(feature = "derive")]
 mod adjoint;
@@ -19,15 +20,21 @@ mod jacobian;
 mod matrix_derivatives;
 mod output;
 #[cfg(feature = "derive")]
+mod reactions;
+#[cfg(feature = "derive")]
 mod regimes;
 mod types;
 
 #[cfg(feature = "derive")]
 pub(crate) use derive::guard_rate;
 #[cfg(feature = "derive")]
-pub use derive::{TANGENTS, derive_outputs};
+pub use derive::{OutputError, TANGENTS, derive_outputs};
 pub use output::{Output, UnknownOutput};
+#[cfg(feature = "derive")]
+pub use reactions::StepObstacle;
+#[cfg(feature = "derive")]
+pub(crate) use reactions::{Column, derive_along};
 pub use types::{
     BlockPlace, Corners, Decision, GradientDerivative, GradientRow, Jacobian, JacobianBlock,
-    Outputs, Products, RateRow, SURFACES_OF_A_REGIME, Side, SlidingSurface, Switch,
+    Outputs, Products, RateRow, Reactions, SURFACES_OF_A_REGIME, Side, SlidingSurface, Switch,
 };

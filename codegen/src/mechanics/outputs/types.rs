@@ -22,6 +22,8 @@ pub struct Outputs<N, R> {
     pub products: Option<Products<N, R>>,
     /// Derivative of the gradient of the weighted rates along a direction.
     pub gradient_derivative: Option<GradientDerivative<N>>,
+    /// Frictions that hold the motion and contacts, for steps of fixed length; `None` if the model has neither.
+    pub reactions: Option<Reactions<N, R>>,
     /// Branches of the accelerations that a regime decides.
     pub regimes: Option<Vec<Switch<N>>>,
     /// Surfaces that can hold the motion, if their sides are inputs.
@@ -42,6 +44,7 @@ impl<N, R> Default for Outputs<N, R> {
             jacobians: Vec::new(),
             products: None,
             gradient_derivative: None,
+            reactions: None,
             regimes: None,
             sliding: Vec::new(),
             sides: Vec::new(),
@@ -70,6 +73,40 @@ pub struct SlidingSurface<N, R> {
     pub column: R,
     /// Derivatives of the first-order rates by the surface's own side.
     pub first_order: Vec<N>,
+}
+
+/// Reactions in a step of fixed length, with nodes or values `N` and rows `R` of them: first the frictions that can hold
+/// the motion, then the forces of the contacts, then their frictions.
+///
+/// A reaction is an impulse: that of a friction is the integral of its sign over the step, at most the length of the
+/// step; that of a contact is the integral of the force.
+#[derive(Clone, Debug)]
+pub struct Reactions<N, R> {
+    /// Accelerations with the sides of the frictions as an [argument](crate::symbolic::variable::Argument::Sides).
+    pub accelerations: R,
+    /// Rates of the first-order states with these sides.
+    pub first_order_rates: Vec<N>,
+    /// Function of each reaction, which it keeps at 0: the function whose sign is the friction, the rate of the
+    /// distance, the slip.
+    pub functions: Vec<N>,
+    /// Change of the state's rates by a unit of each reaction: of the rates of coordinates and modes, then of the
+    /// first-order states.
+    pub columns: Vec<(R, Vec<N>)>,
+    /// Change of each function by a unit of each reaction, row by row.
+    pub effects: Vec<N>,
+    /// Distances of the contacts.
+    pub distances: Vec<N>,
+    /// Coefficients of restitution of the contacts.
+    pub restitutions: Vec<N>,
+    /// Coefficient of each contact's friction, with the index of the contact.
+    pub coefficients: Vec<(usize, N)>,
+}
+
+impl<N, R> Reactions<N, R> {
+    /// Returns the number of frictions that can hold the motion.
+    pub fn sides(&self) -> usize {
+        self.functions.len() - self.distances.len() - self.coefficients.len()
+    }
 }
 
 /// Surface whose side is an input: 1 if its function is positive, else 0.

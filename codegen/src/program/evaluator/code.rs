@@ -1,7 +1,9 @@
 //! Interface of the machine code that the evaluator calls.
 
 use super::point::Point;
-use crate::program::{Corners, Impact, Products, Program, RowValues, SlidingSurface, ValueId};
+use crate::program::{
+    Corners, Impact, Products, Program, Reactions, RowValues, SlidingSurface, ValueId,
+};
 
 /// Quantities that one call computes together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,11 +38,17 @@ pub enum Stage {
     ForwardProduct,
     /// Products of weights with the Jacobians of the rates by state, inputs and parameters.
     ReverseProduct,
+    /// Rates with the sides of frictions as an argument.
+    RatesWithSides,
+    /// Functions and distances of the reactions in a step.
+    ReactionFunctions,
+    /// Effects and columns of the reactions, and the coefficients of the contacts.
+    ReactionEffects,
 }
 
 impl Stage {
     /// Every stage.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 18] = [
         Self::Rates,
         Self::Observables,
         Self::Guards,
@@ -56,6 +64,9 @@ impl Stage {
         Self::Jacobians,
         Self::ForwardProduct,
         Self::ReverseProduct,
+        Self::RatesWithSides,
+        Self::ReactionFunctions,
+        Self::ReactionEffects,
     ];
 
     /// Returns the values that the stage computes.
@@ -99,7 +110,10 @@ impl Stage {
             | Self::GuardRates
             | Self::Jacobians
             | Self::ForwardProduct
-            | Self::ReverseProduct => self.output_roots(program),
+            | Self::ReverseProduct
+            | Self::RatesWithSides
+            | Self::ReactionFunctions
+            | Self::ReactionEffects => self.output_roots(program),
         }
     }
 }
@@ -158,6 +172,15 @@ impl Stage {
             Self::GuardRates => outputs.guard_rates.iter().flatten().copied().collect(),
             Self::ForwardProduct => products.flat_map(Products::forward_roots).collect(),
             Self::ReverseProduct => products.flat_map(Products::reverse_roots).collect(),
+            Self::RatesWithSides => (outputs.reactions.iter())
+                .flat_map(Reactions::rate_roots)
+                .collect(),
+            Self::ReactionFunctions => (outputs.reactions.iter())
+                .flat_map(Reactions::function_roots)
+                .collect(),
+            Self::ReactionEffects => (outputs.reactions.iter())
+                .flat_map(Reactions::effect_roots)
+                .collect(),
             _ => {
                 let jacobians = outputs.jacobians.iter();
                 jacobians

@@ -193,7 +193,7 @@ impl Evaluator {
     }
 
     /// Copies the numbers of an argument to the places of its values.
-    fn set_argument(&mut self, argument: Argument, numbers: &[f64], inputs: &[f64]) {
+    pub(super) fn set_argument(&mut self, argument: Argument, numbers: &[f64], inputs: &[f64]) {
         for (of, variable, id) in &self.arguments {
             if *of != argument {
                 continue;

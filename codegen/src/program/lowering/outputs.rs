@@ -5,6 +5,7 @@ use crate::mechanics::outputs::SlidingSurface;
 use crate::mechanics::outputs::Switch;
 use crate::mechanics::outputs::{
     Corners, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Outputs, Products, RateRow,
+    Reactions,
 };
 use crate::mechanics::rows::RowNodes;
 use crate::program::{RowValues, ValueId};
@@ -57,6 +58,10 @@ impl Lowering<'_> {
                     rows: rows.collect(),
                 }
             }),
+            reactions: outputs
+                .reactions
+                .as_ref()
+                .map(|known| self.reactions(known)),
             regimes: outputs.regimes.as_ref().map(|switches| {
                 let switches = switches.iter();
                 switches
@@ -90,6 +95,28 @@ impl Lowering<'_> {
             momenta: self.rows(&corners.momenta),
             hamiltonian: self.value(corners.hamiltonian),
             energy: self.value(corners.energy),
+        }
+    }
+
+    fn reactions(&mut self, known: &Reactions<NodeId, RowNodes>) -> Reactions<ValueId, RowValues> {
+        let mut values =
+            |nodes: &[NodeId]| -> Vec<ValueId> { nodes.iter().map(|id| self.value(*id)).collect() };
+        Reactions {
+            first_order_rates: values(&known.first_order_rates),
+            functions: values(&known.functions),
+            effects: values(&known.effects),
+            distances: values(&known.distances),
+            restitutions: values(&known.restitutions),
+            coefficients: (known.coefficients.iter())
+                .map(|(contact, node)| (*contact, self.value(*node)))
+                .collect(),
+            columns: (known.columns.iter())
+                .map(|(rates, first_order)| {
+                    let first_order = first_order.iter().map(|id| self.value(*id)).collect();
+                    (self.rows(rates), first_order)
+                })
+                .collect(),
+            accelerations: self.rows(&known.accelerations),
         }
     }
 

@@ -358,5 +358,6 @@ fn argument_name(argument: Argument) -> &'static str {
         Argument::Accelerations => "acceleration",
         Argument::Direction | Argument::PointDirection => "direction",
         Argument::Weights => "weight",
+        Argument::Sides => "side",
     }
 }

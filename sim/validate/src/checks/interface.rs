@@ -196,7 +196,7 @@ impl<'p> Calls<'p> {
                 format!("positive_definite, call {count}"),
                 definite.to_string(),
             ));
-            let all = results(&mut evaluator, point, &|number| precision.round(number));
+            let all = results(&mut evaluator, point);
             let printed = |place: usize, name: &str| place < functions || name == "step";
             let all = all.into_iter().enumerate();
             for (_, (name, numbers)) in all.filter(|(place, (name, _))| printed(*place, name)) {
@@ -235,13 +235,8 @@ pub fn arguments(count: usize) -> Vec<f64> {
     (0..count).map(argument).collect()
 }
 
-/// Returns names and results of all functions, in the order of the harnesses. `round` rounds to the precision of the
-/// evaluator.
-fn results(
-    evaluator: &mut Evaluator,
-    point: Point<'_>,
-    round: &dyn Fn(f64) -> f64,
-) -> Vec<(String, Vec<f64>)> {
+/// Returns names and results of all functions, in the order of the harnesses.
+fn results(evaluator: &mut Evaluator, point: Point<'_>) -> Vec<(String, Vec<f64>)> {
     let program = &evaluator.program().clone();
     let (states, degrees, guards) = (
         program.states(),
@@ -330,43 +325,16 @@ fn results(
         all.push(("rates_in_regime".to_owned(), rates));
     }
     if has(Output::Step) {
-        let stepped = step(evaluator, point, round);
-        all.push(("step".to_owned(), stepped));
+        let mut state = point.state.to_vec();
+        let mut memory = evaluator.create_step_memory();
+        evaluator.step((point.t, STEP), &mut state, point.inputs, &mut memory);
+        all.push(("step".to_owned(), state));
     }
     all
 }
 
 /// Step of the harnesses in s, exact in any precision.
 const STEP: f64 = 1.0 / 1024.0;
-
-/// Returns the state after one step of the classical Runge-Kutta method, with every operation rounded.
-fn step(evaluator: &mut Evaluator, point: Point<'_>, round: &dyn Fn(f64) -> f64) -> Vec<f64> {
-    let Point { t, state, inputs } = point;
-    let (half, sixth) = (round(0.5 * STEP), round(STEP / 6.0));
-    let mut slopes: Vec<Vec<f64>> = Vec::new();
-    for (time, length) in [(0.0, 0.0), (half, half), (half, half), (STEP, STEP)] {
-        let moved: Vec<f64> = match slopes.last() {
-            Some(slope) => (state.iter().zip(slope))
-                .map(|(number, slope)| round(number + round(length * slope)))
-                .collect(),
-            None => state.to_vec(),
-        };
-        let mut rates = vec![0.0; state.len()];
-        let at = Point {
-            t: round(t + time),
-            state: &moved,
-            inputs,
-        };
-        evaluator.rates(at, &mut rates);
-        slopes.push(rates.into_iter().map(round).collect());
-    }
-    let next = state.iter().enumerate().map(|(i, number)| {
-        let inner = round(slopes[1][i] + slopes[2][i]);
-        let outer = round(slopes[0][i] + slopes[3][i]);
-        round(number + round(sixth * round(outer + round(2.0 * inner))))
-    });
-    next.collect()
-}
 
 /// Returns the names of the Jacobians in a linearisation that have columns.
 fn linearised(program: &Program) -> Vec<&'static str> {

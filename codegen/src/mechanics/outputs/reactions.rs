@@ -1,0 +1,120 @@
+//! Frictions that hold the motion and contacts, for steps of fixed length: functions, columns and effects of their
+//! reactions. The time-stepping method is in `program::evaluator::fixed_step`.
+
+use super::types::Reactions;
+use crate::mechanics::discs::divides_by_speed;
+use crate::mechanics::equations::Equations;
+use crate::mechanics::rows::RowNodes;
+use crate::mechanics::sliding::hold_frictions;
+use crate::symbolic::differentiate::Direction;
+use crate::symbolic::graph::{Graph, NodeId, Operation};
+
+/// Change of the rates by a unit of a reaction.
+pub(crate) type Column = (RowNodes, Vec<NodeId>);
+
+/// Property of a model for which there are no steps of fixed length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepObstacle {
+    /// Energies jump at a surface.
+    Corner,
+    /// A friction acts against the direction of a velocity.
+    Direction,
+    /// The rates are not linear in the sign of a friction.
+    Nonlinear,
+    /// A contact has friction and restitution.
+    RestitutionWithFriction,
+}
+
+impl std::fmt::Display for StepObstacle {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Corner => "there is no step of fixed length for energies that jump",
+            Self::Direction => {
+                "there is no step of fixed length for a friction against the direction of a velocity, v/norm(v)"
+            }
+            Self::Nonlinear => "there is no step of fixed length for forces that are not linear in the sign of a friction",
+            Self::RestitutionWithFriction => {
+                "there is no step of fixed length for contacts with both friction and restitution; a restitution of 0, or \
+                 contacts without friction, have one"
+            }
+        })
+    }
+}
+
+/// Derives the reactions; `None` for a model without contacts and without frictions that can hold the motion.
+pub(crate) fn derive_reactions(
+    equations: &mut Equations,
+) -> Result<Option<Reactions<NodeId, RowNodes>>, StepObstacle> {
+    if !equations.corners.is_empty() {
+        return Err(StepObstacle::Corner);
+    }
+    if divides_by_speed(&equations.graph, &equations.rate_nodes()) {
+        return Err(StepObstacle::Direction);
+    }
+    let held = hold_frictions(equations);
+    let graph = &mut equations.graph;
+    if held.columns.iter().any(|column| has_sides(graph, column)) {
+        return Err(StepObstacle::Nonlinear);
+    }
+    let impacts = &equations.impacts;
+    let bounces = |restitution: NodeId| !graph.is_zero(restitution);
+    if (impacts.iter()).any(|impact| impact.friction.is_some() && bounces(impact.restitution)) {
+        return Err(StepObstacle::RestitutionWithFriction);
+    }
+    let frictions: Vec<_> = (impacts.iter().enumerate())
+        .filter_map(|(contact, impact)| Some((contact, impact.friction.as_ref()?)))
+        .collect();
+    let mut functions = held.functions;
+    functions.extend(impacts.iter().map(|impact| impact.rate));
+    functions.extend(frictions.iter().map(|(_, friction)| friction.slip));
+    if functions.is_empty() {
+        return Ok(None);
+    }
+    let at_rest = vec![graph.zero(); equations.state_rates.len()];
+    let of_contact = |column: &RowNodes| (column.clone(), at_rest.clone());
+    let mut columns = held.columns;
+    columns.extend(impacts.iter().map(|impact| of_contact(&impact.column)));
+    columns.extend((frictions.iter()).map(|(_, friction)| of_contact(&friction.column)));
+    let mut effects = Vec::with_capacity(functions.len() * columns.len());
+    for function in &functions {
+        for column in &columns {
+            effects.push(derive_along(graph, *function, column));
+        }
+    }
+    Ok(Some(Reactions {
+        accelerations: held.accelerations,
+        first_order_rates: held.first_order_rates,
+        distances: impacts.iter().map(|impact| impact.distance).collect(),
+        restitutions: impacts.iter().map(|impact| impact.restitution).collect(),
+        coefficients: (frictions.iter())
+            .map(|(contact, friction)| (*contact, friction.coefficient))
+            .collect(),
+        functions,
+        columns,
+        effects,
+    }))
+}
+
+/// Returns the derivative of a function by a reaction with this column.
+pub(crate) fn derive_along(graph: &mut Graph, function: NodeId, column: &Column) -> NodeId {
+    let (rates, first_order) = column;
+    let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
+        Operation::Rate(index) => rates.scalars[index],
+        Operation::ModeRates(field) => rates.modal[field],
+        Operation::State(index) => first_order[index],
+        _ => graph.zero(),
+    };
+    Direction::new(&tangent).derivative(graph, function)
+}
+
+fn has_sides(graph: &Graph, (rates, first_order): &Column) -> bool {
+    let roots: Vec<NodeId> = rates
+        .nodes()
+        .into_iter()
+        .chain(first_order.iter().copied())
+        .collect();
+    let parts = graph.reachable(&roots);
+    parts
+        .into_iter()
+        .any(|part| matches!(graph.operation(part), Operation::Argument(..)))
+}

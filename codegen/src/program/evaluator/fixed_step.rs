@@ -1,0 +1,428 @@
+//! Steps of fixed length with held inputs: the classical Runge-Kutta method of order 4, and the reactions of frictions and
+//! contacts over the whole step. Emitted code has the same method with the same order of operations.
+//!
+//! A friction has one value over the step, such that its velocity is zero at the end or has its sign: a friction at rest
+//! holds exactly. Contacts that are closed at the end of the step receive impulses by Newton's law, frictions at contacts
+//! after Coulomb's. The conditions on velocities at the end of steps are those of time-stepping methods (J. J. Moreau,
+//! Unilateral contact and dry friction in finite freedom dynamics, CISM 302, 1988; V. Acary, B. Brogliato, *Numerical
+//! Methods for Nonsmooth Dynamical Systems*, chapter 10), solved by projected Gauss-Seidel sweeps. An event costs an error
+//! of the order of the step; without events the order is 4.
+
+use super::{Evaluator, Point, Stage};
+use crate::program::{Argument, Reactions, RowValues, ValueId};
+
+type ProgramReactions = Reactions<ValueId, RowValues>;
+
+/// Largest number of sweeps over the reactions.
+pub(crate) const MAX_SWEEPS: usize = 1000;
+
+/// Largest change by a sweep, relative to the largest value of a function, at which the reactions are settled. Each of the
+/// solutions of a step divides the rest by as much.
+pub(crate) const MAX_SETTLED_CHANGE: f64 = 1.0 / 1_048_576.0;
+
+/// Memory of steps of one model.
+#[derive(Clone, Debug, Default)]
+pub struct StepMemory {
+    rates: [Vec<f64>; 4],
+    stage: Vec<f64>,
+    next: Vec<f64>,
+    sides: Vec<f64>,
+    before: Vec<f64>,
+    functions: Vec<f64>,
+    effects: Vec<f64>,
+    reactions: Vec<f64>,
+    applied: Vec<f64>,
+    targets: Vec<f64>,
+    delays: Vec<f64>,
+    sizes: Vec<f64>,
+}
+
+impl Evaluator {
+    /// Returns memory for [`Evaluator::step`].
+    pub fn create_step_memory(&self) -> StepMemory {
+        let states = vec![0.0; self.program.states()];
+        let known = self.program.outputs.reactions.as_ref();
+        let count = known.map_or(0, |known| known.functions.len());
+        let sides = known.map_or(0, Reactions::sides);
+        let [functions, effects] = self.program.reaction_sizes();
+        let reactions = || vec![0.0; count];
+        StepMemory {
+            rates: std::array::from_fn(|_| states.clone()),
+            stage: states.clone(),
+            next: states,
+            sides: vec![0.5; sides],
+            before: vec![0.0; functions],
+            functions: vec![0.0; functions],
+            effects: vec![0.0; effects],
+            reactions: reactions(),
+            applied: reactions(),
+            targets: reactions(),
+            delays: reactions(),
+            sizes: reactions(),
+        }
+    }
+
+    /// Advances a state by a step of length `h` (s) with held inputs. The state becomes NaN if the reactions of frictions
+    /// and contacts do not settle. A program without the output `step` ignores contacts and takes the sign of frictions
+    /// from the state. An evaluator in single precision computes the step in it.
+    pub fn step(
+        &mut self,
+        (t, h): (f64, f64),
+        state: &mut [f64],
+        inputs: &[f64],
+        memory: &mut StepMemory,
+    ) {
+        match self.single {
+            Some(_) => {
+                let round = |number: f64| f64::from(number as f32);
+                self.step_with_rounding((t, h), (state, inputs), memory, round);
+            }
+            None => self.step_with_rounding((t, h), (state, inputs), memory, |number| number),
+        }
+    }
+
+    /// Takes a step with every operation rounded.
+    fn step_with_rounding(
+        &mut self,
+        at: (f64, f64),
+        (state, inputs): (&mut [f64], &[f64]),
+        memory: &mut StepMemory,
+        round: impl Fn(f64) -> f64 + Copy,
+    ) {
+        let Some(known) = self.program.outputs.reactions.take() else {
+            self.take_runge_kutta_step(at, (state, inputs), (None, memory), round);
+            state.copy_from_slice(&memory.next);
+            return;
+        };
+        self.take_step_with_reactions(at, (state, inputs), (&known, memory), round);
+        self.program.outputs.reactions = Some(known);
+    }
+
+    fn take_step_with_reactions(
+        &mut self,
+        (t, h): (f64, f64),
+        (state, inputs): (&mut [f64], &[f64]),
+        (known, memory): (&ProgramReactions, &mut StepMemory),
+        round: impl Fn(f64) -> f64 + Copy,
+    ) {
+        let sides = known.sides();
+        fn at<'p>(t: f64, state: &'p [f64], inputs: &'p [f64]) -> Point<'p> {
+            Point { t, state, inputs }
+        }
+        let end = round(t + h);
+        self.write_reaction_functions(at(t, state, inputs), known, &mut memory.before);
+        memory.reactions.fill(0.0);
+        memory.targets.fill(0.0);
+        memory.delays.fill(round(0.5 * h));
+        if sides > 0 {
+            self.write_reaction_effects(at(t, state, inputs), known, &mut memory.effects);
+            memory.sides.fill(0.5);
+            let rates = &mut memory.rates[0];
+            self.write_rates_with_sides(at(t, state, inputs), known, &memory.sides, rates);
+            advance(state, h, rates, &mut memory.next, round);
+            self.write_reaction_functions(
+                at(end, &memory.next, inputs),
+                known,
+                &mut memory.functions,
+            );
+            meet_contacts(h, known, memory, round);
+            find_reactions(h, known, memory, round);
+            for (side, reaction) in memory.sides.iter_mut().zip(&memory.reactions) {
+                *side = round(0.5 + 0.5 * round(reaction / h));
+            }
+            memory.reactions[sides..].fill(0.0);
+        }
+        let held = (sides > 0).then_some(known);
+        self.take_runge_kutta_step((t, h), (state, inputs), (held, memory), round);
+        self.write_reaction_functions(at(end, &memory.next, inputs), known, &mut memory.functions);
+        if sides == 0 {
+            let distances = &memory.functions[known.functions.len()..];
+            if distances.iter().all(|distance| *distance > 0.0) {
+                state.copy_from_slice(&memory.next);
+                return;
+            }
+            self.write_reaction_effects(at(t, state, inputs), known, &mut memory.effects);
+        }
+        meet_contacts(h, known, memory, round);
+        let degrees = self.program.degrees_of_freedom();
+        memory.applied.copy_from_slice(&memory.reactions);
+        let mut is_settled = find_reactions(h, known, memory, round);
+        apply_reactions(degrees, known, memory, round);
+        // The positions and forces at the end differ from those at the start, from which the reactions were found.
+        self.write_reaction_functions(at(end, &memory.next, inputs), known, &mut memory.functions);
+        separate_contacts(degrees, known, memory, round);
+        memory.applied.copy_from_slice(&memory.reactions);
+        is_settled &= find_reactions(h, known, memory, round);
+        memory.delays.fill(0.0);
+        apply_reactions(degrees, known, memory, round);
+        match is_settled {
+            true => state.copy_from_slice(&memory.next),
+            false => state.fill(f64::NAN),
+        }
+    }
+
+    /// Writes the state after a step of the Runge-Kutta method to `next`, with the sides of the reactions if there are any.
+    fn take_runge_kutta_step(
+        &mut self,
+        (t, h): (f64, f64),
+        (state, inputs): (&[f64], &[f64]),
+        (held, memory): (Option<&ProgramReactions>, &mut StepMemory),
+        round: impl Fn(f64) -> f64 + Copy,
+    ) {
+        let StepMemory {
+            rates: [k1, k2, k3, k4],
+            stage,
+            next,
+            sides,
+            ..
+        } = memory;
+        let mut rates = |t: f64, state: &[f64], out: &mut [f64]| {
+            let point = Point { t, state, inputs };
+            match held {
+                Some(known) => self.write_rates_with_sides(point, known, sides, out),
+                None => self.rates(point, out),
+            }
+        };
+        let half = round(0.5 * h);
+        let middle = round(t + half);
+        rates(t, state, k1);
+        advance(state, half, k1, stage, round);
+        rates(middle, stage, k2);
+        advance(state, half, k2, stage, round);
+        rates(middle, stage, k3);
+        advance(state, h, k3, stage, round);
+        rates(round(t + h), stage, k4);
+        let sixth = round(h / 6.0);
+        for (place, next) in next.iter_mut().enumerate() {
+            let inner = round(k2[place] + k3[place]);
+            let sum = round(round(k1[place] + k4[place]) + 2.0 * inner);
+            *next = round(state[place] + round(sixth * sum));
+        }
+    }
+
+    fn write_rates_with_sides(
+        &mut self,
+        point: Point<'_>,
+        known: &ProgramReactions,
+        sides: &[f64],
+        out: &mut [f64],
+    ) {
+        self.set_argument(Argument::Sides, &[], sides);
+        self.compute(Stage::RatesWithSides, &point);
+        let degrees = self.program.degrees_of_freedom();
+        let (velocities, rest) = out.split_at_mut(degrees);
+        velocities.copy_from_slice(&point.state[degrees..2 * degrees]);
+        let (accelerations, first_order) = rest.split_at_mut(degrees);
+        let rows = &known.accelerations;
+        self.copy_rows(&rows.scalars, &rows.modal, accelerations);
+        self.copy_scalars(&known.first_order_rates, first_order);
+    }
+
+    /// Writes the functions of the reactions, then the distances.
+    fn write_reaction_functions(
+        &mut self,
+        point: Point<'_>,
+        known: &ProgramReactions,
+        out: &mut [f64],
+    ) {
+        self.compute(Stage::ReactionFunctions, &point);
+        let (functions, distances) = out.split_at_mut(known.functions.len());
+        self.copy_scalars(&known.functions, functions);
+        self.copy_scalars(&known.distances, distances);
+    }
+
+    /// Writes the effects, the coefficients of the contacts and the columns of the reactions.
+    fn write_reaction_effects(
+        &mut self,
+        point: Point<'_>,
+        known: &ProgramReactions,
+        out: &mut [f64],
+    ) {
+        self.compute(Stage::ReactionEffects, &point);
+        let degrees = self.program.degrees_of_freedom();
+        let (effects, rest) = out.split_at_mut(known.effects.len());
+        self.copy_scalars(&known.effects, effects);
+        let (restitutions, rest) = rest.split_at_mut(known.restitutions.len());
+        self.copy_scalars(&known.restitutions, restitutions);
+        let (coefficients, columns) = rest.split_at_mut(known.coefficients.len());
+        let ids = known.coefficients.iter().map(|(_, id)| *id);
+        self.copy_scalars(&ids.collect::<Vec<_>>(), coefficients);
+        let length = self.program.states() - degrees;
+        for ((rates, first_order), column) in
+            known.columns.iter().zip(columns.chunks_exact_mut(length))
+        {
+            let (own_rates, own_first_order) = column.split_at_mut(degrees);
+            self.copy_rows(&rates.scalars, &rates.modal, own_rates);
+            self.copy_scalars(first_order, own_first_order);
+        }
+    }
+
+    fn copy_scalars(&self, ids: &[ValueId], out: &mut [f64]) {
+        for (slot, id) in out.iter_mut().zip(ids) {
+            *slot = self.element(*id, 0);
+        }
+    }
+}
+
+fn advance(from: &[f64], h: f64, rates: &[f64], to: &mut [f64], round: impl Fn(f64) -> f64 + Copy) {
+    for ((to, from), rate) in to.iter_mut().zip(from).zip(rates) {
+        *to = round(from + round(h * rate));
+    }
+}
+
+/// Sets the rates that contacts have after the step at least, and the times for which their impulses act: since the
+/// distance was zero. An open contact has no impulse.
+fn meet_contacts(
+    h: f64,
+    known: &ProgramReactions,
+    memory: &mut StepMemory,
+    round: impl Fn(f64) -> f64 + Copy,
+) {
+    let (count, sides) = (known.functions.len(), known.sides());
+    for contact in 0..known.distances.len() {
+        let (before, after) = (
+            memory.before[count + contact],
+            memory.functions[count + contact],
+        );
+        let (rate_before, rate) = (
+            memory.before[sides + contact],
+            memory.functions[sides + contact],
+        );
+        let restitution = memory.effects[known.effects.len() + contact];
+        let crossing = select(before, 0.0, round(before / round(before - after)), 0.0);
+        let change = round(rate - rate_before);
+        let approach = round(rate_before + round(crossing * change));
+        let bounce = select(0.0, approach, -round(restitution * approach), 0.0);
+        // Forces change the rate after the bounce as they did before it; a contact that closes again stays closed.
+        let rebound = round(bounce + round(rate - approach));
+        let target = select(rebound, 0.0, rebound, 0.0);
+        let delay = select(-round(rate * h), -after, round(after / rate), h);
+        memory.targets[sides + contact] = select(after, 0.0, f64::NEG_INFINITY, target);
+        memory.delays[sides + contact] = select(after, 0.0, 0.0, delay);
+    }
+    let first = sides + known.distances.len();
+    for (place, (contact, _)) in known.coefficients.iter().enumerate() {
+        memory.delays[first + place] = memory.delays[sides + contact];
+    }
+}
+
+/// Corrects the reactions until the conditions on the functions hold, and the functions with them. Returns false if they
+/// do not settle.
+fn find_reactions(
+    h: f64,
+    known: &ProgramReactions,
+    memory: &mut StepMemory,
+    round: impl Fn(f64) -> f64 + Copy,
+) -> bool {
+    let StepMemory {
+        functions,
+        effects,
+        reactions,
+        targets,
+        sizes,
+        ..
+    } = memory;
+    let (count, sides) = (known.functions.len(), known.sides());
+    let contacts = known.distances.len();
+    let coefficients = &effects[known.effects.len() + contacts..];
+    for (size, function) in sizes.iter_mut().zip(functions.iter()) {
+        *size = magnitude(*function);
+    }
+    for _ in 0..MAX_SWEEPS {
+        let mut is_settled = true;
+        for own in 0..count {
+            let effect = effects[own * count + own];
+            let lack = round(round(functions[own] - targets[own]) / effect);
+            let wanted = round(reactions[own] - lack);
+            let next = if own < sides {
+                // A friction that drives its own velocity keeps its value.
+                select(0.0, effect, clamp(wanted, -h, h), reactions[own])
+            } else if own < sides + contacts {
+                select(effect, 0.0, select(wanted, 0.0, wanted, 0.0), 0.0)
+            } else {
+                let place = own - sides - contacts;
+                let contact = known.coefficients[place].0;
+                let limit = round(coefficients[place] * reactions[sides + contact]);
+                select(effect, 0.0, clamp(wanted, -limit, limit), 0.0)
+            };
+            let change = round(next - reactions[own]);
+            reactions[own] = next;
+            for (place, function) in functions[..count].iter_mut().enumerate() {
+                *function = round(*function + round(effects[place * count + own] * change));
+            }
+            let size = magnitude(functions[own]);
+            sizes[own] = select(size, sizes[own], size, sizes[own]);
+            let moved = magnitude(round(change * effect));
+            if moved > round(MAX_SETTLED_CHANGE * sizes[own]) {
+                is_settled = false;
+            }
+        }
+        if is_settled {
+            return true;
+        }
+    }
+    false
+}
+
+/// Moves the positions so that closed contacts do not overlap.
+fn separate_contacts(
+    degrees: usize,
+    known: &ProgramReactions,
+    memory: &mut StepMemory,
+    round: impl Fn(f64) -> f64 + Copy,
+) {
+    let (count, sides) = (known.functions.len(), known.sides());
+    let length = memory.next.len() - degrees;
+    for contact in 0..known.distances.len() {
+        let own = sides + contact;
+        let effect = memory.effects[own * count + own];
+        let distance = memory.functions[count + contact];
+        let overlap = select(0.0, distance, round(-distance / effect), 0.0);
+        let push = select(memory.targets[own], f64::NEG_INFINITY, overlap, 0.0);
+        let first = known.first_column() + own * length;
+        for place in 0..degrees {
+            let moved = round(memory.effects[first + place] * push);
+            memory.next[place] = round(memory.next[place] + moved);
+        }
+        for other in 0..known.distances.len() {
+            let moved = round(memory.effects[(sides + other) * count + own] * push);
+            let distance = memory.functions[count + other];
+            memory.functions[count + other] = round(distance + moved);
+        }
+    }
+}
+
+/// Adds the changes of the reactions since `applied` to the state.
+fn apply_reactions(
+    degrees: usize,
+    known: &ProgramReactions,
+    memory: &mut StepMemory,
+    round: impl Fn(f64) -> f64 + Copy,
+) {
+    let first = known.first_column();
+    let length = memory.next.len() - degrees;
+    for own in 0..known.functions.len() {
+        let change = round(memory.reactions[own] - memory.applied[own]);
+        for place in 0..length {
+            let moved = round(memory.effects[first + own * length + place] * change);
+            memory.next[degrees + place] = round(memory.next[degrees + place] + moved);
+            if place < degrees {
+                let moved = round(memory.delays[own] * moved);
+                memory.next[place] = round(memory.next[place] + moved);
+            }
+        }
+    }
+}
+
+fn select(a: f64, b: f64, then: f64, otherwise: f64) -> f64 {
+    if a > b { then } else { otherwise }
+}
+
+fn magnitude(a: f64) -> f64 {
+    select(0.0, a, -a, a)
+}
+
+fn clamp(a: f64, lowest: f64, highest: f64) -> f64 {
+    let below = select(a, highest, highest, a);
+    select(lowest, below, lowest, below)
+}
