@@ -5,7 +5,9 @@ use super::expression::{initialiser, write_loop};
 use super::names::fill_template;
 use super::stages::head;
 use super::step::RATES_OF_STAGES;
-use crate::program::evaluator::{MAX_SETTLED_CHANGE, MAX_SWEEPS};
+use crate::program::evaluator::{
+    MAX_LAST_CHANGE, MAX_SETTLED_ROUNDINGS, MAX_SWEEPS, SWEEPS_BETWEEN_CONTACTS,
+};
 use crate::program::{Program, Reactions, RowValues, ValueId};
 use crate::statements::layout::{DEEPER, SHALLOWER, block};
 
@@ -37,7 +39,7 @@ impl Sizes {
 pub(super) fn functions(program: &Program, known: &ProgramReactions) -> String {
     let mut text = String::new();
     if !known.distances.is_empty() {
-        text += &meet_contacts(program, known);
+        text += &close_contacts(program, known);
         text += &separate_contacts(program, known);
     }
     text += &find_reactions(program, known);
@@ -63,7 +65,7 @@ pub(super) fn step(program: &Program, known: &ProgramReactions, runge_kutta: &st
     ] {
         lines += &format!("NAME_real {name}[{length}];\n");
     }
-    lines += "NAME_real unsettled;\n";
+    lines += "NAME_real lost;\n";
     if sizes.sides > 0 {
         lines += &format!("NAME_real sides[{}];\n", sizes.sides);
     }
@@ -72,11 +74,20 @@ pub(super) fn step(program: &Program, known: &ProgramReactions, runge_kutta: &st
     };
     let end_functions = given("reaction_functions", "t + h", "next", "functions");
     let start_effects = given("reaction_effects", "t", "state", "effects");
-    let meet = match sizes.contacts {
-        0 => "",
-        _ => "NAME_meet_contacts(h, before, functions, effects, targets, delays);\n",
+    let close =
+        "NAME_close_contacts(h, before, functions, effects, reactions, applied, targets, delays)";
+    let open = loop_between(
+        (sizes.sides, sizes.first_friction()),
+        "targets[r] = R(-NAME_UNBOUNDED);\n",
+    );
+    let set_sides = write_loop(
+        "r",
+        sizes.sides,
+        "sides[r] = R(0.5) + R(0.5) * (reactions[r] / h);\n",
+    );
+    let find = |sweeps: usize| {
+        format!("NAME_find_reactions(h, {sweeps}, effects, targets, functions, reactions)")
     };
-    let find = "NAME_find_reactions(h, effects, targets, functions, reactions)";
     let apply = "NAME_apply_reactions(effects, reactions, applied, delays, next);\n";
     let copy = write_loop("r", count, "applied[r] = reactions[r];\n");
     lines += &given("reaction_functions", "t", "state", "before");
@@ -85,23 +96,28 @@ pub(super) fn step(program: &Program, known: &ProgramReactions, runge_kutta: &st
         count,
         "reactions[r] = R(0.0);\ntargets[r] = R(0.0);\ndelays[r] = half;\n",
     );
+    lines += &open;
     if sizes.sides > 0 {
         lines += &start_effects;
-        lines += &write_loop("r", sizes.sides, "sides[r] = R(0.5);\n");
+        // Frictions that drive their own velocity start with its sign.
+        let driving = format!(
+            "const NAME_real below = (R(0.0) > before[r]) ? -h : R(0.0);\n\
+             const NAME_real sign = (before[r] > R(0.0)) ? h : below;\n\
+             reactions[r] = (R(0.0) > effects[{count} * r + r]) ? R(0.0) : sign;\n"
+        );
+        lines += &write_loop("r", sizes.sides, &driving);
+        lines += &set_sides;
         lines += "NAME_rates_with_sides(t, state, inputs, coefficients, sides, k1);\n";
         lines += &write_loop("i", states, "next[i] = state[i] + h * k1[i];\n");
         lines += &end_functions;
-        lines += meet;
-        lines += &format!("(void){find};\n");
-        lines += &write_loop(
-            "r",
-            sizes.sides,
-            "sides[r] = R(0.5) + R(0.5) * (reactions[r] / h);\n",
-        );
-        if count > sizes.sides {
-            let head = format!("for (int r = {}; r < {count}; ++r) {{", sizes.sides);
-            lines += &block(&head, "reactions[r] = R(0.0);\n", "}");
+        if sizes.contacts > 0 {
+            lines += &copy;
+            lines += &format!("(void){close};\n");
         }
+        lines += &format!("(void){};\n", find(MAX_SWEEPS));
+        lines += &set_sides;
+        lines += &loop_between((sizes.sides, count), "reactions[r] = R(0.0);\n");
+        lines += &open;
     }
     lines += runge_kutta;
     lines += &end_functions;
@@ -117,24 +133,40 @@ pub(super) fn step(program: &Program, known: &ProgramReactions, runge_kutta: &st
         lines += &block("if (is_open != 0) {", &copied, "}");
         lines += &start_effects;
     }
-    lines += meet;
     lines += &copy;
-    lines += &format!("unsettled = {find};\n");
-    lines += apply;
-    lines += &end_functions;
+    if sizes.contacts > 0 {
+        // Impulses can close further contacts.
+        let end = block("if (!(closes > R(0.5))) {", "break;\n", "}");
+        let sweep = format!("(void){};\n", find(SWEEPS_BETWEEN_CONTACTS));
+        let pass = format!("const NAME_real closes = {close};\n{end}{sweep}");
+        lines += &write_loop("pass", sizes.contacts, &pass);
+    }
+    lines += &format!("(void){};\n{apply}{end_functions}", find(MAX_SWEEPS));
     if sizes.contacts > 0 {
         lines += "NAME_separate_contacts(effects, targets, functions, next);\n";
     }
     lines += &copy;
-    lines += &format!("unsettled = unsettled + {find};\n");
+    lines += &format!("lost = {};\n", find(MAX_SWEEPS));
     lines += &write_loop("r", count, "delays[r] = R(0.0);\n");
     lines += apply;
     lines
         + &write_loop(
             "i",
             states,
-            "state[i] = (R(0.5) > unsettled) ? next[i] : (R(NAME_UNBOUNDED) - R(NAME_UNBOUNDED));\n",
+            "state[i] = (R(0.5) > lost) ? next[i] : (R(NAME_UNBOUNDED) - R(NAME_UNBOUNDED));\n",
         )
+}
+
+/// Writes a loop over the reactions between two indices; nothing if there are none.
+fn loop_between((first, end): (usize, usize), lines: &str) -> String {
+    match first < end {
+        true => block(
+            &format!("for (int r = {first}; r < {end}; ++r) {{"),
+            lines,
+            "}",
+        ),
+        false => String::new(),
+    }
 }
 
 fn contacts_of_frictions(known: &ProgramReactions) -> String {
@@ -150,8 +182,8 @@ fn contacts_of_frictions(known: &ProgramReactions) -> String {
     )
 }
 
-/// Writes the function that sets the rates after contacts and the times for which impulses act.
-fn meet_contacts(program: &Program, known: &ProgramReactions) -> String {
+/// Writes the function that closes open contacts whose distance is not positive. It returns 1 if one closes, else 0.
+fn close_contacts(program: &Program, known: &ProgramReactions) -> String {
     let Sizes {
         sides,
         contacts,
@@ -159,21 +191,32 @@ fn meet_contacts(program: &Program, known: &ProgramReactions) -> String {
     } = Sizes::new(known);
     let first_friction = sides + contacts;
     let effects = known.effects.len();
+    let moved = write_loop(
+        "r",
+        reactions,
+        &format!(
+            "const NAME_real moved = effects[{reactions} * ({sides} + i) + r] * (reactions[r] - applied[r]);\n\
+             after = after + delays[r] * moved;\n"
+        ),
+    );
     let each = format!(
-        "const NAME_real before = before_step[{reactions} + i];\n\
-         const NAME_real after = functions[{reactions} + i];\n\
+        "NAME_real after = functions[{reactions} + i];\n{moved}\
+         const NAME_real before = before_step[{reactions} + i];\n\
          const NAME_real rate_before = before_step[{sides} + i];\n\
          const NAME_real rate = functions[{sides} + i];\n\
          const NAME_real crossing = (before > R(0.0)) ? (before / (before - after)) : R(0.0);\n\
          const NAME_real approach = rate_before + crossing * (rate - rate_before);\n\
          const NAME_real bounce = (R(0.0) > approach) ? -(effects[{effects} + i] * approach) : R(0.0);\n\
          const NAME_real rebound = bounce + (rate - approach);\n\
-         const NAME_real target = (rebound > R(0.0)) ? rebound : R(0.0);\n\
-         const NAME_real delay = (-(rate * h) > -after) ? (after / rate) : h;\n\
-         targets[{sides} + i] = (after > R(0.0)) ? R(-NAME_UNBOUNDED) : target;\n\
-         delays[{sides} + i] = (after > R(0.0)) ? R(0.0) : delay;\n"
+         const NAME_real target = ((rebound > R(0.0)) && (bounce > R(0.0))) ? rebound : R(0.0);\n\
+         const NAME_real delay = (-(rate * h) > -after) ? (after / rate) : R(0.5) * h;\n\
+         const NAME_real is_closed = (targets[{sides} + i] > R(-NAME_UNBOUNDED)) ? R(1.0) : R(0.0);\n\
+         const NAME_real own_closes = (after > R(0.0)) ? R(0.0) : (R(1.0) - is_closed);\n\
+         targets[{sides} + i] = (own_closes > R(0.5)) ? target : targets[{sides} + i];\n\
+         delays[{sides} + i] = (own_closes > R(0.5)) ? delay : delays[{sides} + i];\n\
+         closes = (own_closes > R(0.5)) ? R(1.0) : closes;\n"
     );
-    let mut lines = String::new();
+    let mut lines = "NAME_real closes = R(0.0);\n".to_owned();
     if !known.coefficients.is_empty() {
         lines += &contacts_of_frictions(known);
     }
@@ -190,14 +233,18 @@ fn meet_contacts(program: &Program, known: &ProgramReactions) -> String {
         ("const NAME_real *", "before_step"),
         ("const NAME_real *", "functions"),
         ("const NAME_real *", "effects"),
+        ("const NAME_real *", "reactions"),
+        ("const NAME_real *", "applied"),
         ("NAME_real *", "targets"),
         ("NAME_real *", "delays"),
     ];
-    let head = head(program, ("static void ", "meet_contacts"), &arguments, true);
+    lines += "return closes;\n";
+    let result = ("static NAME_real ", "close_contacts");
+    let head = head(program, result, &arguments, true);
     block(&format!("{head} {{"), &lines, "}")
 }
 
-/// Writes the function that corrects the reactions. It returns 0 if they settle.
+/// Writes the function that corrects the reactions. It returns 0 if they are found, else 1.
 fn find_reactions(program: &Program, known: &ProgramReactions) -> String {
     let sizes = Sizes::new(known);
     let Sizes {
@@ -255,43 +302,58 @@ fn find_reactions(program: &Program, known: &ProgramReactions) -> String {
          const NAME_real change = next - reactions[r];\n\
          reactions[r] = next;\n\
          {}\
-         const NAME_real size = {};\n\
-         sizes[r] = (size > sizes[r]) ? size : sizes[r];\n\
          const NAME_real step = change * effect;\n\
-         const NAME_real moved = {};\n{}",
+         const NAME_real moved = {};\n\
+         unsettled = (moved > settled * sizes[r]) ? R(1.0) : unsettled;\n\
+         lost = (moved > R({MAX_LAST_CHANGE:e}) * sizes[r]) ? R(1.0) : lost;\n",
         write_loop(
             "i",
             count,
-            &format!("functions[i] = functions[i] + effects[{count} * i + r] * change;\n"),
+            &format!(
+                "const NAME_real part = effects[{count} * i + r] * change;\n\
+                 functions[i] = functions[i] + part;\n\
+                 sizes[i] = sizes[i] + {};\n",
+                magnitude("part")
+            ),
         ),
-        magnitude("functions[r]"),
         magnitude("step"),
-        block(
-            &format!("if (moved > R({MAX_SETTLED_CHANGE:e}) * sizes[r]) {{"),
-            "unsettled = R(1.0);\n",
-            "}",
-        ),
     );
     let mut lines = String::new();
     if count > first_friction {
         lines += &contacts_of_frictions(known);
     }
-    lines += &format!("NAME_real sizes[{count}];\nNAME_real unsettled = R(1.0);\n");
-    lines += &write_loop(
-        "r",
-        count,
-        &format!("sizes[r] = {};\n", magnitude("functions[r]")),
+    // The rounding of the number type.
+    lines += &format!(
+        "const NAME_real third = R(4.0) / R(3.0) - R(1.0);\n\
+         const NAME_real negative = R(3.0) * third - R(1.0);\n\
+         const NAME_real settled = R({MAX_SETTLED_ROUNDINGS:?}) * {};\n\
+         NAME_real sizes[{count}];\nNAME_real unsettled = R(1.0);\nNAME_real lost = R(1.0);\n",
+        magnitude("negative")
     );
-    let sweep = "unsettled = R(0.0);\n".to_owned() + &write_loop("r", count, &each);
+    let sum = write_loop(
+        "i",
+        count,
+        &format!(
+            "const NAME_real part = effects[{count} * r + i] * reactions[i];\nsize = size + {};\n",
+            magnitude("part")
+        ),
+    );
+    let size = format!(
+        "NAME_real size = {};\n{sum}sizes[r] = size;\n",
+        magnitude("functions[r]")
+    );
+    lines += &write_loop("r", count, &size);
+    let sweep = "unsettled = R(0.0);\nlost = R(0.0);\n".to_owned() + &write_loop("r", count, &each);
     let opening =
-        format!("for (int sweep = 0; (sweep < {MAX_SWEEPS}) && (unsettled > R(0.5)); ++sweep) {{");
-    lines += &block(&opening, &sweep, "}");
-    lines += "return unsettled;\n";
+        "for (int sweep = 0; (sweep < most_sweeps) && (unsettled > R(0.5)); ++sweep) {";
+    lines += &block(opening, &sweep, "}");
+    lines += "return lost;\n";
     if sides == 0 {
         lines = "(void)h;\n".to_owned() + &lines;
     }
     let arguments = [
         ("NAME_real ", "h"),
+        ("int ", "most_sweeps"),
         ("const NAME_real *", "effects"),
         ("const NAME_real *", "targets"),
         ("NAME_real *", "functions"),

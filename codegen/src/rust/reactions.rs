@@ -4,7 +4,9 @@
 use super::expression::{array, write_loop};
 use super::literals::number;
 use super::step::RATES_OF_STAGES;
-use crate::program::evaluator::{MAX_SETTLED_CHANGE, MAX_SWEEPS};
+use crate::program::evaluator::{
+    MAX_LAST_CHANGE, MAX_SETTLED_ROUNDINGS, MAX_SWEEPS, SWEEPS_BETWEEN_CONTACTS,
+};
 use crate::program::{Reactions, RowValues, ValueId};
 use crate::statements::layout::{DEEPER, SHALLOWER, block};
 
@@ -44,23 +46,40 @@ pub(super) fn step(known: &ProgramReactions, runge_kutta: &str) -> String {
     lines += &format!(
         "let mut next = *state;\n\
          let mut reactions = [T::number(0.0); {count}];\n\
+         let mut applied = reactions;\n\
          let {targets} = reactions;\n\
          let mut delays = [half; {count}];\n",
     );
     let end_functions = "functions = reaction_functions(t + h, &next, inputs, coefficients);\n";
     let start_effects = "let effects = reaction_effects(t, state, inputs, coefficients);\n";
-    let meet = match contacts {
-        0 => "",
-        _ => "meet_contacts(h, &before, &functions, &effects, &mut targets, &mut delays);\n",
+    let close = "close_contacts(h, &before, &functions, &effects, &reactions, &applied, &mut targets, &mut delays)";
+    let open = loop_between(
+        (sides, sides + contacts),
+        "targets[r] = T::number(f64::NEG_INFINITY);\n",
+    );
+    let set_sides = write_loop(
+        "r",
+        sides,
+        "sides[r] = T::number(0.5) + T::number(0.5) * (reactions[r] / h);\n",
+    );
+    let find = |sweeps: usize| {
+        format!("find_reactions(h, {sweeps}, &effects, &targets, &mut functions, &mut reactions)")
     };
-    let find = "find_reactions(h, &effects, &targets, &mut functions, &mut reactions)";
     let apply = "apply_reactions(&effects, &reactions, &applied, &delays, &mut next);\n";
-    if contacts > 0 {
-        lines += "let before = reaction_functions(t, state, inputs, coefficients);\n";
-    }
+    lines += "let before = reaction_functions(t, state, inputs, coefficients);\n";
+    lines += &open;
     if sides > 0 {
         lines += start_effects;
+        // Frictions that drive their own velocity start with its sign.
+        let driving = format!(
+            "let zero = T::number(0.0);\n\
+             let below = T::select_greater(zero, before[r], -h, zero);\n\
+             let sign = T::select_greater(before[r], zero, h, below);\n\
+             reactions[r] = T::select_greater(zero, effects[{count} * r + r], zero, sign);\n"
+        );
+        lines += &write_loop("r", sides, &driving);
         lines += &format!("let mut sides = [T::number(0.5); {sides}];\n");
+        lines += &set_sides;
         lines += "rates_with_sides(t, state, inputs, coefficients, &sides, &mut k1);\n";
         lines += &block(
             "for i in 0..STATES {",
@@ -68,17 +87,14 @@ pub(super) fn step(known: &ProgramReactions, runge_kutta: &str) -> String {
             "}",
         );
         lines += &format!("let mut {end_functions}");
-        lines += meet;
-        lines += &format!("{find};\n");
-        lines += &write_loop(
-            "r",
-            sides,
-            "sides[r] = T::number(0.5) + T::number(0.5) * (reactions[r] / h);\n",
-        );
-        if count > sides {
-            let head = format!("for r in {sides}..{count} {{");
-            lines += &block(&head, "reactions[r] = T::number(0.0);\n", "}");
+        if contacts > 0 {
+            lines += "applied = reactions;\n";
+            lines += &format!("{close};\n");
         }
+        lines += &format!("{};\n", find(MAX_SWEEPS));
+        lines += &set_sides;
+        lines += &loop_between((sides, count), "reactions[r] = T::number(0.0);\n");
+        lines += &open;
     }
     lines += runge_kutta;
     if sides > 0 {
@@ -95,22 +111,30 @@ pub(super) fn step(known: &ProgramReactions, runge_kutta: &str) -> String {
         lines += &block("if is_open {", "*state = next;\nreturn;\n", "}");
         lines += start_effects;
     }
-    lines += meet;
-    lines += "let mut applied = reactions;\n";
-    lines += &format!("let first_unsettled = {find};\n");
-    lines += apply;
-    lines += end_functions;
+    lines += "applied = reactions;\n";
+    if contacts > 0 {
+        // Impulses can close further contacts.
+        let end = block(
+            "if T::all_greater(T::number(0.5), closes) {",
+            "break;\n",
+            "}",
+        );
+        let sweep = format!("{};\n", find(SWEEPS_BETWEEN_CONTACTS));
+        let pass = format!("let closes = {close};\n{end}{sweep}");
+        lines += &write_loop("_", contacts, &pass);
+    }
+    lines += &format!("{};\n{apply}{end_functions}", find(MAX_SWEEPS));
     if contacts > 0 {
         lines += "separate_contacts(&effects, &targets, &mut functions, &mut next);\n";
     }
     lines += "applied = reactions;\n";
-    lines += &format!("let unsettled = first_unsettled + {find};\n");
+    lines += &format!("let lost = {};\n", find(MAX_SWEEPS));
     lines += &format!("delays = [T::number(0.0); {count}];\n");
     lines += apply;
     lines
         + &block(
             "for i in 0..STATES {",
-            "state[i] = T::select_greater(T::number(0.5), unsettled, next[i], T::number(f64::NAN));\n",
+            "state[i] = T::select_greater(T::number(0.5), lost, next[i], T::number(f64::NAN));\n",
             "}",
         )
 }
@@ -119,9 +143,17 @@ pub(super) fn step(known: &ProgramReactions, runge_kutta: &str) -> String {
 pub(super) fn functions(known: &ProgramReactions) -> String {
     let contacts = match known.distances.len() {
         0 => String::new(),
-        _ => meet_contacts(known) + &separate_contacts(known),
+        _ => close_contacts(known) + &separate_contacts(known),
     };
     contacts + &find_reactions(known) + &apply_reactions(known)
+}
+
+/// Writes a loop over the reactions between two indices; nothing if there are none.
+fn loop_between((first, end): (usize, usize), lines: &str) -> String {
+    match first < end {
+        true => block(&format!("for r in {first}..{end} {{"), lines, "}"),
+        false => String::new(),
+    }
 }
 
 fn function(name: &str, arguments: &[&str], result: &str, lines: &str) -> String {
@@ -145,8 +177,8 @@ fn contacts_of_frictions(known: &ProgramReactions) -> String {
     }
 }
 
-/// Writes the function that sets the rates after contacts and the times for which impulses act.
-fn meet_contacts(known: &ProgramReactions) -> String {
+/// Writes the function that closes open contacts whose distance is not positive. It returns 1 if one closes, else 0.
+fn close_contacts(known: &ProgramReactions) -> String {
     let Sizes {
         sides,
         contacts,
@@ -154,38 +186,57 @@ fn meet_contacts(known: &ProgramReactions) -> String {
     } = Sizes::new(known);
     let effects = known.effects.len();
     let infinity = "T::number(f64::NEG_INFINITY)";
+    let moved = write_loop(
+        "r",
+        count,
+        &format!(
+            "let moved = effects[{count} * ({sides} + i) + r] * (reactions[r] - applied[r]);\n\
+             after = after + delays[r] * moved;\n"
+        ),
+    );
     let each = format!(
-        "let (before, after) = (before_step[{count} + i], functions[{count} + i]);\n\
+        "let mut after = functions[{count} + i];\n{moved}\
+         let before = before_step[{count} + i];\n\
          let (rate_before, rate) = (before_step[{sides} + i], functions[{sides} + i]);\n\
          let crossing = T::select_greater(before, zero, before / (before - after), zero);\n\
          let approach = rate_before + crossing * (rate - rate_before);\n\
          let bounce = T::select_greater(zero, approach, -(effects[{effects} + i] * approach), zero);\n\
          let rebound = bounce + (rate - approach);\n\
-         let target = T::select_greater(rebound, zero, rebound, zero);\n\
-         let delay = T::select_greater(-(rate * h), -after, after / rate, h);\n\
-         targets[{sides} + i] = T::select_greater(after, zero, {infinity}, target);\n\
-         delays[{sides} + i] = T::select_greater(after, zero, zero, delay);\n"
+         let target = T::select_greater(rebound, zero, T::select_greater(bounce, zero, rebound, zero), zero);\n\
+         let delay = T::select_greater(-(rate * h), -after, after / rate, half * h);\n\
+         let is_closed = T::select_greater(targets[{sides} + i], {infinity}, one, zero);\n\
+         let own_closes = T::select_greater(after, zero, zero, one - is_closed);\n\
+         targets[{sides} + i] = T::select_greater(own_closes, half, target, targets[{sides} + i]);\n\
+         delays[{sides} + i] = T::select_greater(own_closes, half, delay, delays[{sides} + i]);\n\
+         closes = T::select_greater(own_closes, half, one, closes);\n"
     );
-    let mut lines = "let zero = T::number(0.0);\n".to_owned() + &contacts_of_frictions(known);
+    let mut lines = "let (zero, half, one) = (T::number(0.0), T::number(0.5), T::number(1.0));\n\
+                     let mut closes = zero;\n"
+        .to_owned()
+        + &contacts_of_frictions(known);
     lines += &write_loop("i", contacts, &each);
     if !known.coefficients.is_empty() {
         let first_friction = sides + contacts;
         let copied = format!("delays[{first_friction} + i] = delays[{sides} + contacts[i]];\n");
         lines += &write_loop("i", known.coefficients.len(), &copied);
     }
+    let given = |name: &str| format!("{name}: &[T; {count}]");
     let reactions = |name: &str| format!("{name}: &mut [T; {count}]");
     let arguments = [
         "h: T",
         "before_step: &[T; REACTION_FUNCTIONS]",
         "functions: &[T; REACTION_FUNCTIONS]",
         "effects: &[T; REACTION_EFFECTS]",
+        &given("reactions"),
+        &given("applied"),
         &reactions("targets"),
         &reactions("delays"),
     ];
-    function("meet_contacts", &arguments, "", &lines)
+    lines += "closes\n";
+    function("close_contacts", &arguments, " -> T", &lines)
 }
 
-/// Writes the function that corrects the reactions. It returns 0 if they settle.
+/// Writes the function that corrects the reactions. It returns 0 if they are found, else 1.
 fn find_reactions(known: &ProgramReactions) -> String {
     let Sizes {
         sides,
@@ -217,10 +268,10 @@ fn find_reactions(known: &ProgramReactions) -> String {
         );
         branches.push((String::new(), limit + clamped + law));
     }
-    let last = branches.len() - 1;
+    let end = branches.len() - 1;
     let mut law = String::new();
     for (place, (condition, lines)) in branches.iter().enumerate() {
-        let opening = match (place, place == last) {
+        let opening = match (place, place == end) {
             (0, true) => "let next = {".to_owned(),
             (_, true) => "} else {".to_owned(),
             (0, false) => format!("let next = if {condition} {{"),
@@ -229,7 +280,7 @@ fn find_reactions(known: &ProgramReactions) -> String {
         law += &format!("{opening}\n{DEEPER}{lines}{SHALLOWER}");
     }
     law += "};\n";
-    let settled = number(MAX_SETTLED_CHANGE);
+    let last = number(MAX_LAST_CHANGE);
     let each = format!(
         "let effect = effects[{count} * r + r];\n\
          let wanted = reactions[r] - (functions[r] - targets[r]) / effect;\n\
@@ -237,38 +288,58 @@ fn find_reactions(known: &ProgramReactions) -> String {
          let change = next - reactions[r];\n\
          reactions[r] = next;\n\
          {}\
-         let size = {};\n\
-         sizes[r] = T::select_greater(size, sizes[r], size, sizes[r]);\n\
          let step = change * effect;\n\
          let moved = {};\n\
-         unsettled = T::select_greater(moved, T::number({settled}) * sizes[r], T::number(1.0), unsettled);\n",
+         unsettled = T::select_greater(moved, settled * sizes[r], T::number(1.0), unsettled);\n\
+         lost = T::select_greater(moved, T::number({last}) * sizes[r], T::number(1.0), lost);\n",
         write_loop(
             "i",
             count,
-            &format!("functions[i] = functions[i] + effects[{count} * i + r] * change;\n"),
+            &format!(
+                "let part = effects[{count} * i + r] * change;\n\
+                 functions[i] = functions[i] + part;\n\
+                 sizes[i] = sizes[i] + {};\n",
+                magnitude("part")
+            ),
         ),
-        magnitude("functions[r]"),
         magnitude("step"),
     );
-    let mut lines = "let zero = T::number(0.0);\n".to_owned() + &contacts_of_frictions(known);
-    lines += &format!("let mut sizes = [zero; {count}];\nlet mut unsettled = T::number(1.0);\n");
-    lines += &write_loop(
-        "r",
+    // The rounding of the number type.
+    let mut lines = format!(
+        "let zero = T::number(0.0);\n\
+         let third = T::number(4.0) / T::number(3.0) - T::number(1.0);\n\
+         let negative = T::number(3.0) * third - T::number(1.0);\n\
+         let settled = T::number({}) * {};\n",
+        number(MAX_SETTLED_ROUNDINGS),
+        magnitude("negative")
+    ) + &contacts_of_frictions(known);
+    lines += &format!("let mut sizes = [zero; {count}];\nlet mut lost = T::number(1.0);\n");
+    let sum = write_loop(
+        "i",
         count,
-        &format!("sizes[r] = {};\n", magnitude("functions[r]")),
+        &format!(
+            "let part = effects[{count} * r + i] * reactions[i];\nsize = size + {};\n",
+            magnitude("part")
+        ),
     );
-    let sweep = "unsettled = zero;\n".to_owned()
+    let size = format!(
+        "let mut size = {};\n{sum}sizes[r] = size;\n",
+        magnitude("functions[r]")
+    );
+    lines += &write_loop("r", count, &size);
+    let sweep = "let mut unsettled = zero;\nlost = zero;\n".to_owned()
         + &write_loop("r", count, &each)
         + &block(
             "if T::all_greater(T::number(0.5), unsettled) {",
             "break;\n",
             "}",
         );
-    lines += &write_loop("_", MAX_SWEEPS, &sweep);
-    lines += "unsettled\n";
+    lines += &block("for _ in 0..most_sweeps {", &sweep, "}");
+    lines += "lost\n";
     let time = if sides > 0 { "h: T" } else { "_: T" };
     let arguments = [
         time,
+        "most_sweeps: usize",
         "effects: &[T; REACTION_EFFECTS]",
         &format!("targets: &[T; {count}]"),
         "functions: &mut [T; REACTION_FUNCTIONS]",

@@ -140,7 +140,7 @@ fn models_without_steps_of_fixed_length_are_rejected() {
     for (specification, part) in [
         (
             BLOCK_ON_CART.replace("restitution = 0", "restitution = 0.5"),
-            "contacts with both friction and restitution",
+            "contacts with both friction and restitution; contacts without friction",
         ),
         (
             BLOCK_ON_CART.replace(

@@ -34,8 +34,8 @@ impl std::fmt::Display for StepObstacle {
             }
             Self::Nonlinear => "there is no step of fixed length for forces that are not linear in the sign of a friction",
             Self::RestitutionWithFriction => {
-                "there is no step of fixed length for contacts with both friction and restitution; a restitution of 0, or \
-                 contacts without friction, have one"
+                "there is no step of fixed length for contacts with both friction and restitution; contacts without friction \
+                 have one, and those with the number 0 as restitution (not a parameter)"
             }
         })
     }

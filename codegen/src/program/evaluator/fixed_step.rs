@@ -16,9 +16,14 @@ type ProgramReactions = Reactions<ValueId, RowValues>;
 /// Largest number of sweeps over the reactions.
 pub(crate) const MAX_SWEEPS: usize = 1000;
 
-/// Largest change by a sweep, relative to the largest value of a function, at which the reactions are settled. Each of the
-/// solutions of a step divides the rest by as much.
-pub(crate) const MAX_SETTLED_CHANGE: f64 = 1.0 / 1_048_576.0;
+/// Number of sweeps after which further contacts are sought.
+pub(crate) const SWEEPS_BETWEEN_CONTACTS: usize = 10;
+
+/// Largest change of a function by a sweep, in roundings of the sum of its changes by all reactions, at which the sweeps end.
+pub(crate) const MAX_SETTLED_ROUNDINGS: f64 = 64.0;
+
+/// Largest change by the last sweep, relative to the same sum, of reactions that are found.
+pub(crate) const MAX_LAST_CHANGE: f64 = 1.0 / 1024.0;
 
 /// Memory of steps of one model.
 #[derive(Clone, Debug, Default)]
@@ -110,13 +115,15 @@ impl Evaluator {
             Point { t, state, inputs }
         }
         let end = round(t + h);
+        let degrees = self.program.degrees_of_freedom();
         self.write_reaction_functions(at(t, state, inputs), known, &mut memory.before);
         memory.reactions.fill(0.0);
-        memory.targets.fill(0.0);
         memory.delays.fill(round(0.5 * h));
+        open_contacts(known, memory);
         if sides > 0 {
             self.write_reaction_effects(at(t, state, inputs), known, &mut memory.effects);
-            memory.sides.fill(0.5);
+            drive_by_signs(h, known, memory);
+            set_sides(h, memory, round);
             let rates = &mut memory.rates[0];
             self.write_rates_with_sides(at(t, state, inputs), known, &memory.sides, rates);
             advance(state, h, rates, &mut memory.next, round);
@@ -125,12 +132,12 @@ impl Evaluator {
                 known,
                 &mut memory.functions,
             );
-            meet_contacts(h, known, memory, round);
-            find_reactions(h, known, memory, round);
-            for (side, reaction) in memory.sides.iter_mut().zip(&memory.reactions) {
-                *side = round(0.5 + 0.5 * round(reaction / h));
-            }
+            memory.applied.copy_from_slice(&memory.reactions);
+            close_contacts(h, known, memory, round);
+            find_reactions(h, known, (memory, MAX_SWEEPS), round);
+            set_sides(h, memory, round);
             memory.reactions[sides..].fill(0.0);
+            open_contacts(known, memory);
         }
         let held = (sides > 0).then_some(known);
         self.take_runge_kutta_step((t, h), (state, inputs), (held, memory), round);
@@ -143,19 +150,24 @@ impl Evaluator {
             }
             self.write_reaction_effects(at(t, state, inputs), known, &mut memory.effects);
         }
-        meet_contacts(h, known, memory, round);
-        let degrees = self.program.degrees_of_freedom();
         memory.applied.copy_from_slice(&memory.reactions);
-        let mut is_settled = find_reactions(h, known, memory, round);
+        // Impulses can close further contacts.
+        for _ in 0..known.distances.len() {
+            if !close_contacts(h, known, memory, round) {
+                break;
+            }
+            find_reactions(h, known, (memory, SWEEPS_BETWEEN_CONTACTS), round);
+        }
+        find_reactions(h, known, (memory, MAX_SWEEPS), round);
         apply_reactions(degrees, known, memory, round);
-        // The positions and forces at the end differ from those at the start, from which the reactions were found.
         self.write_reaction_functions(at(end, &memory.next, inputs), known, &mut memory.functions);
         separate_contacts(degrees, known, memory, round);
+        // The positions and forces at the end differ from those at the start, from which the reactions were found.
         memory.applied.copy_from_slice(&memory.reactions);
-        is_settled &= find_reactions(h, known, memory, round);
+        let is_found = find_reactions(h, known, (memory, MAX_SWEEPS), round);
         memory.delays.fill(0.0);
         apply_reactions(degrees, known, memory, round);
-        match is_settled {
+        match is_found {
             true => state.copy_from_slice(&memory.next),
             false => state.fill(f64::NAN),
         }
@@ -270,24 +282,48 @@ fn advance(from: &[f64], h: f64, rates: &[f64], to: &mut [f64], round: impl Fn(f
     }
 }
 
-/// Sets the rates that contacts have after the step at least, and the times for which their impulses act: since the
-/// distance was zero. An open contact has no impulse.
-fn meet_contacts(
+/// Starts frictions that drive their own velocity with its sign. The others are found.
+fn drive_by_signs(h: f64, known: &ProgramReactions, memory: &mut StepMemory) {
+    let count = known.functions.len();
+    for own in 0..known.sides() {
+        let before = memory.before[own];
+        let sign = select(before, 0.0, h, select(0.0, before, -h, 0.0));
+        memory.reactions[own] = select(0.0, memory.effects[own * count + own], 0.0, sign);
+    }
+}
+
+fn set_sides(h: f64, memory: &mut StepMemory, round: impl Fn(f64) -> f64 + Copy) {
+    for (side, reaction) in memory.sides.iter_mut().zip(&memory.reactions) {
+        *side = round(0.5 + 0.5 * round(reaction / h));
+    }
+}
+
+/// Opens all contacts: they have no impulse.
+fn open_contacts(known: &ProgramReactions, memory: &mut StepMemory) {
+    memory.targets.fill(0.0);
+    memory.targets[known.sides()..][..known.distances.len()].fill(f64::NEG_INFINITY);
+}
+
+/// Closes the open contacts whose distance is not positive with the reactions so far: sets the rate that each has after the
+/// step at least, and the time for which its impulse acts, since the distance was zero. Returns true if a contact closes.
+fn close_contacts(
     h: f64,
     known: &ProgramReactions,
     memory: &mut StepMemory,
     round: impl Fn(f64) -> f64 + Copy,
-) {
+) -> bool {
     let (count, sides) = (known.functions.len(), known.sides());
+    let mut closes = 0.0;
     for contact in 0..known.distances.len() {
-        let (before, after) = (
-            memory.before[count + contact],
-            memory.functions[count + contact],
-        );
-        let (rate_before, rate) = (
-            memory.before[sides + contact],
-            memory.functions[sides + contact],
-        );
+        let own = sides + contact;
+        let before = memory.before[count + contact];
+        let mut after = memory.functions[count + contact];
+        for place in 0..count {
+            let change = round(memory.reactions[place] - memory.applied[place]);
+            let moved = round(memory.effects[own * count + place] * change);
+            after = round(after + round(memory.delays[place] * moved));
+        }
+        let (rate_before, rate) = (memory.before[own], memory.functions[own]);
         let restitution = memory.effects[known.effects.len() + contact];
         let crossing = select(before, 0.0, round(before / round(before - after)), 0.0);
         let change = round(rate - rate_before);
@@ -295,23 +331,32 @@ fn meet_contacts(
         let bounce = select(0.0, approach, -round(restitution * approach), 0.0);
         // Forces change the rate after the bounce as they did before it; a contact that closes again stays closed.
         let rebound = round(bounce + round(rate - approach));
-        let target = select(rebound, 0.0, rebound, 0.0);
-        let delay = select(-round(rate * h), -after, round(after / rate), h);
-        memory.targets[sides + contact] = select(after, 0.0, f64::NEG_INFINITY, target);
-        memory.delays[sides + contact] = select(after, 0.0, 0.0, delay);
+        let target = select(rebound, 0.0, select(bounce, 0.0, rebound, 0.0), 0.0);
+        let delay = select(
+            -round(rate * h),
+            -after,
+            round(after / rate),
+            round(0.5 * h),
+        );
+        let is_closed = select(memory.targets[own], f64::NEG_INFINITY, 1.0, 0.0);
+        let own_closes = select(after, 0.0, 0.0, 1.0 - is_closed);
+        memory.targets[own] = select(own_closes, 0.5, target, memory.targets[own]);
+        memory.delays[own] = select(own_closes, 0.5, delay, memory.delays[own]);
+        closes = select(own_closes, 0.5, 1.0, closes);
     }
     let first = sides + known.distances.len();
     for (place, (contact, _)) in known.coefficients.iter().enumerate() {
         memory.delays[first + place] = memory.delays[sides + contact];
     }
+    closes > 0.5
 }
 
 /// Corrects the reactions until the conditions on the functions hold, and the functions with them. Returns false if they
-/// do not settle.
+/// are not found.
 fn find_reactions(
     h: f64,
     known: &ProgramReactions,
-    memory: &mut StepMemory,
+    (memory, most_sweeps): (&mut StepMemory, usize),
     round: impl Fn(f64) -> f64 + Copy,
 ) -> bool {
     let StepMemory {
@@ -325,17 +370,24 @@ fn find_reactions(
     let (count, sides) = (known.functions.len(), known.sides());
     let contacts = known.distances.len();
     let coefficients = &effects[known.effects.len() + contacts..];
-    for (size, function) in sizes.iter_mut().zip(functions.iter()) {
-        *size = magnitude(*function);
+    let third = round(round(4.0 / 3.0) - 1.0);
+    let settled = MAX_SETTLED_ROUNDINGS * magnitude(round(round(3.0 * third) - 1.0));
+    for own in 0..count {
+        let mut size = magnitude(functions[own]);
+        for (place, reaction) in reactions.iter().enumerate() {
+            let part = round(effects[own * count + place] * reaction);
+            size = round(size + magnitude(part));
+        }
+        sizes[own] = size;
     }
-    for _ in 0..MAX_SWEEPS {
-        let mut is_settled = true;
+    let mut is_found = false;
+    for _ in 0..most_sweeps {
+        let (mut unsettled, mut lost) = (0.0, 0.0);
         for own in 0..count {
             let effect = effects[own * count + own];
             let lack = round(round(functions[own] - targets[own]) / effect);
             let wanted = round(reactions[own] - lack);
             let next = if own < sides {
-                // A friction that drives its own velocity keeps its value.
                 select(0.0, effect, clamp(wanted, -h, h), reactions[own])
             } else if own < sides + contacts {
                 select(effect, 0.0, select(wanted, 0.0, wanted, 0.0), 0.0)
@@ -348,20 +400,20 @@ fn find_reactions(
             let change = round(next - reactions[own]);
             reactions[own] = next;
             for (place, function) in functions[..count].iter_mut().enumerate() {
-                *function = round(*function + round(effects[place * count + own] * change));
+                let moved = round(effects[place * count + own] * change);
+                *function = round(*function + moved);
+                sizes[place] = round(sizes[place] + magnitude(moved));
             }
-            let size = magnitude(functions[own]);
-            sizes[own] = select(size, sizes[own], size, sizes[own]);
             let moved = magnitude(round(change * effect));
-            if moved > round(MAX_SETTLED_CHANGE * sizes[own]) {
-                is_settled = false;
-            }
+            unsettled = select(moved, round(settled * sizes[own]), 1.0, unsettled);
+            lost = select(moved, round(MAX_LAST_CHANGE * sizes[own]), 1.0, lost);
         }
-        if is_settled {
+        if 0.5 > unsettled {
             return true;
         }
+        is_found = 0.5 > lost;
     }
-    false
+    is_found
 }
 
 /// Moves the positions so that closed contacts do not overlap.

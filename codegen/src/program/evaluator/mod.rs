@@ -29,7 +29,9 @@ pub use code::{MachineCode, Stage};
 pub use corners::CornerValues;
 pub use enclosure::{DEGREE, Enclosure};
 pub use fixed_step::StepMemory;
-pub(crate) use fixed_step::{MAX_SETTLED_CHANGE, MAX_SWEEPS};
+pub(crate) use fixed_step::{
+    MAX_LAST_CHANGE, MAX_SETTLED_ROUNDINGS, MAX_SWEEPS, SWEEPS_BETWEEN_CONTACTS,
+};
 pub use functions::{call, elementary};
 pub use impacts::{FrictionValues, ImpactValues};
 pub use number::Number;
