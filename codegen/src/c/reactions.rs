@@ -344,8 +344,7 @@ fn find_reactions(program: &Program, known: &ProgramReactions) -> String {
     );
     lines += &write_loop("r", count, &size);
     let sweep = "unsettled = R(0.0);\nlost = R(0.0);\n".to_owned() + &write_loop("r", count, &each);
-    let opening =
-        "for (int sweep = 0; (sweep < most_sweeps) && (unsettled > R(0.5)); ++sweep) {";
+    let opening = "for (int sweep = 0; (sweep < most_sweeps) && (unsettled > R(0.5)); ++sweep) {";
     lines += &block(opening, &sweep, "}");
     lines += "return lost;\n";
     if sides == 0 {

@@ -168,12 +168,12 @@ fn name_effect(effect: &FoundEffect) -> String {
     let sizes =
         sizes.map(|(name, of)| format!("{name} = {}", format_estimate(of.value, of.sd, &of.unit)));
     let sizes: Vec<String> = sizes.collect();
-    let mut text = describe_effect(&effect.at);
+    let mut text = describe_with_order(&effect.at);
     if !sizes.is_empty() {
         text += &format!(", {}", sizes.join(" and "));
     }
     if effect.status == EffectStatus::Class && !effect.equivalents.is_empty() {
-        let others: Vec<String> = effect.equivalents.iter().map(describe_equivalent).collect();
+        let others: Vec<String> = effect.equivalents.iter().map(describe_with_order).collect();
         text += &format!(
             " (or {}; the records do not separate them)",
             others.join(", or ")
@@ -183,7 +183,7 @@ fn name_effect(effect: &FoundEffect) -> String {
 }
 
 /// Returns name, site and order of an effect as words.
-pub(crate) fn describe_equivalent(at: &EffectSite) -> String {
+pub(crate) fn describe_with_order(at: &EffectSite) -> String {
     match &at.order {
         Some(order) => format!(
             "{} ({} per turn of {})",

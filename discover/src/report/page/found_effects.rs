@@ -8,7 +8,7 @@ use crate::experiment::next_experiment::ExperimentFile;
 use crate::report::experiment::describe_experiment;
 use crate::report::quantity::{format_estimate, format_number, format_percent, format_readable};
 use crate::report::result::{Discovery, EffectStatus, FoundEffect, SearchStep};
-use crate::report::summary::{describe_effect, describe_equivalent};
+use crate::report::summary::{describe_effect, describe_with_order};
 
 /// Lists the effects; empty if none were found, because the verdict reports this.
 pub(super) fn list_effects(effects: &[FoundEffect], files: &[ExperimentFile]) -> Markup {
@@ -38,7 +38,7 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
                 },
                 EffectStatus::Class => {
                     "The records do not separate it from "
-                    (prose(&effect.equivalents.iter().map(describe_equivalent).collect::<Vec<String>>().join(", or from "))) "."
+                    (prose(&effect.equivalents.iter().map(describe_with_order).collect::<Vec<String>>().join(", or from "))) "."
                 },
                 EffectStatus::Empirical => { "It does not identify the cause." },
             }
