@@ -271,7 +271,7 @@ pub const MAX_EXPLICIT_STEPS_PER_SAMPLE: u64 = 10;
 /// noise.
 pub const MAX_STEP_ERROR: f64 = 0.2;
 
-/// Maximum root of the summed squared errors of Runge-Kutta steps over all measured numbers, in
+/// Maximum root of the summed squared errors of fixed steps over all measured numbers, in
 /// standard deviations of the noise. It shifts each estimate by at most this fraction of its
 /// standard deviation.
 pub const MAX_SUMMED_STEP_ERROR: f64 = 0.1;

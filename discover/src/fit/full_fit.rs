@@ -12,13 +12,19 @@ use crate::fit::initial_states::{self, estimate_for_unknowns, update_carried_pri
 use crate::fit::preliminary_fit::{self, PreliminaryFit};
 use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::residuals::Residuals;
+use crate::fit::sensitivity::WindowDerivatives;
 use crate::fit::shooting::Shooting;
+use crate::fit::step_refinement::{
+    combine, compute_step_errors, root_of_squares, shift_measurements,
+};
 use crate::fit::uncertainty::compute_uncertainties;
 use crate::ids::WindowId;
+use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
 use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::Unknown;
 use crate::thresholds;
+use eomgen_records::windows::Windows;
 
 /// Starting point of a fit to whole windows.
 struct StartingPoint {
@@ -86,22 +92,18 @@ pub fn complete_fit(
     // A start that is known from the window before depends on these unknowns: it would keep the estimate in
     // place and make it too certain.
     let mut loose = prior.without_preceding(&train.estimate.initial_states);
-    let derivatives = if is_far {
-        compute_derivatives(&all, &train.estimate)
-    } else {
-        loop {
-            loose.whitening = compute_whitening(&all, &train.estimate);
-            let (estimate, derivatives) = run_final_steps(&all, &mut loose, train.estimate);
-            update_carried_prior(&all, &mut prior, &estimate.theta, &estimate.initial_states);
-            train = Residuals::compute(&all, estimate);
-            // The misfit before these steps gave the priors their weight, which is too large after them.
-            let weight = train.variance_inflation();
-            if weight > thresholds::MAX_WEIGHT_DECREASE * all.prior_weight {
-                break derivatives;
-            }
-            all.prior_weight = weight;
-        }
+    let FinalSteps {
+        windows,
+        refined,
+        derivatives,
+    } = match is_far {
+        true => FinalSteps {
+            derivatives: compute_derivatives(&all, &train.estimate),
+            ..FinalSteps::new(&problem.train)
+        },
+        false => take_final_steps(problem, &mut all, [&mut prior, &mut loose], &mut train),
     };
+    all.windows = &windows;
     if !train.failed_windows.is_empty() {
         // A stop that interrupted motions is no property of the fit.
         problem.stop.check_not_stopped()?;
@@ -123,15 +125,7 @@ pub fn complete_fit(
         ..all
     };
     let theta = train.estimate.theta.clone();
-    let initial_states =
-        initial_states::estimate_best(problem, &held_out, &theta, &preliminary.ranges)?;
-    let test = evaluate_cost(
-        &held_out,
-        &InitialStatePrior::default(),
-        theta,
-        initial_states,
-    );
-    let test = Residuals::compute(&held_out, test);
+    let test = evaluate_held_out(problem, held_out, theta, &preliminary.ranges, is_far)?;
     preliminary.model.work.check()?;
     // A fit worse than noise does not know its unknowns better than its own misfit allows.
     let inflation = train.variance_inflation();
@@ -152,8 +146,101 @@ pub fn complete_fit(
         prior_weight,
         train: train.or_infinite(),
         test: test.or_infinite(),
-        model: preliminary.model.without_work_limit(),
+        model: refined.unwrap_or(preliminary.model).without_work_limit(),
     })
+}
+
+/// Windows and derivatives of the final steps.
+struct FinalSteps<'d> {
+    /// The training windows, without the errors of the fixed steps.
+    windows: Windows<'d>,
+    /// The model for later simulations, if it needs shorter steps.
+    refined: Option<EstimationModel>,
+    /// Derivatives at the estimate.
+    derivatives: Vec<Option<WindowDerivatives>>,
+}
+
+impl<'d> FinalSteps<'d> {
+    fn new(windows: &Windows<'d>) -> Self {
+        Self {
+            windows: windows.clone(),
+            refined: None,
+            derivatives: Vec::new(),
+        }
+    }
+}
+
+/// Takes the final steps, until neither the errors of the fixed steps at the estimate nor the weight of
+/// the priors changes. `priors`: that of the fit, and the wide one of the final steps.
+fn take_final_steps<'d>(
+    problem: &EstimationProblem<'d>,
+    all: &mut Shooting<'_>,
+    [prior, loose]: [&mut InitialStatePrior; 2],
+    train: &mut Residuals,
+) -> FinalSteps<'d> {
+    let mut found = FinalSteps::new(&problem.train);
+    let mut corrections: Option<Vec<Vec<f64>>> = None;
+    let mut change = f64::INFINITY;
+    loop {
+        let mut has_settled = true;
+        if let Some(errors) = compute_step_errors(all, &train.estimate) {
+            let moved = corrections.as_ref().map(|before| {
+                root_of_squares(&combine(&errors.corrections, before, |new, old| new - old))
+            });
+            has_settled = moved
+                .is_some_and(|moved| moved < thresholds::MAX_SUMMED_STEP_ERROR || moved >= change);
+            change = moved.unwrap_or(f64::INFINITY);
+            found.windows = shift_measurements(&problem.train, &problem.noise, &errors.corrections);
+            found.refined = errors.refined;
+            corrections = Some(errors.corrections);
+        }
+        let shifted = Shooting {
+            windows: &found.windows,
+            ..*all
+        };
+        loose.whitening = compute_whitening(&shifted, &train.estimate);
+        let from = std::mem::take(&mut train.estimate);
+        let (estimate, derivatives) = run_final_steps(&shifted, loose, from);
+        update_carried_prior(&shifted, prior, &estimate.theta, &estimate.initial_states);
+        *train = Residuals::compute(&shifted, estimate);
+        found.derivatives = derivatives;
+        // The misfit before these steps gave the priors their weight, which is too large after them.
+        let weight = train.variance_inflation();
+        if has_settled && weight > thresholds::MAX_WEIGHT_DECREASE * all.prior_weight {
+            return found;
+        }
+        all.prior_weight = all.prior_weight.min(weight);
+    }
+}
+
+/// Fits the initial states of the test windows and returns their residuals, without the errors of the
+/// fixed steps unless the fit is far.
+fn evaluate_held_out(
+    problem: &EstimationProblem<'_>,
+    held_out: Shooting<'_>,
+    theta: Vec<f64>,
+    ranges: &[f64],
+    is_far: bool,
+) -> Result<Residuals, DiscoverError> {
+    let follow = |shooting: &Shooting<'_>| -> Result<Estimate, DiscoverError> {
+        let states = initial_states::estimate_best(problem, shooting, &theta, ranges)?;
+        let prior = InitialStatePrior::default();
+        Ok(evaluate_cost(shooting, &prior, theta.clone(), states))
+    };
+    let found = follow(&held_out)?;
+    let errors = match is_far {
+        true => None,
+        false => compute_step_errors(&held_out, &found),
+    };
+    let Some(errors) = errors else {
+        return Ok(Residuals::compute(&held_out, found));
+    };
+    let windows = shift_measurements(&problem.test, &problem.noise, &errors.corrections);
+    let shifted = Shooting {
+        windows: &windows,
+        ..held_out
+    };
+    Ok(Residuals::compute(&shifted, follow(&shifted)?))
 }
 
 /// Evaluates a preliminary fit over whole windows, before they are fitted together.

@@ -1,7 +1,7 @@
 //! Fits of a specification to records by multiple shooting: residuals of windows ([`shooting`]),
 //! their derivatives ([`sensitivity`], `jump_free_quotients` of accelerations), elimination of initial states ([`variable_projection`]),
 //! steps ([`gauss_newton`] with [`bounded_least_squares`], [`continuation`] for distant start
-//! values, `final_steps` for collinear unknowns), [`initial_states`], a [`preliminary_fit`] and a
+//! values, `final_steps` for collinear unknowns, `step_refinement` for the errors of fixed steps), [`initial_states`], a [`preliminary_fit`] and a
 //! [`full_fit`] fit, the `uncertainty` of the estimates, the remaining [`residuals`], the
 //! [`mod@noise_floor`] of a correct model, and [`contradiction`]s between records that are fitted
 //! [`single_record`].
@@ -28,5 +28,6 @@ pub mod residuals;
 pub mod sensitivity;
 pub mod shooting;
 pub mod single_record;
+pub(crate) mod step_refinement;
 pub(crate) mod uncertainty;
 pub mod variable_projection;

@@ -2,6 +2,8 @@
 //! outputs, and steps that are short enough for the noise of the sensors. It is simulated in
 //! [`crate::model::simulation`].
 
+use std::sync::Arc;
+
 use eomgen_codegen::independence::rows::ConstraintRows;
 use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_codegen::program::{Program, ProgramGuard};
@@ -33,10 +35,11 @@ use eomgen_records::samples::typical_step;
 use eomgen_sim::exponential::{ExponentialIntegrator, UnsupportedModel};
 use eomgen_sim::inputs::HeldInputs;
 
-/// A derived model with its measured outputs.
+/// A derived model with its measured outputs. Copies share the derivation.
+#[derive(Clone)]
 pub struct EstimationModel {
     /// The model.
-    compiled: CompiledModel,
+    compiled: Arc<CompiledModel>,
     /// Names of the independent parameters, in the order of their values.
     pub parameters: Vec<String>,
     /// Values of the parameters in the specification, SI.
@@ -66,12 +69,16 @@ pub struct EstimationModel {
 /// the shorter ones, which falls with the fourth power.
 const RUNGE_KUTTA_GAIN: f64 = 15.0;
 
+/// The same ratio for the exponential integrator, whose error falls with the second power.
+const INTEGRATOR_GAIN: f64 = 3.0;
+
 /// Part of a model that is linear between switches.
+#[derive(Clone)]
 enum LinearPart {
     /// All of it.
     Whole,
     /// A part with fewer terms.
-    Part(Box<LinearTerms>),
+    Part(Arc<LinearTerms>),
 }
 
 /// A model of the terms that are linear between switches.
@@ -148,7 +155,7 @@ impl EstimationModel {
             refinement: 1.0,
             stop: StopRequest::default(),
             work: WorkLimit::default(),
-            compiled,
+            compiled: Arc::new(compiled),
         })
     }
 
@@ -310,6 +317,33 @@ impl EstimationModel {
         self.longest_step = None;
     }
 
+    /// Returns a copy with twice as many fixed steps; `None` if the motions have no fixed steps, or
+    /// the largest number of them.
+    pub(crate) fn with_halved_steps(&self) -> Option<Self> {
+        let mut finer = self.clone();
+        let steps = match (&self.linear, self.longest_step) {
+            (Some(LinearPart::Part(_)), _) => {
+                finer.refinement *= 2.0;
+                finer.refinement
+            }
+            (None, Some(LongestStep(step))) => {
+                finer.longest_step = Some(LongestStep(step / 2.0));
+                self.sample / step * 2.0
+            }
+            _ => return None,
+        };
+        (steps <= f64::from(1 << thresholds::MAX_STEP_DOUBLINGS)).then_some(finer)
+    }
+
+    /// Returns the ratio of the difference between fixed steps of one length and of half of it to the
+    /// error of the shorter ones.
+    pub(crate) fn step_gain(&self) -> f64 {
+        match self.linear.is_some() {
+            true => INTEGRATOR_GAIN,
+            false => RUNGE_KUTTA_GAIN,
+        }
+    }
+
     /// Creates a simulation at these values of the independent parameters.
     ///
     /// # Errors
@@ -349,7 +383,7 @@ impl EstimationModel {
                 self.add_sticking(&mut simulation, values);
                 return Ok(simulation);
             }
-            Some(LinearPart::Whole) => (&self.compiled, values.to_vec()),
+            Some(LinearPart::Whole) => (&*self.compiled, values.to_vec()),
             Some(LinearPart::Part(part)) => {
                 let own = part.parameters.iter().map(|id| values[id.index()]);
                 (&part.compiled, own.collect())
@@ -462,7 +496,7 @@ fn linear_part(
     let own = part.piecewise_linear().ok()?.parameter_names();
     let parameters = own.iter().map(|name| model.find_parameter(name));
     let parameters = parameters.collect::<Option<Vec<ParameterId>>>()?;
-    Some(LinearPart::Part(Box::new(LinearTerms {
+    Some(LinearPart::Part(Arc::new(LinearTerms {
         parameters,
         compiled: part,
     })))

@@ -8,6 +8,7 @@ mod effects_found;
 mod effects_placed;
 mod empirical;
 mod equivalent_faults;
+mod errors_of_steps;
 mod feedback;
 mod friction_that_falls;
 mod friction_that_stops;
