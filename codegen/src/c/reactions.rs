@@ -1,15 +1,16 @@
 //! Reactions of frictions and contacts in a step of fixed length, in C; the evaluator has the same method with the same
 //! order of operations, `program::evaluator::fixed_step`.
 
+use super::comments::comment;
 use super::expression::{initialiser, write_loop};
 use super::names::fill_template;
 use super::stages::head;
-use super::step::RATES_OF_STAGES;
 use crate::program::evaluator::{
     MAX_LAST_CHANGE, MAX_SETTLED_ROUNDINGS, MAX_SWEEPS, SWEEPS_BETWEEN_CONTACTS,
 };
 use crate::program::{Program, Reactions, RowValues, ValueId};
 use crate::statements::layout::{DEEPER, SHALLOWER, block};
+use crate::statements::{APPLY_REACTIONS, CLOSE_CONTACTS, FIND_REACTIONS, SEPARATE_CONTACTS};
 
 type ProgramReactions = Reactions<ValueId, RowValues>;
 
@@ -37,22 +38,32 @@ impl Sizes {
 
 /// Writes the functions that the step calls.
 pub(super) fn functions(program: &Program, known: &ProgramReactions) -> String {
-    let mut text = String::new();
+    let mut functions = Vec::new();
     if !known.distances.is_empty() {
-        text += &close_contacts(program, known);
-        text += &separate_contacts(program, known);
+        functions.push((CLOSE_CONTACTS, close_contacts(program, known)));
+        functions.push((SEPARATE_CONTACTS, separate_contacts(program, known)));
     }
-    text += &find_reactions(program, known);
-    text += &apply_reactions(program, known);
-    fill_template(program, &text)
+    functions.push((FIND_REACTIONS, find_reactions(program, known)));
+    functions.push((APPLY_REACTIONS, apply_reactions(program, known)));
+    let functions = functions.into_iter();
+    functions
+        .map(|(doc, text)| {
+            let lines: Vec<String> = doc.split('\n').map(str::to_owned).collect();
+            comment(&lines) + &fill_template(program, &text)
+        })
+        .collect()
 }
 
-/// Writes the statements of the step around those of the Runge-Kutta method.
-pub(super) fn step(program: &Program, known: &ProgramReactions, runge_kutta: &str) -> String {
+/// Writes the statements of the step around those of the Runge-Kutta method, which has these declarations.
+pub(super) fn step(
+    program: &Program,
+    known: &ProgramReactions,
+    [declarations, runge_kutta]: [&str; 2],
+) -> String {
     let sizes = Sizes::new(known);
     let [functions, effects] = program.reaction_sizes();
     let (count, states) = (sizes.reactions, program.states());
-    let mut lines = RATES_OF_STAGES.to_owned();
+    let mut lines = declarations.to_owned();
     for (name, length) in [
         ("next", states),
         ("before", functions),

@@ -53,12 +53,16 @@ pub(super) fn definition(program: &Program) -> String {
         Some(known) => {
             let sum = "next[i] = state[i] + sixth * (k1[i] + k4[i] + R(2.0) * inner);\n";
             reactions::functions(program, known)
-                + &whole(&reactions::step(program, known, &runge_kutta(program, sum)))
+                + &whole(&reactions::step(
+                    program,
+                    known,
+                    [RATES_OF_STAGES, &runge_kutta(program, sum)],
+                ))
         }
     }
 }
 
-pub(super) const RATES_OF_STAGES: &str = "\
+const RATES_OF_STAGES: &str = "\
     NAME_real k1[NAME_STATES];\n\
     NAME_real k2[NAME_STATES];\n\
     NAME_real k3[NAME_STATES];\n\

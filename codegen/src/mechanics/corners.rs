@@ -17,8 +17,9 @@ use eomgen_model_spec::ids::InputId;
 use eomgen_model_spec::model::Model;
 
 use crate::mechanics::equations::Equations;
+use crate::mechanics::function_rates::guard_rate;
 use crate::mechanics::lagrange::{GradientBy, Variables};
-use crate::mechanics::outputs::{Corners, RateRow, guard_rate};
+use crate::mechanics::outputs::{Corners, RateRow};
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::sides::Sides;
 use crate::mechanics::translate::along_motion;

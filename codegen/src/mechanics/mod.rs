@@ -30,6 +30,8 @@ pub mod fields;
 #[cfg(feature = "derive")]
 mod forces;
 #[cfg(feature = "derive")]
+mod function_rates;
+#[cfg(feature = "derive")]
 pub mod guard;
 pub mod impact;
 #[cfg(feature = "derive")]

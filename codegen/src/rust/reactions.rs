@@ -2,13 +2,13 @@
 //! order of operations, `program::evaluator::fixed_step`.
 
 use super::expression::{array, write_loop};
-use super::literals::number;
-use super::step::RATES_OF_STAGES;
+use super::literals::{linked_doc, number};
 use crate::program::evaluator::{
     MAX_LAST_CHANGE, MAX_SETTLED_ROUNDINGS, MAX_SWEEPS, SWEEPS_BETWEEN_CONTACTS,
 };
 use crate::program::{Reactions, RowValues, ValueId};
 use crate::statements::layout::{DEEPER, SHALLOWER, block};
+use crate::statements::{APPLY_REACTIONS, CLOSE_CONTACTS, FIND_REACTIONS, SEPARATE_CONTACTS};
 
 type ProgramReactions = Reactions<ValueId, RowValues>;
 
@@ -29,14 +29,14 @@ impl Sizes {
     }
 }
 
-/// Writes the statements of the step around those of the Runge-Kutta method.
-pub(super) fn step(known: &ProgramReactions, runge_kutta: &str) -> String {
+/// Writes the statements of the step around those of the Runge-Kutta method, which has these declarations.
+pub(super) fn step(known: &ProgramReactions, [declarations, runge_kutta]: [&str; 2]) -> String {
     let Sizes {
         sides,
         contacts,
         reactions: count,
     } = Sizes::new(known);
-    let mut lines = RATES_OF_STAGES.to_owned();
+    let mut lines = declarations.to_owned();
     // Only contacts change the targets.
     let targets = if contacts > 0 {
         "mut targets"
@@ -156,12 +156,13 @@ fn loop_between((first, end): (usize, usize), lines: &str) -> String {
     }
 }
 
-fn function(name: &str, arguments: &[&str], result: &str, lines: &str) -> String {
+fn function((doc, name): (&str, &str), arguments: &[&str], result: &str, lines: &str) -> String {
     let arguments: String = arguments
         .iter()
         .map(|argument| format!("{argument},\n"))
         .collect();
-    let head = format!("fn {name}<T: Scalar>(\n{DEEPER}{arguments}{SHALLOWER}){result} {{");
+    let doc = linked_doc(doc);
+    let head = format!("{doc}fn {name}<T: Scalar>(\n{DEEPER}{arguments}{SHALLOWER}){result} {{");
     block(&head, lines, "}")
 }
 
@@ -233,7 +234,12 @@ fn close_contacts(known: &ProgramReactions) -> String {
         &reactions("delays"),
     ];
     lines += "closes\n";
-    function("close_contacts", &arguments, " -> T", &lines)
+    function(
+        (CLOSE_CONTACTS, "close_contacts"),
+        &arguments,
+        " -> T",
+        &lines,
+    )
 }
 
 /// Writes the function that corrects the reactions. It returns 0 if they are found, else 1.
@@ -345,7 +351,12 @@ fn find_reactions(known: &ProgramReactions) -> String {
         "functions: &mut [T; REACTION_FUNCTIONS]",
         &format!("reactions: &mut [T; {count}]"),
     ];
-    function("find_reactions", &arguments, " -> T", &lines)
+    function(
+        (FIND_REACTIONS, "find_reactions"),
+        &arguments,
+        " -> T",
+        &lines,
+    )
 }
 
 /// Writes the function that moves the positions so that closed contacts do not overlap.
@@ -382,7 +393,12 @@ fn separate_contacts(known: &ProgramReactions) -> String {
         "functions: &mut [T; REACTION_FUNCTIONS]",
         "state: &mut [T; STATES]",
     ];
-    function("separate_contacts", &arguments, "", &lines)
+    function(
+        (SEPARATE_CONTACTS, "separate_contacts"),
+        &arguments,
+        "",
+        &lines,
+    )
 }
 
 /// Length of a column.
@@ -412,5 +428,5 @@ fn apply_reactions(known: &ProgramReactions) -> String {
         &reactions("delays"),
         "state: &mut [T; STATES]",
     ];
-    function("apply_reactions", &arguments, "", &lines)
+    function((APPLY_REACTIONS, "apply_reactions"), &arguments, "", &lines)
 }

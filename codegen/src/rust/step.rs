@@ -34,13 +34,13 @@ pub(super) fn step(file: &File<'_>) -> String {
             block(&head, &lines, "}")
         }
         Some(known) => {
-            let lines = reactions::step(known, &runge_kutta(file, "next[i]"));
+            let lines = reactions::step(known, [RATES_OF_STAGES, &runge_kutta(file, "next[i]")]);
             block(&head, &lines, "}") + &reactions::functions(known)
         }
     }
 }
 
-pub(super) const RATES_OF_STAGES: &str = "\
+const RATES_OF_STAGES: &str = "\
     let mut k1 = [T::number(0.0); STATES];\n\
     let mut k2 = [T::number(0.0); STATES];\n\
     let mut k3 = [T::number(0.0); STATES];\n\

@@ -54,5 +54,8 @@ pub(crate) use stages::{
     RATES_ORDER_DOC, describe_rate_limits, guards, mass_matrix, observables, rates,
 };
 pub(crate) use statement::{Place, Statement};
-pub(crate) use step::{describe_step, reaction_constants};
+pub(crate) use step::{
+    APPLY_REACTIONS, CLOSE_CONTACTS, FIND_REACTIONS, SEPARATE_CONTACTS, describe_step,
+    reaction_constants,
+};
 pub(crate) use used::UsedNames;

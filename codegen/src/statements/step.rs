@@ -42,3 +42,14 @@ pub fn describe_step(program: &Program) -> String {
         None => HEAD.to_owned(),
     }
 }
+
+/// Documentation of the functions that a step with reactions calls.
+pub const CLOSE_CONTACTS: &str = "Closes the open contacts whose distance is not positive with the reactions so far: sets the rate that each has\n\
+     after the step at least, and the time for which its impulse acts. Returns 1 if a contact closes, else 0.";
+/// See [`CLOSE_CONTACTS`].
+pub const SEPARATE_CONTACTS: &str = "Moves the positions so that closed contacts do not overlap.";
+/// See [`CLOSE_CONTACTS`].
+pub const FIND_REACTIONS: &str = "Corrects the reactions by projected Gauss-Seidel sweeps until the conditions on the functions hold, and the\n\
+     functions with them. Returns 0 if they are found, else 1.";
+/// See [`CLOSE_CONTACTS`].
+pub const APPLY_REACTIONS: &str = "Adds the changes of the reactions since `applied` to the state.";

@@ -13,8 +13,8 @@ use super::reactions::{StepObstacle, derive_reactions};
 use super::regimes::switches;
 use super::types::{Jacobian, Outputs, Products};
 use crate::mechanics::equations::Equations;
+use crate::mechanics::function_rates::guard_rate;
 use crate::mechanics::rows::RowNodes;
-use crate::mechanics::translate::along_motion;
 use crate::symbolic::association::shared_operations;
 use crate::symbolic::differentiate::Direction;
 use crate::symbolic::factor::factor_if_cheaper;
@@ -251,19 +251,6 @@ fn guard_rates(equations: &mut Equations) -> Vec<NodeId> {
     let values: Vec<NodeId> = equations.guards.iter().map(|guard| guard.value).collect();
     let mut rate = |value: &NodeId| guard_rate(equations, *value);
     values.iter().map(&mut rate).collect()
-}
-
-/// Returns the rate of a function of the motion, with constant inputs.
-pub(crate) fn guard_rate(equations: &mut Equations, value: NodeId) -> NodeId {
-    let rows = &equations.accelerations.rows;
-    let state_rates = &equations.state_rates;
-    let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
-        Operation::Rate(index) => rows.scalars[index],
-        Operation::ModeRates(field) => rows.modal[field],
-        Operation::State(index) => state_rates[index],
-        _ => along_motion(graph, leaf),
-    };
-    Direction::new(&tangent).derivative(&mut equations.graph, value)
 }
 
 fn products(equations: &mut Equations) -> Products<NodeId, RowNodes> {

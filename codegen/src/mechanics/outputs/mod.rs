@@ -26,14 +26,10 @@ mod regimes;
 mod types;
 
 #[cfg(feature = "derive")]
-pub(crate) use derive::guard_rate;
-#[cfg(feature = "derive")]
 pub use derive::{OutputError, TANGENTS, derive_outputs};
 pub use output::{Output, UnknownOutput};
 #[cfg(feature = "derive")]
 pub use reactions::StepObstacle;
-#[cfg(feature = "derive")]
-pub(crate) use reactions::{Column, derive_along};
 pub use types::{
     BlockPlace, Corners, Decision, GradientDerivative, GradientRow, Jacobian, JacobianBlock,
     Outputs, Products, RateRow, Reactions, SURFACES_OF_A_REGIME, Side, SlidingSurface, Switch,

@@ -2,15 +2,12 @@
 //! reactions. The time-stepping method is in `program::evaluator::fixed_step`.
 
 use super::types::Reactions;
-use crate::mechanics::discs::divides_by_speed;
+use crate::mechanics::discs::find_discs;
 use crate::mechanics::equations::Equations;
+use crate::mechanics::function_rates::{Column, derive_along};
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::sliding::hold_frictions;
-use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
-
-/// Change of the rates by a unit of a reaction.
-pub(crate) type Column = (RowNodes, Vec<NodeId>);
 
 /// Property of a model for which there are no steps of fixed length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,7 +45,8 @@ pub(crate) fn derive_reactions(
     if !equations.corners.is_empty() {
         return Err(StepObstacle::Corner);
     }
-    if divides_by_speed(&equations.graph, &equations.rate_nodes()) {
+    let rates = equations.rate_nodes();
+    if !find_discs(&mut equations.graph, &rates).is_empty() {
         return Err(StepObstacle::Direction);
     }
     let held = hold_frictions(equations);
@@ -93,18 +91,6 @@ pub(crate) fn derive_reactions(
         columns,
         effects,
     }))
-}
-
-/// Returns the derivative of a function by a reaction with this column.
-pub(crate) fn derive_along(graph: &mut Graph, function: NodeId, column: &Column) -> NodeId {
-    let (rates, first_order) = column;
-    let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
-        Operation::Rate(index) => rates.scalars[index],
-        Operation::ModeRates(field) => rates.modal[field],
-        Operation::State(index) => first_order[index],
-        _ => graph.zero(),
-    };
-    Direction::new(&tangent).derivative(graph, function)
 }
 
 fn has_sides(graph: &Graph, (rates, first_order): &Column) -> bool {

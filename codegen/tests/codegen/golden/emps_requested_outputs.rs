@@ -603,7 +603,7 @@ const fn pattern<const B: usize, const N: usize>(
 }
 
 /// Step of length h (s) of the classical Runge-Kutta method of order 4, with held inputs. It has
-/// the bits of `eomgen simulate --solver fixed`. Switches and impacts are not located.
+/// the bits of `eomgen simulate --solver fixed`. Switches are not located.
 pub fn step<T: Scalar>(
     t: T,
     h: T,
