@@ -19,5 +19,6 @@ pub mod pages;
 pub mod piecewise;
 pub mod program;
 pub mod random_numbers;
+pub mod runge_kutta;
 pub mod smooth_models;
 pub mod taylor;

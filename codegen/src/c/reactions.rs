@@ -8,33 +8,9 @@ use super::stages::head;
 use crate::program::evaluator::{
     MAX_LAST_CHANGE, MAX_SETTLED_ROUNDINGS, MAX_SWEEPS, SWEEPS_BETWEEN_CONTACTS,
 };
-use crate::program::{Program, Reactions, RowValues, ValueId};
+use crate::program::{Program, ProgramReactions, ReactionCounts};
 use crate::statements::layout::{DEEPER, SHALLOWER, block};
 use crate::statements::{APPLY_REACTIONS, CLOSE_CONTACTS, FIND_REACTIONS, SEPARATE_CONTACTS};
-
-type ProgramReactions = Reactions<ValueId, RowValues>;
-
-/// Sizes of the arrays of a step.
-struct Sizes {
-    sides: usize,
-    contacts: usize,
-    reactions: usize,
-}
-
-impl Sizes {
-    fn new(known: &ProgramReactions) -> Self {
-        Self {
-            sides: known.sides(),
-            contacts: known.distances.len(),
-            reactions: known.functions.len(),
-        }
-    }
-
-    /// Returns the index of the first contact friction.
-    fn first_friction(&self) -> usize {
-        self.sides + self.contacts
-    }
-}
 
 /// Writes the functions that the step calls.
 pub(super) fn functions(program: &Program, known: &ProgramReactions) -> String {
@@ -60,7 +36,7 @@ pub(super) fn step(
     known: &ProgramReactions,
     [declarations, runge_kutta]: [&str; 2],
 ) -> String {
-    let sizes = Sizes::new(known);
+    let sizes = known.counts();
     let [functions, effects] = program.reaction_sizes();
     let (count, states) = (sizes.reactions, program.states());
     let mut lines = declarations.to_owned();
@@ -88,7 +64,7 @@ pub(super) fn step(
     let close =
         "NAME_close_contacts(h, before, functions, effects, reactions, applied, targets, delays)";
     let open = loop_between(
-        (sizes.sides, sizes.first_friction()),
+        (sizes.sides, sizes.sides + sizes.contacts),
         "targets[r] = R(-NAME_UNBOUNDED);\n",
     );
     let set_sides = write_loop(
@@ -195,11 +171,11 @@ fn contacts_of_frictions(known: &ProgramReactions) -> String {
 
 /// Writes the function that closes open contacts whose distance is not positive. It returns 1 if one closes, else 0.
 fn close_contacts(program: &Program, known: &ProgramReactions) -> String {
-    let Sizes {
+    let ReactionCounts {
         sides,
         contacts,
         reactions,
-    } = Sizes::new(known);
+    } = known.counts();
     let first_friction = sides + contacts;
     let effects = known.effects.len();
     let moved = write_loop(
@@ -257,13 +233,13 @@ fn close_contacts(program: &Program, known: &ProgramReactions) -> String {
 
 /// Writes the function that corrects the reactions. It returns 0 if they are found, else 1.
 fn find_reactions(program: &Program, known: &ProgramReactions) -> String {
-    let sizes = Sizes::new(known);
-    let Sizes {
+    let sizes = known.counts();
+    let ReactionCounts {
         sides,
         contacts,
         reactions: count,
     } = sizes;
-    let first_friction = sizes.first_friction();
+    let first_friction = sizes.sides + sizes.contacts;
     let coefficients = known.effects.len() + contacts;
     let magnitude = |x: &str| format!("((R(0.0) > {x}) ? -{x} : {x})");
     let clamped = "const NAME_real below = (wanted > limit) ? limit : wanted;\n\
@@ -376,11 +352,11 @@ fn find_reactions(program: &Program, known: &ProgramReactions) -> String {
 
 /// Writes the function that moves the positions so that closed contacts do not overlap.
 fn separate_contacts(program: &Program, known: &ProgramReactions) -> String {
-    let Sizes {
+    let ReactionCounts {
         sides,
         contacts,
         reactions: count,
-    } = Sizes::new(known);
+    } = known.counts();
     let degrees = program.degrees_of_freedom();
     let length = program.states() - degrees;
     let first = known.first_column() + sides * length;

@@ -12,24 +12,30 @@ pub(crate) type Column = (RowNodes, Vec<NodeId>);
 /// Returns the rate of a function of the motion, with constant inputs.
 pub(crate) fn guard_rate(equations: &mut Equations, value: NodeId) -> NodeId {
     let rows = &equations.accelerations.rows;
-    let state_rates = &equations.state_rates;
-    let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
-        Operation::Rate(index) => rows.scalars[index],
-        Operation::ModeRates(field) => rows.modal[field],
-        Operation::State(index) => state_rates[index],
-        _ => along_motion(graph, leaf),
-    };
-    Direction::new(&tangent).derivative(&mut equations.graph, value)
+    let rates = (rows, &equations.state_rates[..]);
+    derive_with(&mut equations.graph, value, rates, along_motion)
 }
 
 /// Returns the derivative of a function by a reaction with this column.
 pub(crate) fn derive_along(graph: &mut Graph, function: NodeId, column: &Column) -> NodeId {
     let (rates, first_order) = column;
+    derive_with(graph, function, (rates, first_order), |graph, _| {
+        graph.zero()
+    })
+}
+
+/// Returns the derivative of a function, given those of the rates, of the first-order states and of the other leaves.
+fn derive_with(
+    graph: &mut Graph,
+    function: NodeId,
+    (rates, first_order): (&RowNodes, &[NodeId]),
+    other: impl Fn(&mut Graph, NodeId) -> NodeId,
+) -> NodeId {
     let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
         Operation::Rate(index) => rates.scalars[index],
         Operation::ModeRates(field) => rates.modal[field],
         Operation::State(index) => first_order[index],
-        _ => graph.zero(),
+        _ => other(graph, leaf),
     };
     Direction::new(&tangent).derivative(graph, function)
 }

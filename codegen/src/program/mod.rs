@@ -37,7 +37,7 @@ pub use crate::mechanics::outputs::{
     BlockPlace, Decision, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Output,
     Outputs, Products, SURFACES_OF_A_REGIME, Switch,
 };
-pub use crate::mechanics::outputs::{Corners, RateRow, Reactions, SlidingSurface};
+pub use crate::mechanics::outputs::{Corners, RateRow, ReactionCounts, Reactions, SlidingSurface};
 pub use crate::symbolic::arguments::Arguments;
 pub use crate::symbolic::variable::{Argument, Variable};
 pub use controllers::{ControlOp, ControlValues, MeasuredSource, ProgramController};
@@ -45,6 +45,7 @@ pub use domain::Domain;
 pub use quantity::Quantity;
 pub use trace::{Trace, TraceTerm, ValueTrace};
 pub use types::{
-    MassBlocks, Program, ProgramField, ProgramGuard, ProgramParameter, ProgramTable, RowValues,
+    MassBlocks, Program, ProgramField, ProgramGuard, ProgramParameter, ProgramReactions,
+    ProgramTable, RowValues,
 };
 pub use value::{Extent, Op, PARTIAL_SUMS, ScaledValue, Value, ValueId};

@@ -159,7 +159,10 @@ impl Products<ValueId, RowValues> {
     }
 }
 
-impl Reactions<ValueId, RowValues> {
+/// Reactions of a program.
+pub type ProgramReactions = Reactions<ValueId, RowValues>;
+
+impl ProgramReactions {
     /// Returns the values of the rates with sides.
     pub(crate) fn rate_roots(&self) -> Vec<ValueId> {
         let mut roots = self.accelerations.all();

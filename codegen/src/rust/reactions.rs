@@ -6,36 +6,17 @@ use super::literals::{linked_doc, number};
 use crate::program::evaluator::{
     MAX_LAST_CHANGE, MAX_SETTLED_ROUNDINGS, MAX_SWEEPS, SWEEPS_BETWEEN_CONTACTS,
 };
-use crate::program::{Reactions, RowValues, ValueId};
+use crate::program::{ProgramReactions, ReactionCounts};
 use crate::statements::layout::{DEEPER, SHALLOWER, block};
 use crate::statements::{APPLY_REACTIONS, CLOSE_CONTACTS, FIND_REACTIONS, SEPARATE_CONTACTS};
 
-type ProgramReactions = Reactions<ValueId, RowValues>;
-
-/// Sizes of the arrays of a step.
-struct Sizes {
-    sides: usize,
-    contacts: usize,
-    reactions: usize,
-}
-
-impl Sizes {
-    fn new(known: &ProgramReactions) -> Self {
-        Self {
-            sides: known.sides(),
-            contacts: known.distances.len(),
-            reactions: known.functions.len(),
-        }
-    }
-}
-
 /// Writes the statements of the step around those of the Runge-Kutta method, which has these declarations.
 pub(super) fn step(known: &ProgramReactions, [declarations, runge_kutta]: [&str; 2]) -> String {
-    let Sizes {
+    let ReactionCounts {
         sides,
         contacts,
         reactions: count,
-    } = Sizes::new(known);
+    } = known.counts();
     let mut lines = declarations.to_owned();
     // Only contacts change the targets.
     let targets = if contacts > 0 {
@@ -180,11 +161,11 @@ fn contacts_of_frictions(known: &ProgramReactions) -> String {
 
 /// Writes the function that closes open contacts whose distance is not positive. It returns 1 if one closes, else 0.
 fn close_contacts(known: &ProgramReactions) -> String {
-    let Sizes {
+    let ReactionCounts {
         sides,
         contacts,
         reactions: count,
-    } = Sizes::new(known);
+    } = known.counts();
     let effects = known.effects.len();
     let infinity = "T::number(f64::NEG_INFINITY)";
     let moved = write_loop(
@@ -244,11 +225,11 @@ fn close_contacts(known: &ProgramReactions) -> String {
 
 /// Writes the function that corrects the reactions. It returns 0 if they are found, else 1.
 fn find_reactions(known: &ProgramReactions) -> String {
-    let Sizes {
+    let ReactionCounts {
         sides,
         contacts,
         reactions: count,
-    } = Sizes::new(known);
+    } = known.counts();
     let first_friction = sides + contacts;
     let coefficients = known.effects.len() + contacts;
     let magnitude = |x: &str| format!("T::select_greater(zero, {x}, -{x}, {x})");
@@ -361,11 +342,11 @@ fn find_reactions(known: &ProgramReactions) -> String {
 
 /// Writes the function that moves the positions so that closed contacts do not overlap.
 fn separate_contacts(known: &ProgramReactions) -> String {
-    let Sizes {
+    let ReactionCounts {
         sides,
         contacts,
         reactions: count,
-    } = Sizes::new(known);
+    } = known.counts();
     let first = known.first_column();
     let each = format!(
         "let distance = functions[{count} + i];\n\

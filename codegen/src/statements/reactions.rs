@@ -9,9 +9,7 @@ use super::rows::write_row_values;
 use super::stage::{Argument, Outcome, Size, Stage};
 use super::stages::{RATES_ORDER_DOC, rates_stage};
 use super::statement::Place;
-use crate::program::{Reactions, RowValues, ValueId};
-
-type ProgramReactions = Reactions<ValueId, RowValues>;
+use crate::program::{ProgramReactions, ValueId};
 
 /// Builds the stages: rates with given sides, functions and effects of the reactions.
 pub(super) fn reaction_stages(

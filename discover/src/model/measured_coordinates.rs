@@ -2,7 +2,8 @@
 //!
 //! The measured coordinates move from the initial state of the specification to their values in small steps, and the others
 //! follow by Newton's method on the constraints. A linkage thus stays in its branch of assembly, however far its crank
-//! turned. A projection of the measured values alone would move them by as much as the others, or end in another branch.
+//! turned. The projection of a start moves all coordinates alike, so that measured ones would leave their values, and can end in
+//! another branch.
 
 use eomgen_analysis::qr_iteration;
 use eomgen_codegen::independence::rows::ConstraintRows;

@@ -9,6 +9,7 @@ use eomgen_discover::model::unknowns::UnknownKind;
 use eomgen_model_spec::source::Source;
 use eomgen_records::read_dataset;
 use eomgen_tests::random_numbers::NormalNumbers;
+use eomgen_tests::runge_kutta::integrate;
 
 const SPECIFICATION: &str = r#"
 [model]
@@ -71,7 +72,6 @@ fn rates([x, y, dx, dy]: [f64; 4], u: f64) -> [f64; 4] {
 
 /// Returns a record from rest by classical Runge-Kutta steps. The input grows from zero.
 fn simulate_record(normal: &mut NormalNumbers, turn: f64) -> String {
-    let h = SAMPLE_S / 20.0;
     let mut state = [0.0; 4];
     let mut text = "t,u,x,y\n".to_owned();
     for number in 0..1001 {
@@ -79,17 +79,7 @@ fn simulate_record(normal: &mut NormalNumbers, turn: f64) -> String {
         let u = 8.0 * t.min(1.0) * ((15.0 * t + turn).cos() - 0.8 * (37.0 * t + turn).sin());
         let [x, y] = [0, 1].map(|place| state[place] + NOISE_M * normal.draw());
         writeln!(text, "{t:.4},{u:.12},{x:.12},{y:.12}").expect("a text");
-        for _ in 0..20 {
-            let along = |rates: [f64; 4], part: f64| {
-                std::array::from_fn(|place| state[place] + part * h * rates[place])
-            };
-            let a = rates(state, u);
-            let b = rates(along(a, 0.5), u);
-            let c = rates(along(b, 0.5), u);
-            let d = rates(along(c, 1.0), u);
-            let sum = |place: usize| a[place] + 2.0 * (b[place] + c[place]) + d[place];
-            state = std::array::from_fn(|place| state[place] + h / 6.0 * sum(place));
-        }
+        integrate(&mut state, SAMPLE_S, 20, |state| rates(*state, u));
     }
     text
 }

@@ -1,7 +1,8 @@
-//! Laws with a shape or a memory are found from records of the classical Runge-Kutta method, written
-//! here, whose equations contain them.
+//! Laws with a shape or a memory are found from records of machines that are written out
+//! here, with equations that contain them.
 
 use eomgen_tests::program;
+use eomgen_tests::runge_kutta::integrate;
 use serde_json::Value;
 
 /// Approximately normal numbers, each a sum of twelve uniform ones.
@@ -17,25 +18,6 @@ impl Noise {
             sum += (self.0 >> 11) as f64 / (1_u64 << 53) as f64;
         }
         sum
-    }
-}
-
-/// Integrates over one sample in short steps; the input is held.
-fn step<const N: usize>(
-    state: &mut [f64; N],
-    length: f64,
-    parts: usize,
-    rates: impl Fn(&[f64; N]) -> [f64; N],
-) {
-    let h = length / parts as f64;
-    for _ in 0..parts {
-        let along = |k: &[f64; N], part: f64| std::array::from_fn(|i| state[i] + part * h * k[i]);
-        let a = rates(state);
-        let b = rates(&along(&a, 0.5));
-        let c = rates(&along(&b, 0.5));
-        let d = rates(&along(&c, 1.0));
-        *state =
-            std::array::from_fn(|i| state[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
     }
 }
 
@@ -138,7 +120,7 @@ fn axis_record(command: impl Fn(f64) -> f64, seed: u64) -> String {
         let (x, p) = (x + 1e-5 * noise.next(), p + 2.5e4 * noise.next());
         text += &format!("{t:.4},{u:.12e},{x:.10e},{p:.10e}\n");
         let acting = u - u.clamp(-0.22, 0.22);
-        step(&mut state, 2e-3, 8, |[_, v, p]| {
+        integrate(&mut state, 2e-3, 8, |[_, v, p]| {
             let flow = 6e-5 * acting - 6e-4 * v - 3e-12 * p;
             [*v, (6e-4 * p - 600.0 * v) / 45.0, 4e12 * flow]
         });
@@ -236,7 +218,7 @@ fn stage_record(
         let push = force(t);
         let x = 1e3 * state[0] + 0.02 * noise.next();
         text += &format!("{t:.4},{push:.12e},{x:.8e}\n");
-        step(&mut state, 5e-3, 50, |[_, v, z]| {
+        integrate(&mut state, 5e-3, 50, |[_, v, z]| {
             [
                 *v,
                 (push - 9.0 * v - friction(*v, *z)) / 2.5,
@@ -318,7 +300,7 @@ fn stop_record(force: impl Fn(f64) -> f64, (side, place): (f64, f64), seed: u64)
         let push = force(t);
         let x = 1e3 * state[0] + 0.02 * noise.next();
         text += &format!("{t:.4},{push:.12e},{x:.8e}\n");
-        step(&mut state, 5e-3, 50, |[x, v]| {
+        integrate(&mut state, 5e-3, 50, |[x, v]| {
             let stop = -side * 750.0 * f64::max(side * x - place, 0.0);
             [*v, (push - 9.0 * v - 250.0 * x + stop) / 2.5]
         });

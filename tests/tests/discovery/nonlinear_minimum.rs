@@ -10,6 +10,7 @@ use eomgen_discover::model::unknowns::UnknownKind;
 use eomgen_model_spec::source::Source;
 use eomgen_records::read_dataset;
 use eomgen_tests::random_numbers::NormalNumbers;
+use eomgen_tests::runge_kutta::integrate;
 
 const SPECIFICATION: &str = r#"
 [model]
@@ -86,7 +87,6 @@ fn rates(state: [f64; 6], u: f64) -> [f64; 6] {
 
 /// Returns a record from rest by classical Runge-Kutta steps.
 fn simulate_record(normal: &mut NormalNumbers, turn: f64) -> String {
-    let h = SAMPLE / 20.0;
     let mut state = [0.0; 6];
     let mut text = "t,u,middle\n".to_owned();
     for number in 0..600 {
@@ -94,17 +94,7 @@ fn simulate_record(normal: &mut NormalNumbers, turn: f64) -> String {
         let u = 8.0 * ((5.0 * t + turn).cos() - 0.6 * (13.0 * t + turn).sin());
         let measured = state[0] - state[2] + NOISE * normal.draw();
         writeln!(text, "{t:.3},{u:.12},{measured:.12}").expect("a text");
-        for _ in 0..20 {
-            let along = |rates: [f64; 6], part: f64| {
-                std::array::from_fn(|place| state[place] + part * h * rates[place])
-            };
-            let a = rates(state, u);
-            let b = rates(along(a, 0.5), u);
-            let c = rates(along(b, 0.5), u);
-            let d = rates(along(c, 1.0), u);
-            let sum = |place: usize| a[place] + 2.0 * (b[place] + c[place]) + d[place];
-            state = std::array::from_fn(|place| state[place] + h / 6.0 * sum(place));
-        }
+        integrate(&mut state, SAMPLE, 20, |state| rates(*state, u));
     }
     text
 }

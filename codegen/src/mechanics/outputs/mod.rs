@@ -32,5 +32,6 @@ pub use output::{Output, UnknownOutput};
 pub use reactions::StepObstacle;
 pub use types::{
     BlockPlace, Corners, Decision, GradientDerivative, GradientRow, Jacobian, JacobianBlock,
-    Outputs, Products, RateRow, Reactions, SURFACES_OF_A_REGIME, Side, SlidingSurface, Switch,
+    Outputs, Products, RateRow, ReactionCounts, Reactions, SURFACES_OF_A_REGIME, Side,
+    SlidingSurface, Switch,
 };

@@ -102,10 +102,30 @@ pub struct Reactions<N, R> {
     pub coefficients: Vec<(usize, N)>,
 }
 
+/// Numbers of reactions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ReactionCounts {
+    /// Frictions that can hold the motion.
+    pub sides: usize,
+    /// Contacts.
+    pub contacts: usize,
+    /// All reactions.
+    pub reactions: usize,
+}
+
 impl<N, R> Reactions<N, R> {
     /// Returns the number of frictions that can hold the motion.
     pub fn sides(&self) -> usize {
         self.functions.len() - self.distances.len() - self.coefficients.len()
+    }
+
+    /// Returns the numbers of reactions.
+    pub fn counts(&self) -> ReactionCounts {
+        ReactionCounts {
+            sides: self.sides(),
+            contacts: self.distances.len(),
+            reactions: self.functions.len(),
+        }
     }
 }
 

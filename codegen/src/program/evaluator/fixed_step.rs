@@ -9,9 +9,7 @@
 //! of the order of the step; without events the order is 4.
 
 use super::{Evaluator, Point, Stage};
-use crate::program::{Argument, Reactions, RowValues, ValueId};
-
-type ProgramReactions = Reactions<ValueId, RowValues>;
+use crate::program::{Argument, ProgramReactions, Reactions, ValueId};
 
 /// Largest number of sweeps over the reactions.
 pub(crate) const MAX_SWEEPS: usize = 1000;
