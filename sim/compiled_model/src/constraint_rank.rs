@@ -1,7 +1,7 @@
 //! Rank of constraints at a state.
 //!
-//! At a singular position the derivatives of constraints depend on each other, or that of one
-//! vanishes. Their least singular value grows from there with the distance, to both sides.
+//! At a singular position the derivatives of the constraints are linearly dependent, or the derivative of one
+//! constraint vanishes. The least singular value is zero there and grows with the distance on both sides.
 
 use eomgen_analysis::qr_iteration::symmetric_eigen;
 use eomgen_codegen::independence::vectors::norm;
@@ -11,27 +11,27 @@ use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 use crate::displacements::DISPLACEMENT;
 use crate::motion_model::MotionModel;
 
-/// Growth of the least singular value from a singular position to both displaced points. A regular
-/// value changes by a fraction of about [`DISPLACEMENT`].
+/// Smallest growth of the least singular value from a singular position to both displaced points. A regular value
+/// changes by a fraction of about [`DISPLACEMENT`].
 const MIN_GROWTH: f64 = 2.0;
 
-/// Smallest coefficient of a constraint in the dependent combination, relative to the largest, at
-/// which an error names it.
+/// Smallest coefficient of a constraint in the dependent combination, relative to the largest, for which an error names
+/// the constraint.
 const MIN_NAMED_COEFFICIENT: f64 = 0.1;
 
 /// Least singular value of scaled constraint rows.
 pub(crate) struct ConstraintRank {
-    /// Least singular value, without those that vanish everywhere.
+    /// Least singular value, without singular values that vanish at every state.
     pub least: f64,
-    /// Combination of the constraints for the least singular value.
+    /// Combination of the constraints that belongs to the least singular value.
     pub dependent_combination: DVector<f64>,
     /// Eigenvalues and eigenvectors of the product of the rows with their transpose.
     pub squares: SymmetricEigen<f64, Dyn>,
 }
 
 impl ConstraintRank {
-    /// Computes the rank of rows of which `excess` depend on the others everywhere. Returns `None`
-    /// if the iteration does not converge.
+    /// Computes the rank of `rows`, of which `excess` rows depend on the others at every state. Returns `None` if the
+    /// iteration does not converge.
     pub fn new(rows: &DMatrix<f64>, excess: usize) -> Option<Self> {
         let squares = symmetric_eigen(&(rows * rows.transpose()))?;
         let mut order: Vec<usize> = (0..squares.eigenvalues.len()).collect();
@@ -44,7 +44,7 @@ impl ConstraintRank {
         })
     }
 
-    /// Describes the dependence of the constraints with these names.
+    /// Describes the dependence of the constraints with the given names.
     pub fn describe<'n>(
         combination: &DVector<f64>,
         names: impl Iterator<Item = &'n String>,
@@ -67,8 +67,8 @@ impl ConstraintRank {
 }
 
 impl dyn MotionModel + '_ {
-    /// Describes the dependence of the constraints if a point is a singular position. `direction`
-    /// displaces the states by their natural scales.
+    /// Describes the dependence of the constraints if a point is a singular position. `direction` is a displacement of
+    /// the states, in SI units.
     pub(crate) fn describe_singular_position(
         &self,
         point: Point<'_>,

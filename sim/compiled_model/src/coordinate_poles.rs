@@ -1,8 +1,8 @@
-//! Detection of poles of coordinates, at which the inertia of a coordinate vanishes.
+//! Detection of poles of coordinates: states at which the inertia of a coordinate vanishes.
 //!
-//! A spherical pendulum that hangs in its axis can move in two directions, but only one of its two
-//! angles describes such a motion; a linearisation there lacks a mode. At a pole a pivot of the
-//! factorisation M = L D L^T vanishes with the square of the distance, on both sides.
+//! A spherical pendulum that hangs along its polar axis can move in two directions. Only one of its two angles
+//! describes such a motion, so a linearisation at this state lacks a mode. At a pole, a pivot of the factorisation M =
+//! L D L^T vanishes with the square of the distance, on both sides.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
@@ -11,8 +11,8 @@ use crate::displacements::DISPLACEMENT;
 use crate::error::Error;
 use crate::instance::Instance;
 
-/// Growth of a pivot from a pole to both displaced points. A regular pivot changes by a fraction
-/// of about [`DISPLACEMENT`].
+/// Smallest growth of a pivot from a pole to both displaced points. A regular pivot changes by a fraction of about
+/// [`DISPLACEMENT`].
 const MIN_GROWTH: f64 = 4.0;
 
 impl Instance<'_> {
@@ -70,7 +70,7 @@ fn pivots(evaluator: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
 mod tests {
     use crate::{CompiledModel, Orders};
 
-    /// Returns the pole of a model at a state at rest, if there is one.
+    /// Returns the coordinate with a pole of a model at a state at rest, if there is one.
     fn pole(text: &str, coordinates: &[f64]) -> Option<String> {
         let model = CompiledModel::from_text("machine.toml", text, Orders::Declared);
         let model = model.expect("a model");
@@ -81,7 +81,7 @@ mod tests {
         found.expect("declared parameters")
     }
 
-    /// Inertias of an angle about an axis and of a distance from it.
+    /// Specification with an angle about an axis and a distance from it.
     const SPHERICAL: &str = r#"
 [model]
 name = "spherical"

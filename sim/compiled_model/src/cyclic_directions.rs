@@ -1,11 +1,9 @@
-//! Cyclic directions: motions on which no rate depends, along which a machine can turn or travel
-//! steadily.
+//! Cyclic directions: displacements on which no rate depends. Along them a machine can turn or travel steadily.
 //!
-//! A displacement q + s n along a cyclic direction n changes no acceleration, for any s. A
-//! coordinate that the equations do not contain is a cyclic direction; two wheels that roll on
-//! each other share one. The candidates span the null space of the derivatives of the
-//! accelerations with respect to the coordinates. Finite displacements from the state and from a
-//! neighbour confirm each candidate.
+//! A displacement q + s n along a cyclic direction n changes no acceleration, for any s. A coordinate that the
+//! equations do not contain is a cyclic direction; two wheels that roll on each other share one. The candidates span
+//! the null space of the derivatives of the accelerations with respect to the coordinates. Finite displacements from
+//! the state and from a displaced state confirm each candidate.
 
 use eomgen_codegen::independence::vectors::max_magnitude;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
@@ -19,7 +17,7 @@ use crate::operating_point::OperatingPoint;
 /// Pivots below this fraction of the largest entry count as 0.
 const MIN_PIVOT: f64 = 1e-10;
 
-/// Largest change of a rate that counts as none, relative to its largest term.
+/// Largest change of a rate that counts as zero, relative to its largest term.
 const MAX_UNCHANGED_FRACTION: f64 = 1e-9;
 
 /// Displacements along a candidate, relative to the scale of its coordinate.
@@ -28,15 +26,16 @@ const DISPLACEMENTS: [f64; 12] = [
     0.37, 0.8, 1.2, 1.57, 2.0, 2.5, 3.0, -0.4, -0.9, -1.5, -2.0, -2.6,
 ];
 
-/// Displacement of the state at which cyclic directions are confirmed, relative to natural scales or typical sizes.
+/// Displacement of the second state at which cyclic directions are confirmed, relative to natural scales or typical
+/// sizes.
 const NEIGHBOUR_FRACTION: f64 = 0.1;
 
 /// Accelerations and rates of first-order states at a state.
 struct SizedRates {
     rates: Vec<f64>,
-    /// Derivatives by the coordinates.
+    /// Derivatives with respect to the coordinates.
     rows: Vec<Vec<f64>>,
-    /// Largest term of each rate, without those that a displacement adds.
+    /// Largest term of each rate at the state itself, without displacement.
     sizes: Vec<f64>,
 }
 
@@ -48,11 +47,11 @@ impl SizedRates {
 }
 
 impl Instance<'_> {
-    /// Finds the independent cyclic directions at a state. Each direction has one entry per
-    /// coordinate and mode, SI, relative to an entry of 1.
+    /// Finds the independent cyclic directions at a state. Each direction has one entry per coordinate and mode in SI
+    /// units; one entry is 1.
     ///
     /// # Errors
-    /// Same as [`Instance::jacobian_evaluator`].
+    /// See [`Instance::jacobian_evaluator`].
     pub fn find_cyclic_directions(&self, at: &OperatingPoint) -> Result<Vec<Vec<f64>>, Error> {
         let degrees = self.model().program().degrees_of_freedom();
         let scales = self.natural_scales()?;
@@ -64,7 +63,8 @@ impl Instance<'_> {
         if found.is_empty() {
             return Ok(found);
         }
-        // At a symmetric state, a coordinate may drop out of equations that contain it.
+        // At a symmetric state the derivative with respect to a coordinate may vanish although the equations contain
+        // the coordinate.
         let mut moved = at.clone();
         for (value, part) in moved.state.iter_mut().zip(self.generic_direction()?) {
             *value += NEIGHBOUR_FRACTION * part;
@@ -82,8 +82,8 @@ impl Instance<'_> {
         Ok(found)
     }
 
-    /// Returns a direction of states, each part 0.5 to 1.5 times its natural scale or typical size, that is parallel to
-    /// no surface in simple coordinates.
+    /// Returns a direction of states; each entry is 0.5 to 1.5 times its natural scale or typical size. The direction
+    /// is parallel to no surface that is simple in the coordinates.
     ///
     /// # Errors
     /// Invalid parameter values.
@@ -96,7 +96,7 @@ impl Instance<'_> {
         Ok(sizes.map(part).collect())
     }
 
-    /// Returns the rates at a state with their derivatives and sizes.
+    /// Returns the rates at a state with their derivatives and their largest terms.
     fn sized_rates(
         &self,
         at: &OperatingPoint,
@@ -113,7 +113,7 @@ impl Instance<'_> {
         let sizes = (0..rates.len()).map(|r| {
             let terms = row(r).iter().zip(&at.state);
             let terms = terms.map(|(entry, value)| (entry * value).abs());
-            // In symmetric positions all terms may vanish; the derivatives times the scales do not.
+            // At symmetric positions all terms may vanish; the scaled derivatives do not.
             let scaled = rows[r].iter().zip(scales);
             let scaled = scaled.map(|(entry, scale)| (entry * scale.unwrap_or(0.0)).abs());
             terms.chain(scaled).fold(rates[r].abs(), f64::max)
@@ -122,7 +122,7 @@ impl Instance<'_> {
         Ok(SizedRates { rates, rows, sizes })
     }
 
-    /// Returns true if displacements along a direction change no rate.
+    /// Returns true if no displacement along a direction changes a rate.
     fn is_cyclic(
         &self,
         evaluator: &mut Evaluator,
@@ -149,17 +149,17 @@ impl Instance<'_> {
         })
     }
 
-    /// Returns true if a full turn of a coordinate changes no rate at these points.
+    /// Returns true if a full turn of a coordinate changes no rate at the given points.
     ///
     /// # Errors
-    /// Same as [`Instance::evaluator`].
+    /// See [`Instance::evaluator`].
     pub fn repeats_after_turn(
         &self,
         coordinate: usize,
         points: &[OperatingPoint],
     ) -> Result<bool, Error> {
         let mut evaluator = self.interpreter()?;
-        // A model without Jacobians has no known terms.
+        // Without Jacobians, the terms of the rates are unknown.
         let mut state_space = self.state_space_evaluator().ok();
         let mut pairs = Vec::with_capacity(points.len());
         let mut sizes = Vec::with_capacity(points.len());
@@ -167,7 +167,7 @@ impl Instance<'_> {
             let mut turned = at.clone();
             turned.state[coordinate] += std::f64::consts::TAU;
             pairs.push([at, &turned].map(|at| self.accelerations(&mut evaluator, at)));
-            // In steady motion the terms of a rate cancel; its derivative times a radian does not.
+            // In steady motion the terms of a rate cancel. The derivative times one radian does not cancel.
             let matrix = state_space
                 .as_mut()
                 .and_then(|found| found.evaluate(at.point()).ok());
@@ -190,7 +190,7 @@ impl Instance<'_> {
         }))
     }
 
-    /// Returns true if a coordinate is dimensionless, as angles are.
+    /// Returns true if a coordinate is dimensionless, as an angle is.
     pub fn is_angle(&self, coordinate: usize) -> bool {
         let mut units = self.model().model().coordinates.iter();
         units
@@ -213,8 +213,8 @@ impl Instance<'_> {
         rates.split_off(self.model().program().degrees_of_freedom())
     }
 
-    /// Returns scales of displacements for coordinates and modes, SI: the width of the declared
-    /// range, 1 for a dimensionless quantity, otherwise `None`.
+    /// Returns natural scales of displacements for coordinates and modes, SI: the width of the declared range, 1 for a
+    /// dimensionless quantity, otherwise `None`.
     ///
     /// # Errors
     /// Invalid parameter values.
@@ -239,8 +239,8 @@ impl Instance<'_> {
     }
 }
 
-/// Returns a basis of the null space of a matrix given by rows; each vector has a 1 at an index
-/// where the others have 0. Rows and columns may have different units.
+/// Returns a basis of the null space of a matrix given by rows. Each vector has a 1 at an index at which the others are
+/// 0. Rows and columns may have different units.
 fn null_space_basis(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
     let row_sizes = rows.iter().map(max_magnitude);
     let mut matrix: Vec<Vec<f64>> = rows
@@ -302,7 +302,7 @@ fn null_space_basis(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
 mod tests {
     use crate::{CompiledModel, Orders};
 
-    /// Two wheels in elastic contact, which turn together, an unrestrained rack and a pendulum.
+    /// Specification of two wheels in elastic contact that turn together, an unrestrained rack and a pendulum.
     const MACHINE: &str = r#"
 [model]
 name = "machine"
@@ -329,7 +329,7 @@ weight = "-w*cos(theta)"
 
     #[test]
     fn coordinate_that_drops_out_at_one_state_is_not_cyclic() {
-        // The stiffness depends on the angle; at x = 0 no rate does.
+        // The stiffness depends on the angle, but the rates do not depend on it at x = 0.
         let text = "[model]\nname = \"mathieu\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
                     J = { value = 1000, unit = \"kg m^2\" }\nk = { value = 100, unit = \"N/m\" }\n\
                     [coordinates]\nx = { unit = \"m\" }\na = { unit = \"rad\", initial_rate = 10 }\n\

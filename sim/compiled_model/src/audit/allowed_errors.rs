@@ -1,14 +1,14 @@
-//! Energy changes that a solver's errors can explain.
+//! Bounds of the energy changes that errors of a solver can cause.
 
-/// Factor on the energy change of an error at the tolerance in every entry of the state, if no
-/// error estimate applies: between steps, in the short step across a surface, at an impact.
+/// Factor on the energy change that an error at the relative tolerance in every state causes. It applies without an
+/// error estimate: between steps, in the short step across a surface and at an impact.
 pub(crate) const TOLERANCE_ERROR_FACTOR: f64 = 30.0;
 
-/// Number of roundings of a time within which solvers locate a jump of the rates.
+/// Uncertainty of the time at which solvers locate a jump of the rates, relative to the time.
 const EVENT_TIME_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Returns the uncertain work (J) at `t` (s), near which these are the powers (W): the time at which a force jumps is
-/// known to rounding only.
+/// Returns the uncertainty (J) of the work near a time `t` (s) at which a force jumps. `powers` (W) are the powers
+/// nearby. The time of the jump is only known to rounding.
 pub(super) fn find_uncertain_work(t: f64, powers: &[f64]) -> f64 {
     let largest = powers
         .iter()
@@ -16,9 +16,8 @@ pub(super) fn find_uncertain_work(t: f64, powers: &[f64]) -> f64 {
     EVENT_TIME_ROUNDING * t.abs() * largest
 }
 
-/// Returns the change of a quantity that solver errors can explain: the sum over the entries of
-/// the state of its changes for an error at the relative tolerance. The error is relative to the
-/// entry plus its largest magnitude up to now.
+/// Returns the change of a quantity that solver errors can cause: the sum of its changes for an error at the relative
+/// tolerance in each state. The error is relative to the state plus its largest magnitude so far.
 pub(crate) fn find_allowed_change(
     state: &[f64],
     sizes: &[f64],
@@ -30,7 +29,7 @@ pub(crate) fn find_allowed_change(
     change
 }
 
-/// Returns the error of each entry of a state at a relative tolerance.
+/// Returns the error of each state at a relative tolerance.
 pub(super) fn find_allowed_errors(state: &[f64], sizes: &[f64], tolerance: f64) -> Vec<f64> {
     let entries = state.iter().zip(sizes);
     entries
@@ -38,9 +37,9 @@ pub(super) fn find_allowed_errors(state: &[f64], sizes: &[f64], tolerance: f64) 
         .collect()
 }
 
-/// Returns the changes of quantities by these errors of the entries of a state, each the sum over the entries. The smaller
-/// change of both signs counts, because a jump of a quantity near the state is no error. Half the error counts as well,
-/// because an even function may return to its value at the whole.
+/// Returns, for each quantity, the sum of its changes by an error of each state. For each error the smaller change of
+/// both signs counts, because a jump of a quantity near the state is no error. Half the error is tried as well, because
+/// an even function may return to its value at the whole error.
 pub(super) fn find_changes<const N: usize>(
     state: &[f64],
     errors: &[f64],

@@ -1,4 +1,4 @@
-//! Energy balance of a motion, step by step.
+//! Step-by-step energy audit of a motion.
 
 use eomgen_sim::ode::{Interior, ObservedStep, ROUNDING_FACTOR, UNMOVED_SIZE_FRACTION};
 
@@ -9,31 +9,31 @@ use super::allowed_errors::{
 use super::refinement::Refinement;
 use super::{Audit, Energies, EnergyAndPower, Imbalance};
 
-/// Factor on the energy change of an error at the tolerance in every entry of the state, for a
-/// step with an error estimate.
+/// Factor on the energy change that an error at the relative tolerance in every state causes, for a step with an error
+/// estimate.
 const ESTIMATE_FACTOR: f64 = 1000.0;
 
 /// A step shorter than this fraction of the preceding one crosses a surface.
 const MAX_CROSSING_STEP_FRACTION: f64 = 1e-3;
 
-/// Differences below this fraction of the last allowed change are not examined.
+/// Energy differences below this fraction of the last allowed change are not examined.
 const NEGLIGIBLE_FRACTION: f64 = 1e-2;
 
-/// Maximum number of panels of a quadrature with interpolated states.
+/// Maximum number of panels of a quadrature that interpolates the states.
 const MAX_PANELS: usize = 4096;
 
 /// Maximum number of panels of a quadrature that also halves panels whose energy changes without work. A transient of
-/// 1e-5 of the step takes fewer than 150.
+/// 1e-5 of the step length needs fewer than 150 panels.
 const MAX_BALANCED_PANELS: usize = 512;
 
-/// Maximum number of panels of a quadrature whose states need a step each.
+/// Maximum number of panels of a quadrature that computes each state inside the step by a step of the solver.
 const MAX_RESOLVED_PANELS: usize = 16;
 
-/// Relative error of every entry of the state whose energy change limits the sum of the differences. A larger one
-/// invalidates the motion, even if the tolerance allows each difference.
+/// Relative error of every state whose energy change limits the sum of the energy differences. A larger sum invalidates
+/// the motion, even if the tolerance allows each difference.
 const MAX_DRIFT_ERROR: f64 = 1e-2;
 
-/// Rounding of an energy, relative to its magnitude.
+/// Rounding error of an energy, relative to its magnitude.
 const ENERGY_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 const EXACT_TOLERANCE: f64 = 1e-9;
@@ -43,7 +43,7 @@ struct Balance {
     work: f64,
     /// Error of the quadrature, J.
     uncertainty: f64,
-    /// Energy change that errors of the states can explain, J.
+    /// Energy change that errors of the states can cause, J.
     allowed: f64,
 }
 
@@ -51,20 +51,21 @@ struct Balance {
 #[derive(Debug)]
 pub(crate) struct Auditor {
     tolerance: f64,
-    /// True if steps have rounding errors only.
+    /// True if the steps are exact except for rounding.
     is_exact: bool,
     /// Reason why contacts are not audited; `None` if they are.
     driven_contacts: Option<String>,
-    /// Largest magnitude of each entry of the state, raised to that at which the tolerance allows known errors.
+    /// Reference magnitude of each state for relative errors: its largest magnitude, or more if the solver's known
+    /// errors are larger than the tolerance of this magnitude.
     sizes: Vec<f64>,
-    /// Largest magnitude of each entry of the state.
+    /// Largest magnitude of each state.
     magnitudes: Vec<f64>,
-    /// Largest rounding of each entry of the state while surfaces or contacts held the motion. Rates keep it when they
-    /// are released.
+    /// Largest rounding error of each state while surfaces or contacts held the motion. Rates keep this error after the
+    /// release.
     roundings: Vec<f64>,
-    /// Sum of the differences in steps beyond the uncertainties of their work, J.
+    /// Sum of the energy differences of steps, each minus the uncertainty of its work, J.
     drift: f64,
-    /// Largest such sum that is not examined, J.
+    /// Largest magnitude of `drift` that is not examined, J.
     drift_limit: f64,
     /// Energy at the end of the last step, J.
     energy: Option<f64>,
@@ -72,30 +73,31 @@ pub(crate) struct Auditor {
     largest_energy: f64,
     /// Power at the end of the last step, W.
     power: f64,
-    /// Energy change at impacts since that step, J.
+    /// Energy change at impacts since the end of the last step, J.
     pending_energy: f64,
-    /// Last change that errors can explain, J.
+    /// Last energy change that errors can cause, J.
     last_allowed: f64,
-    /// Length of the last step with a known interior, s.
+    /// Length of the last step with known states inside the step, s.
     last_length: f64,
     /// Energy change of the last step across a surface, if it exceeds the tolerance.
     suspected: Option<SuspectedCrossing>,
     pub(super) audit: Audit,
 }
 
-/// Energy change of a step across a surface. The rates beyond the surface give the errors of the step, which may explain the change.
+/// Energy change of a step across a surface. The rates beyond the surface give the errors of the step, which may cause
+/// the change.
 #[derive(Clone, Debug)]
 struct SuspectedCrossing {
     imbalance: Imbalance,
     /// Length of the step, s.
     length: f64,
-    /// State at its end.
+    /// State at the end of the step.
     state: Vec<f64>,
 }
 
 impl Auditor {
-    /// Creates an auditor of a motion with a relative tolerance (`None` for an exact motion) and
-    /// the typical sizes of its states.
+    /// Creates an auditor of a motion with a relative tolerance (`None` for an exact motion). `sizes` are the typical
+    /// sizes of the states.
     pub fn new(
         tolerance: Option<f64>,
         typical_sizes: &[f64],
@@ -125,13 +127,13 @@ impl Auditor {
         }
     }
 
-    /// Continues with a solver of a relative tolerance.
+    /// Continues the audit with a solver of another relative tolerance.
     pub fn continue_with(&mut self, tolerance: f64) {
         (self.tolerance, self.is_exact) = (tolerance, false);
         (self.last_allowed, self.last_length) = (0.0, 0.0);
     }
 
-    /// Returns the balance up to now.
+    /// Returns the energy balance so far.
     pub fn audit(&self) -> Audit {
         let mut audit = self.audit.clone();
         if let Some(suspected) = &self.suspected {
@@ -146,7 +148,8 @@ impl Auditor {
         self.suspected.as_ref().map(|suspected| suspected.length)
     }
 
-    /// Records the energy change of the last step across a surface unless these errors of its state explain it.
+    /// Records the energy change of the last step across a surface, unless the `errors` of its state can cause this
+    /// change.
     pub fn judge_crossing(&mut self, errors: &[f64], energies: &mut dyn Energies) {
         let Some(SuspectedCrossing {
             imbalance,
@@ -184,7 +187,7 @@ impl Auditor {
         if let Some(before) = self.energy.replace(ends.1.energy) {
             self.audit_jump(start, (before, ends.0), energies);
         }
-        // The mode may have changed at the start of a step across a surface.
+        // The mode may have changed at the start of a step across a surface; the power before it counts too.
         let powers = [self.power, ends.0.power, ends.1.power];
         self.power = ends.1.power;
         let change = ends.1.energy - ends.0.energy - std::mem::take(&mut self.pending_energy);
@@ -215,7 +218,7 @@ impl Auditor {
                     let judged = (ends, change);
                     self.integrate_accurately(step, energies, judged, (factor, allowed))
                 }
-                // States inside would follow the rates beyond the surface.
+                // Interpolated states would follow the rates beyond the surface.
                 false => Balance {
                     work,
                     uncertainty: find_spread(&powers) * length,
@@ -244,8 +247,8 @@ impl Auditor {
         self.add_to_drift((change - work, uncertainty), &states, energies);
     }
 
-    /// Adds the difference of a step with this uncertainty (J) to the sum of the differences, and records the first sum
-    /// that is too large for the motion to be right.
+    /// Adds the energy difference of a step to `drift`, minus the uncertainty (J) of its work. Records the first sum
+    /// that no correct motion can have.
     fn add_to_drift(
         &mut self,
         (difference, uncertainty): (f64, f64),
@@ -291,7 +294,7 @@ impl Auditor {
         self.drift.is_nan() || self.drift.abs() <= self.drift_limit
     }
 
-    /// Excludes an energy change (J) from the audit, for a reason.
+    /// Excludes an energy change (J) from the audit and keeps the reason.
     fn exclude_change(&mut self, change: f64, reason: &str) {
         self.audit.energy_change += change;
         self.audit.unaudited_energy += change;
@@ -299,8 +302,7 @@ impl Auditor {
         why.get_or_insert_with(|| reason.to_owned());
     }
 
-    /// Audits an energy change between two steps, at a surface or by projection onto the
-    /// constraints.
+    /// Audits an energy change between two steps: at a surface, or by projection onto the constraints.
     fn audit_jump(
         &mut self,
         start: (f64, &[f64]),
@@ -321,7 +323,8 @@ impl Auditor {
         }
     }
 
-    /// Keeps an energy change of a step of `length` s across a surface if it exceeds the tolerance.
+    /// Keeps the energy change of a step of `length` s across a surface for a later decision if the change exceeds the
+    /// tolerance.
     fn suspect_crossing(
         &mut self,
         (t, state): (f64, &[f64]),
@@ -336,7 +339,8 @@ impl Auditor {
         });
     }
 
-    /// Records an energy change (J) at a time (s) that exceeds the tolerance (J) by more than rounding at these states.
+    /// Records an energy change (J) at a time (s) if it exceeds the tolerance (J) by more than the rounding error at
+    /// `states`.
     fn record_unrounded_excess(
         &mut self,
         (t, energy_gain, tolerance): (f64, f64, f64),
@@ -356,7 +360,7 @@ impl Auditor {
         }
     }
 
-    /// Returns the work of a step with this energy change, as accurately as needed.
+    /// Returns the work of a step. Refines the quadrature until the given energy change is decided.
     fn integrate_accurately(
         &mut self,
         step: &mut ObservedStep<'_>,
@@ -387,7 +391,7 @@ impl Auditor {
             };
             let (work, uncertainty) =
                 self.integrate_work(step, energies, ends, (refinement, allowed));
-            // A later quadrature has better states. Too few panels make it worse.
+            // A later quadrature has more accurate states. With too few panels its uncertainty is larger.
             if uncertainty <= allowed || uncertainty < best.uncertainty {
                 (best.work, best.uncertainty) = (work, uncertainty);
             }
@@ -399,7 +403,7 @@ impl Auditor {
             if (change - best.work).abs() <= best.allowed + best.uncertainty {
                 return best;
             }
-            // Part of the energy may be larger inside the step than at its ends.
+            // A part of the energy may be larger inside the step than at its ends.
             let middle = 0.5 * (step.start.0 + step.end.0);
             if let Some(state) = (step.state_inside)(middle, interior) {
                 let states = States {
@@ -414,7 +418,7 @@ impl Auditor {
         best
     }
 
-    /// Excludes a step that cannot be audited, for a reason.
+    /// Excludes a step that cannot be audited and keeps the reason.
     pub fn exclude_step(
         &mut self,
         step: &ObservedStep<'_>,
@@ -432,7 +436,7 @@ impl Auditor {
         self.exclude_change(change, reason);
     }
 
-    /// Audits an impact at time `t` (s) that changes the state, at which the contacts do this work (J).
+    /// Audits an impact at time `t` (s) that changes the state. The contacts do the given work (J).
     pub fn audit_impact(
         &mut self,
         t: f64,
@@ -443,7 +447,7 @@ impl Auditor {
         let before = self.evaluate(energies, (t, from)).energy;
         let after = self.evaluate(energies, (t, to)).energy;
         let change = after - before;
-        // The step that ends here includes the impact.
+        // The energy change of the step that ends here includes the impact.
         self.pending_energy += change;
         self.audit.energy_change += change;
         if let Some(reason) = &self.driven_contacts {
@@ -467,8 +471,8 @@ impl Auditor {
         }
     }
 
-    /// Audits a corner of the motion in the step that ends at this time (s) and state. The energy before it
-    /// and the work there (J) follow from the corner conditions.
+    /// Audits a corner in the step that ends at the given time (s) and state. The corner conditions give the energy
+    /// before it and the work at it (J).
     pub fn audit_corner(
         &mut self,
         end: (f64, &[f64]),
@@ -524,7 +528,8 @@ impl Auditor {
         energies.evaluate(at)
     }
 
-    /// Raises the roundings of the states, and their sizes, to what rounding of these rates changes in a step of `length` s.
+    /// Raises the rounding errors and the reference magnitudes of the states to the changes that rounding of `rates`
+    /// causes in a step of `length` s.
     pub fn raise_to_roundings(&mut self, rates: &[f64], length: f64) {
         let changes: Vec<f64> = (rates.iter())
             .map(|rate| ROUNDING_FACTOR * length * rate)
@@ -535,7 +540,7 @@ impl Auditor {
         self.raise_to_errors(&changes);
     }
 
-    /// Raises the sizes of the states to those at which the tolerance allows these errors.
+    /// Raises the reference magnitudes of the states until the tolerance allows the given errors.
     pub fn raise_to_errors(&mut self, errors: &[f64]) {
         for (size, error) in self.sizes.iter_mut().zip(errors) {
             if error.is_finite() {
@@ -544,8 +549,8 @@ impl Auditor {
         }
     }
 
-    /// Raises the sizes of the states to those of a state of the motion, also inside a step: at the ends of a step from rest
-    /// to rest, rates are 0.
+    /// Raises the magnitudes of the states to those of a state of the motion. States inside a step count too, because
+    /// in a step from rest to rest the rates at both ends are 0.
     pub(super) fn raise_sizes(&mut self, state: &[f64]) {
         let magnitudes = self.sizes.iter_mut().zip(&mut self.magnitudes);
         for ((size, magnitude), entry) in magnitudes.zip(state) {
@@ -554,8 +559,8 @@ impl Auditor {
         }
     }
 
-    /// Returns the energy change that errors at these states can explain: those of the energy there, and those of the work
-    /// between them.
+    /// Returns the energy change that errors of `states` can cause: by the energy at the ends, and by the work between
+    /// them.
     fn find_allowed_change(
         &mut self,
         energies: &mut dyn Energies,
@@ -575,8 +580,8 @@ impl Auditor {
         factor * largest + ENERGY_ROUNDING * rounding
     }
 
-    /// Returns the change (J) of the energy at a time (s) and a state, and of the work in a step of `length` s, by these
-    /// errors of the state.
+    /// Returns the changes (J) of the energy at a time (s) and a state, and of the work in a step of `length` s, that
+    /// the given errors of the state cause.
     fn find_change(
         &mut self,
         (t, state): (f64, &[f64]),
@@ -594,7 +599,7 @@ impl Auditor {
         energy + find_work(power, length)
     }
 
-    /// Returns a bound of the rounding (J) of the energy at states and of the work between them.
+    /// Returns a bound (J) on the rounding error of the energy at `states` and of the work between them.
     fn find_rounding(&mut self, states: &States<'_>, energies: &mut dyn Energies) -> f64 {
         let (mut energy, mut power, mut of_states) = (0.0, 0.0_f64, 0.0_f64);
         let roundings = std::mem::take(&mut self.roundings);
@@ -612,12 +617,12 @@ impl Auditor {
     }
 }
 
-/// States whose errors explain an energy change.
+/// States whose errors can cause an energy change.
 #[derive(Clone, Copy)]
 struct States<'s> {
-    /// Time (s) and state at each.
+    /// Time (s) and state at each end.
     ends: &'s [(f64, &'s [f64])],
-    /// Time between them, s.
+    /// Time between the ends, s.
     length: f64,
 }
 
@@ -627,7 +632,7 @@ impl<'s> States<'s> {
     }
 }
 
-/// Returns the work (J) of a power (W) during a time (s); 0 without time, even if the power is infinite.
+/// Returns the work (J) of a power (W) during a time (s). A length of 0 gives 0, even if the power is infinite.
 fn find_work(power: f64, length: f64) -> f64 {
     match length > 0.0 {
         true => power * length,
@@ -635,14 +640,15 @@ fn find_work(power: f64, length: f64) -> f64 {
     }
 }
 
-/// Returns the distance of the largest from the smallest number.
+/// Returns the difference of the largest and the smallest number.
 fn find_spread(numbers: &[f64]) -> f64 {
     let low = numbers.iter().copied().fold(f64::INFINITY, f64::min);
     let high = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     high - low
 }
 
-/// Returns an energy change that exceeds the tolerance. Energies that are not finite are reported with their rows.
+/// Returns an energy change that exceeds the tolerance. Infinite and NaN energies are reported with the rows of the
+/// trajectory.
 fn find_excess(t: f64, energy_gain: f64, tolerance: f64) -> Option<Imbalance> {
     (energy_gain.is_finite() && energy_gain.abs() > tolerance).then_some(Imbalance {
         t,

@@ -1,10 +1,10 @@
-//! Energy audit of a motion: compares the energy change of every step with the work, the integral
-//! of the power. A difference beyond the errors that the solver's tolerance allows indicates an
-//! error of the equations or of the solver.
+//! Energy audit of a motion: compares the energy change of every step with the work, the integral of the power. A
+//! difference beyond the errors that the solver's tolerance allows indicates an error of the equations or of the
+//! solver.
 //!
-//! Energy changes at impacts are separate: minus the work of the contacts, they must not be gains. Contacts do work if
-//! they move with time, and on coordinates relative to a moving frame. Contacts whose distance depends on
-//! inputs are not audited, because the distance jumps with held inputs.
+//! Energy changes at impacts are counted separately. An impact must not add energy beyond the work of its contacts.
+//! Contacts do work if they move with time, and on coordinates relative to a moving frame. Contacts whose distance
+//! depends on inputs are not audited, because the distance jumps with held inputs.
 
 mod allowed_errors;
 mod auditor;
@@ -18,12 +18,12 @@ pub(crate) use allowed_errors::{TOLERANCE_ERROR_FACTOR, find_allowed_change};
 pub(crate) use auditor::Auditor;
 pub(crate) use roundings::EnergyRoundings;
 
-/// Energy and power along a motion.
+/// Source of energy and power along a motion.
 pub(crate) trait Energies {
     /// Returns energy and power at a time (s) and a state.
     fn evaluate(&mut self, at: (f64, &[f64])) -> EnergyAndPower;
 
-    /// Returns bounds of the rounding errors of energy and power at a time (s) and a state; 0 if they are unknown.
+    /// Returns bounds on the rounding errors of energy and power at a time (s) and a state; 0 if no bound is known.
     fn bound_roundings(&mut self, _at: (f64, &[f64])) -> EnergyAndPower {
         EnergyAndPower::default()
     }
@@ -45,7 +45,7 @@ pub(crate) struct EnergyAndPower {
 }
 
 impl EnergyAndPower {
-    /// Reads them from the observables of a model, of which they are the last two.
+    /// Reads energy and power from the observables of a model; they are the last two.
     pub fn from_observables(observables: &[f64]) -> Self {
         match observables {
             [.., energy, power] => Self {
@@ -67,7 +67,7 @@ pub struct Audit {
     pub energy_change: f64,
     /// Integral of the power plus the work of contacts at impacts, J.
     pub work: f64,
-    /// Change of the energy at impacts minus that work, J; losses are negative.
+    /// Change of the energy at impacts minus the work of their contacts, J; losses are negative.
     pub impact_energy: f64,
     /// Change of the energy in steps and impacts that were not audited, J.
     pub unaudited_energy: f64,
@@ -77,22 +77,23 @@ pub struct Audit {
     pub first_fault: Option<Imbalance>,
     /// Largest fault.
     pub largest_fault: Option<Imbalance>,
-    /// First sum of the differences of all steps that no right motion has, even if the tolerance allows each of them.
+    /// First sum of the energy differences of all steps that no correct motion can have, even if the tolerance allows
+    /// each difference.
     pub drift: Option<Imbalance>,
     /// Number of evaluations of energy and power.
     pub evaluations: u64,
-    /// Reason why part of the motion was not audited; `None` if all was.
+    /// Reason why part of the motion was not audited; `None` if all of it was.
     pub exclusion_reason: Option<String>,
 }
 
-/// An unexplained change of the energy.
+/// Energy change that the work does not explain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Imbalance {
     /// Time, s.
     pub t: f64,
     /// Energy gained, J; negative if lost.
     pub energy_gain: f64,
-    /// Energy that the solver's errors can explain, J.
+    /// Energy change that errors of the solver can cause, J.
     pub tolerance: f64,
 }
 
@@ -107,7 +108,7 @@ impl Audit {
         self.fault_count > 0 || self.drift.is_some()
     }
 
-    /// Returns a warning about the first unexplained change of the energy, if there is one.
+    /// Returns a warning about the first unexplained energy change, if there is one.
     pub fn warning_message(&self) -> Option<String> {
         let Some(fault) = self.first_fault else {
             return self.drift.map(Imbalance::describe_drift);
@@ -136,8 +137,8 @@ impl Audit {
         }
     }
 
-    /// Removes faults that are at most this rounding of the energy, J. At the beginning of a motion from rest, they had
-    /// nothing to be compared with.
+    /// Removes faults up to the rounding error of the energy (J). In a motion that starts at rest, early faults have no
+    /// larger energy as reference.
     fn remove_faults_up_to(&mut self, rounding: f64) {
         let is_rounding = |fault: Imbalance| fault.energy_gain.abs() <= rounding;
         if self.largest_fault.is_some_and(is_rounding) {

@@ -1,5 +1,5 @@
-//! Rounding errors of the energy and the power of a model. Exported programs, without the code of the bounds, are not
-//! audited.
+//! Bounds on the rounding errors of energy and power. The code of these bounds is not part of exported programs, which
+//! are therefore not audited.
 
 #[cfg(feature = "derive")]
 use std::cell::OnceCell;
@@ -10,7 +10,7 @@ use eomgen_codegen::rounding::PointBounds;
 
 use super::EnergyAndPower;
 
-/// Bounds of the rounding errors of energy and power, prepared at their first use.
+/// Bounds on the rounding errors of energy and power, prepared at first use.
 #[derive(Default)]
 pub(crate) struct EnergyRoundings {
     #[cfg(feature = "derive")]
@@ -18,7 +18,7 @@ pub(crate) struct EnergyRoundings {
 }
 
 impl EnergyRoundings {
-    /// Returns bounds of the rounding errors at a point of the evaluator's program; 0 if there is no bound.
+    /// Returns bounds on the rounding errors at a point of the evaluator's program; 0 if there is no bound.
     #[cfg(feature = "derive")]
     pub fn bound(&self, evaluator: &Evaluator, point: Point<'_>) -> EnergyAndPower {
         let bounds = self.bounds.get_or_init(|| {

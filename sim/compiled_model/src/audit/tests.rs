@@ -1,10 +1,10 @@
-//! The auditor on motions with a known energy balance.
+//! Tests of the auditor on motions with a known energy balance.
 
 use eomgen_sim::ode::ObservedStep;
 
 use super::{Audit, Auditor, Energies, EnergyAndPower};
 
-/// A mass of 1 kg on a spring of 1 N/m; its state is (x, v).
+/// Returns energy and power of a mass of 1 kg on a spring of 1 N/m; its state is (x, v).
 fn oscillator(_: f64, state: &[f64]) -> EnergyAndPower {
     EnergyAndPower {
         energy: 0.5 * (state[0] * state[0] + state[1] * state[1]),
@@ -12,8 +12,7 @@ fn oscillator(_: f64, state: &[f64]) -> EnergyAndPower {
     }
 }
 
-/// Audits the oscillator's motion in steps of 0.1 s, with states changed by `tamper` from step 20
-/// on.
+/// Audits the oscillator's motion in steps of 0.1 s. `tamper` changes the states from step 20 on.
 fn audited(tamper: impl Fn(&mut [f64; 2]), energies: &mut dyn Energies) -> Audit {
     let mut auditor = Auditor::new(Some(1e-9), &[1.0; 2], None);
     let state = |t: f64| [t.cos(), -t.sin()];
@@ -55,7 +54,7 @@ fn fault_of_changed_state_has_its_time_and_size() {
 
 #[test]
 fn jump_of_energy_is_a_fault() {
-    // x falls through cos(2.05) between 2.0 and 2.1 s.
+    // x falls through the wall at t = 2.05 s, between the steps at 2.0 s and 2.1 s.
     let wall = 2.05_f64.cos();
     let mut jump = |t: f64, state: &[f64]| EnergyAndPower {
         energy: oscillator(t, state).energy + f64::from(state[0] < wall),
@@ -68,7 +67,7 @@ fn jump_of_energy_is_a_fault() {
 
 #[test]
 fn energy_change_without_work_is_a_fault() {
-    // The energy grows by 0.1 t^2, with or without the power of a force.
+    // The energy grows by 0.1 t^2. The power of a force explains this growth or is missing.
     let mut pushed = |t: f64, state: &[f64]| EnergyAndPower {
         energy: oscillator(t, state).energy + 0.1 * t * t,
         power: 0.2 * t,
@@ -85,7 +84,7 @@ fn energy_change_without_work_is_a_fault() {
 
 #[test]
 fn power_that_no_quadrature_resolves_is_not_audited() {
-    // (angular frequency of the power in rad/s, resolved in a step of 0.1 s)
+    // Pairs of the angular frequency of the power in rad/s, and whether a step of 0.1 s resolves it.
     for (frequency, is_resolved) in [(2e3, true), (1.1e4, true), (1e6, false), (1e9, false)] {
         let mut pulsating = |t: f64, state: &[f64]| EnergyAndPower {
             energy: oscillator(t, state).energy + 10.0 * (frequency * t).sin(),
@@ -109,7 +108,7 @@ fn power_that_no_quadrature_resolves_is_not_audited() {
 
 #[test]
 fn work_of_a_transient_in_a_long_step_is_found() {
-    // A force of one microsecond at 0.03 s, which no node of the first quadratures meets.
+    // A force acts for one microsecond at 0.03 s, between the nodes of the first quadratures.
     let rise = |t: f64| 1.0 - (-(t - 0.03).max(0.0) / 1e-6).exp();
     let mut pushed = |t: f64, state: &[f64]| EnergyAndPower {
         energy: oscillator(t, state).energy + rise(t),
@@ -137,7 +136,7 @@ fn only_energy_gain_at_impact_is_a_fault() {
     assert!((fault.energy_gain - 0.5 * 0.21).abs() < 1e-12);
 }
 
-/// The energy that a last bounce leaves is 1e-24 J; a fault of this size is found.
+/// After the last bounce the energy is 1e-24 J; a fault of this size must be found.
 #[test]
 fn fault_of_a_small_motion_is_found() {
     let small = |t: f64| [1e-12 * t.cos(), -1e-12 * t.sin()];
@@ -162,7 +161,7 @@ fn fault_of_a_small_motion_is_found() {
     assert!(faults(1.0 + 1e-4) > 0);
 }
 
-/// The oscillator with a large constant in its energy, which rounds.
+/// Oscillator with a large constant in its energy, which causes rounding errors.
 struct Hidden(f64);
 
 impl Energies for Hidden {
@@ -194,7 +193,7 @@ fn rounding_of_terms_is_no_fault_but_larger_changes_are() {
     }
 }
 
-/// A body at rest under two forces that cancel: its speed has a rounding, and each force a power.
+/// A body is at rest under two forces that cancel. Its speed has a rounding error, so each force has a power.
 #[test]
 fn work_by_errors_of_a_rate_at_rest_is_no_fault() {
     let force = 1e3;

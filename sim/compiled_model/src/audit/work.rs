@@ -1,4 +1,4 @@
-//! Work of a step: quadrature of the power.
+//! Work of a step by quadrature of the power.
 
 use std::collections::VecDeque;
 
@@ -20,8 +20,7 @@ const GAUSS_NODES_AND_WEIGHTS: [(f64, f64); 4] = [
 ];
 
 impl Auditor {
-    /// Integrates the power over a step by Simpson's rule; returns false if the interior is
-    /// unknown.
+    /// Integrates the power over a step by Simpson's rule; returns false if states inside the step are unknown.
     pub(super) fn integrate_simpson(
         &mut self,
         step: &mut ObservedStep<'_>,
@@ -41,9 +40,9 @@ impl Auditor {
         }
     }
 
-    /// Integrates the power over a step and halves panels until the change is small compared with
-    /// `allowed`. Returns the work and its uncertainty, J; the latter is nonzero if the interior
-    /// is unknown, or if the panels do not suffice.
+    /// Integrates the power over a step and halves panels until the change is small compared with `allowed`. Returns
+    /// the work and its uncertainty in J. The uncertainty is nonzero if states inside the step are unknown or if the
+    /// panels do not suffice.
     pub(super) fn integrate_work(
         &mut self,
         step: &mut ObservedStep<'_>,
@@ -66,8 +65,8 @@ impl Auditor {
         };
         let most_error = MAX_QUADRATURE_ERROR_FRACTION * allowed;
         let (mut work, mut uncertainty, mut panels) = (0.0, 0.0, 1);
-        // Wide panels first: if the panels do not suffice, those left have one width, at which their changes estimate
-        // the error.
+        // The widest panels are halved first. If the panels do not suffice, the remaining ones have equal width, and
+        // their changes estimate the error.
         let mut open = VecDeque::from([((0.0, 1.0), whole)]);
         while let Some(((from, width), whole)) = open.pop_front() {
             let half = 0.5 * width;
@@ -94,7 +93,7 @@ impl Auditor {
     }
 }
 
-/// Integrates the power over a part of a step of this length (s); `None` if a state is unknown.
+/// Integrates the power over a panel of a step of `length` s; `None` if a state is unknown.
 fn integrate_panel(
     inside: &mut dyn FnMut(f64) -> Option<EnergyAndPower>,
     (from, width): (f64, f64),
@@ -107,7 +106,7 @@ fn integrate_panel(
     Some(sum)
 }
 
-/// Returns the energy change of a part of a step that this work does not explain; 0 if a state is unknown.
+/// Returns the energy change of a panel that the given work does not explain; 0 if a state is unknown.
 fn find_imbalance(
     inside: &mut dyn FnMut(f64) -> Option<EnergyAndPower>,
     (from, width): (f64, f64),

@@ -3,10 +3,10 @@
 
 use eomgen_codegen::independence::vectors::{dot, max_magnitude};
 
-/// A pivot that is this small beside its diagonal entry is rounding: its row follows from others.
+/// A pivot below this fraction of its diagonal entry is rounding: its row depends on earlier rows.
 pub(super) const MIN_INDEPENDENT_PIVOT: f64 = 1e-10;
 
-/// What is this small beside the largest of the right side is zero.
+/// Numbers below this fraction of the largest entry of the right-hand side count as zero.
 const ZERO_FRACTION: f64 = 1e-12;
 
 /// Solves x >= 0, W x + c >= 0, x (W x + c) = 0 by the active-set method of Lawson and Hanson
@@ -16,7 +16,7 @@ pub(crate) fn solve_complementarity(w: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
     let mut pushing: Vec<usize> = Vec::new();
     let zero = ZERO_FRACTION * max_magnitude(c);
     let mut follows = vec![false; c.len()];
-    // Each round lowers a convex function of x; the bound is for rounding.
+    // Each iteration lowers a convex function of x, so the loop ends; the limit guards against rounding.
     for _ in 0..10 * (c.len() + 1) {
         let rest = |row: usize| dot(&w[row], &x) + c[row];
         let outside = (0..c.len()).filter(|row| !pushing.contains(row) && !follows[*row]);
@@ -29,7 +29,7 @@ pub(crate) fn solve_complementarity(w: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
             let wanted = solve_rows(w, c, &pushing);
             let place = pushing.iter().position(|row| *row == next);
             if place.is_some_and(|place| wanted[place] <= 0.0) {
-                // Those that push already hold it.
+                // The forces of the contacts that push already hold this one.
                 follows[next] = true;
                 pushing.retain(|row| *row != next);
                 break;
@@ -54,12 +54,12 @@ pub(crate) fn solve_complementarity(w: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
     x
 }
 
-/// Solves W x = -c for these rows; x is 0 for dependent rows.
+/// Solves W x = -c for the given rows; x is 0 for dependent rows.
 pub(crate) fn solve_rows(w: &[Vec<f64>], c: &[f64], rows: &[usize]) -> Vec<f64> {
     let size = rows.len();
     let mut lower = vec![0.0; size * size];
     let mut y = vec![0.0; size];
-    // L L^T = W; rows that follow from others are left out.
+    // Cholesky factorisation L L^T = W; dependent rows are left out.
     for row in 0..size {
         let mut sum = -c[rows[row]];
         for column in 0..=row {
@@ -93,7 +93,7 @@ pub(crate) fn solve_rows(w: &[Vec<f64>], c: &[f64], rows: &[usize]) -> Vec<f64> 
 mod tests {
     use super::*;
 
-    /// Returns B B^T of a random matrix with a number of columns, and a right side.
+    /// Returns B B^T for a random matrix B with `columns` columns, and a right-hand side.
     fn problem(seed: u64, size: usize, columns: usize) -> (Vec<Vec<f64>>, Vec<f64>) {
         let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
         let mut number = || {
@@ -108,7 +108,7 @@ mod tests {
         let w = b
             .iter()
             .map(|row| b.iter().map(|other| dot(row, other)).collect());
-        // In the range of B, like the rates of distances.
+        // The right-hand side is in the range of B, as the rates of distances are.
         let motion: Vec<f64> = (0..columns).map(|_| number()).collect();
         (w.collect(), b.iter().map(|row| dot(row, &motion)).collect())
     }

@@ -1,16 +1,16 @@
-//! Correction of states onto closed contacts, and detection of overlaps.
+//! Projection of states onto closed contacts, and detection of overlapping bodies.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::{CORRECTIONS, Contacts, DISTANCE_ROUNDING, Overlap};
 
-/// A distance below zero by more than this part of its terms is no error of a step. For a closed
-/// contact the same part of its distance before the correction may remain after it.
+/// A distance below zero by more than this fraction of its terms is no error of a step. For a closed contact, the same
+/// fraction of its distance before the correction may remain after it.
 const MAX_OVERLAP_FRACTION: f64 = 1e-6;
 
 impl Contacts {
-    /// Corrects a state onto the closed contacts, and returns the number of evaluations. A state in which
-    /// bodies overlap is replaced by NaN, which stops the motion.
+    /// Projects a state onto the closed contacts and returns the number of evaluations. If bodies overlap, the state is
+    /// replaced by NaN, which stops the motion.
     pub fn correct_state(
         &mut self,
         own: &mut Evaluator,
@@ -25,7 +25,7 @@ impl Contacts {
         if state.iter().any(|value| value.is_nan()) {
             return 1;
         }
-        // A step that was taken back may have ended below.
+        // A rejected step may have ended with a distance below zero.
         self.overlap = None;
         self.uncorrected_offsets.clone_from(&self.offsets);
         self.uncorrected_redundant.clone_from(&self.redundant);
@@ -68,7 +68,7 @@ impl Contacts {
         corrected + CORRECTIONS as u64 + 1
     }
 
-    /// Moves a state onto the closed contacts, and evaluates the impacts there.
+    /// Projects a state onto the closed contacts and evaluates the impacts at the result.
     pub(super) fn move_onto_closed(
         &mut self,
         own: &mut Evaluator,
@@ -87,7 +87,7 @@ impl Contacts {
         own.impacts(Point { t, state, inputs }, &mut self.at);
     }
 
-    /// Marks the coordinates and the rates on which the corrections onto closed contacts act.
+    /// Marks the coordinates and rates that the projection onto closed contacts changes.
     pub fn mark_corrected(&self, coordinates: &mut [bool], rates: &mut [bool]) {
         let mark = |states: &mut [bool], column: &[f64]| {
             for (is_corrected, entry) in states.iter_mut().zip(column) {
@@ -104,15 +104,15 @@ impl Contacts {
         }
     }
 
-    /// Forgets what the last correction of a state noted.
+    /// Discards the notes of the last projection.
     pub fn forget_correction(&mut self) {
         self.overlap = None;
         self.offsets.clone_from(&self.uncorrected_offsets);
         self.redundant.clone_from(&self.uncorrected_redundant);
     }
 
-    /// Offsets the distances of open contacts that a correction makes zero or negative, because the motion has not hit
-    /// them yet. A distance of zero has no side, and no impact would be found.
+    /// Offsets the distances of open contacts that a projection makes zero or negative, because the motion has not hit
+    /// these contacts yet. Event location needs a positive distance before an impact.
     fn keep_open_sides(&mut self, t: f64, before: &[f64]) {
         let was_passed = |place: &usize| {
             let offset = self.offset(*place, t);
@@ -125,8 +125,8 @@ impl Contacts {
         }
     }
 
-    /// Returns the first open contact whose distance is below zero by more than errors of steps and by more than
-    /// rounding of the state, of the time and of the distance covered since the start.
+    /// Returns the first open contact whose distance is below zero by more than step errors and rounding. Rounding
+    /// includes that of the state, of the time and of the distance travelled since the start.
     fn overlapping_open(
         &mut self,
         own: &mut Evaluator,
@@ -156,7 +156,7 @@ impl Contacts {
     }
 }
 
-/// Returns true if a distance is below zero by more than is allowed, or is no number.
+/// Returns true if a distance is below zero by more than `allowed`, or is NaN.
 fn is_below(distance: f64, allowed: f64) -> bool {
     distance < -allowed || distance.is_nan()
 }

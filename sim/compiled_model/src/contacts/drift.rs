@@ -1,19 +1,19 @@
-//! Drifts of distances by the rounding of rates that surfaces hold.
+//! Drifts of distances by rounding errors of rates that surfaces hold.
 
-/// Accelerations by the force of a surface that holds, and the rounding with which it holds the rates.
+/// Direction of the force of a surface that holds the motion, and the rounding errors of the held rates.
 pub(crate) struct HeldDirection {
     /// Accelerations by the whole force, one for each degree of freedom.
     pub column: Vec<f64>,
-    /// Time since which the surface holds, s.
+    /// Time at which the surface began to hold, s.
     pub since: f64,
-    /// Rounding of the rates at once and per second, relative to `column`, s and 1.
+    /// Rounding error of the rates, relative to `column`: constant part in s, and growth per second.
     pub roundings: [f64; 2],
 }
 
-/// Rounding of the rate of a distance by one surface.
+/// Drift of a distance due to rounding errors of the rate that one surface holds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Drift {
-    /// Time since which the surface holds, s.
+    /// Time at which the surface began to hold, s.
     pub since: f64,
     /// Rate, in the unit of the distance per second.
     pub rate: f64,
@@ -22,13 +22,13 @@ pub(super) struct Drift {
 }
 
 impl Drift {
-    /// Returns the largest drift of the distance at a time, s.
+    /// Returns the largest drift of the distance at a time (s).
     pub fn distance(self, t: f64) -> f64 {
         let elapsed = (t - self.since).max(0.0);
         elapsed * (self.rate + 0.5 * self.growth * elapsed)
     }
 
-    /// Returns the largest rate of the drift at a time, s.
+    /// Returns the largest rate of the drift at a time (s).
     pub fn rate(self, t: f64) -> f64 {
         self.rate + self.growth * (t - self.since).max(0.0)
     }

@@ -1,5 +1,5 @@
-//! Distances of open contacts at bodies that surfaces hold. Held rates have a rounding, which moves such a body over time: a
-//! distance that becomes negative by this drift is no impact, and the body is moved back.
+//! Distances of open contacts at bodies that surfaces hold. Held rates have rounding errors, which move such a body
+//! over time. If a distance becomes negative by this drift, the body is moved back without an impact.
 
 use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, Point};
 use eomgen_model_spec::interval::Interval;
@@ -8,7 +8,8 @@ use super::drift::{Drift, HeldDirection};
 use super::{Contacts, ROUNDING};
 
 impl Contacts {
-    /// Notes the open contacts that touch bodies at rest in these directions, at a point between steps.
+    /// Records the drifts of open contacts at bodies that surfaces hold in the `held` directions, at a point between
+    /// steps.
     pub fn note_drifts(&mut self, own: &mut Evaluator, point: Point<'_>, held: &[HeldDirection]) {
         if held.is_empty() && self.drifts.iter().all(Vec::is_empty) {
             return;
@@ -58,13 +59,13 @@ impl Contacts {
         !self.drifts[place].is_empty()
     }
 
-    /// Returns the value that the guard of an open contact adds to its distance at a time, s.
+    /// Returns the offset that the guard of an open contact adds to its distance at a time (s).
     pub(super) fn offset(&self, place: usize, t: f64) -> f64 {
         let drifts = self.drifts[place].iter();
         self.offsets[place] + drifts.map(|drift| drift.distance(t)).sum::<f64>()
     }
 
-    /// Returns the bounds of this value from `begin` to `end`, s.
+    /// Returns bounds of the offset from `begin` to `end`, s.
     pub(super) fn bound_offset(&self, place: usize, begin: f64, end: f64) -> Enclosure {
         if self.drifts[place].is_empty() {
             return Enclosure::constant(self.offsets[place]);
@@ -81,7 +82,7 @@ impl Contacts {
         Enclosure::from_bounds(value, rate)
     }
 
-    /// Moves a state onto the contacts whose distances became negative by drift. Returns the number of evaluations.
+    /// Projects a state onto the contacts whose distances became negative by drift. Returns the number of evaluations.
     pub(super) fn remove_drift(
         &mut self,
         own: &mut Evaluator,

@@ -1,4 +1,4 @@
-//! Impacts: touching contacts, jumps of rates, and contacts that close afterwards.
+//! Impacts: impulses of touching contacts, jumps of rates, and contacts that close after an impact.
 
 use eomgen_codegen::independence::vectors::{dot, max_magnitude};
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
@@ -7,41 +7,42 @@ use super::complementarity::solve_complementarity;
 use super::tangents::ContactForces;
 use super::{Contacts, DISTANCE_ROUNDING, MAX_CONSECUTIVE_IMPACTS};
 
-/// A flight shorter than this fraction of the time since the contact was closed last is rest.
+/// A flight (time between two impacts) counts as rest below this fraction of the time since the contact was last
+/// closed.
 const MIN_FLIGHT_TIME_FRACTION: f64 = 1e-8;
 
-/// A rate that an impact leaves negative is wrong if it is this large beside those before.
+/// A rate after an impact that is negative by more than this fraction of the rates before is an error.
 pub(super) const MAX_UNSOLVED_RATE_FRACTION: f64 = 1e-6;
 
-/// A flight shorter than so many roundings of the time is rest.
+/// A flight below this fraction of the time counts as rest.
 const MIN_FLIGHT_TIME_ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
-/// A flight no higher than so many times the rounding of its distance is rest.
+/// A flight counts as rest if its height is below this multiple of the rounding error of the distance.
 const MIN_FLIGHT_ROUNDINGS: f64 = 1000.0;
 
-/// An energy that impulses add is rounding where it is this small beside what they exchange.
+/// An energy gain below this fraction of the energy that the impulses exchange is rounding.
 pub(super) const ENERGY_GAIN_ROUNDING: f64 = 1e-12;
 
-/// Halvings in the search for a restitution that adds no energy, down to rounding.
+/// Number of bisections in the search for a restitution that adds no energy.
 pub(super) const RESTITUTION_HALVINGS: usize = 52;
 
-/// Which flights after an impact are none.
+/// Limits of flights after an impact that count as rest.
 pub(super) struct Flight {
-    /// Those of each contact that are this short, s.
+    /// Longest such flight of each contact, s.
     pub shortest: Vec<f64>,
-    /// Those of each contact that are this low.
+    /// Greatest height of such a flight of each contact.
     pub lowest: Vec<f64>,
-    /// Rates of each distance that are rounding.
+    /// Rounding error of the rate of each distance.
     pub rate_roundings: Vec<f64>,
-    /// Accelerations of each distance that are rounding, without what contacts push.
+    /// Rounding error of the acceleration of each distance, without contact forces.
     pub acceleration_roundings: Vec<f64>,
-    /// Changes of each slip between the hit and the located point.
+    /// Change of each slip from the hit to the located point.
     pub slip_changes: Vec<f64>,
 }
 
 impl Flight {
-    /// Returns true if the contact `place` with this rate and acceleration does not fly, if accelerations up to
-    /// `even` are rounding.
+    /// Returns true if a contact with this rate and acceleration does not separate. Accelerations up to `even` count as
+    /// zero.
     pub fn is_none(&self, place: usize, (rate, acceleration): (f64, f64), even: f64) -> bool {
         let is_short = 2.0 * rate <= -acceleration * self.shortest[place];
         let is_low = rate * rate <= -2.0 * acceleration * self.lowest[place];
@@ -51,9 +52,9 @@ impl Flight {
 }
 
 impl Contacts {
-    /// Applies an impact in the step across a surface, from a point `before` to `state` just
-    /// beyond it at the time `t`, with these inputs. Without an impact contacts change their modes, but not at a corner,
-    /// after which they are decided anew. Returns true if contacts are hit.
+    /// Applies an impact in the step across a surface, from a point `before` to a `state` just beyond it at the time
+    /// `t`. Without an impact the contacts change their modes. At a corner the modes are determined afterwards instead.
+    /// Returns true if contacts are hit.
     pub fn apply_impact(
         &mut self,
         own: &mut Evaluator,
@@ -97,8 +98,8 @@ impl Contacts {
         let roundings: Vec<f64> = (0..count)
             .map(|place| self.distance_rounding(place, (t, before.state)))
             .collect();
-        // What touches without a speed, as a body that falls together with the one below it, is hit
-        // by the jump of the other.
+        // A contact that touches without speed is hit by the jump of another contact, for example between two bodies
+        // that fall together.
         let hits: Vec<usize> = (0..count).filter(|place| is_hit(place, self)).collect();
         let shortest_of_hits = hits.iter().map(|place| shortest[*place]);
         let collapsing = self.find_collapse(t, &hits, shortest_of_hits.fold(0.0, f64::max));
@@ -113,7 +114,7 @@ impl Contacts {
                     || impact.distance <= within
             })
             .collect();
-        // How long ago the first of them hit.
+        // Time since the first of these contacts hit, s.
         let ago = |place: &usize| {
             let (from, to) = (near[*place] + self.offset(*place, before.t), beyond[*place]);
             let to = to + self.offset(*place, t);
@@ -121,7 +122,7 @@ impl Contacts {
         };
         let ago = hits.iter().map(ago).fold(0.0, f64::max);
         if self.needs_no_impulse(&touching, ago) {
-            // What leaves slowly went below zero by rounding.
+            // The distance of a contact that separates slowly became negative by rounding.
             self.offset_by_rounding(&touching, (t, before.state));
             return true;
         }
@@ -165,8 +166,8 @@ impl Contacts {
         true
     }
 
-    /// Stops the remaining motion along closed contacts, and of those that slide on. The energy that it takes is that of
-    /// the impact.
+    /// Stops the remaining motion at closed contacts, including the slips of contacts that slide on. The energy loss
+    /// counts as that of the impact.
     fn stop_closed(&mut self, own: &mut Evaluator, (t, inputs): (f64, &[f64]), state: &mut [f64]) {
         if self.closed.is_empty() {
             return;
@@ -179,21 +180,21 @@ impl Contacts {
         self.impact_work += self.work_of(&self.closed, &impulses);
     }
 
-    /// Returns true if no contact that touches needs an impulse.
+    /// Returns true if no touching contact needs an impulse.
     fn needs_no_impulse(&self, touching: &[usize], ago: f64) -> bool {
         let mut all = touching.iter();
         all.all(|place| self.required_rate_change(*place, ago, 1.0) >= 0.0)
     }
 
-    /// The rate of a contact that hit so long `ago` (s), for which impulses must make up.
+    /// Returns the change of rate that impulses must supply at a contact that was hit `ago` s before.
     pub(super) fn required_rate_change(&self, place: usize, ago: f64, most: f64) -> f64 {
         let rate = self.hit_rate(place, ago);
-        // What already leaves must not be pulled back.
+        // A contact that already separates must not be pulled back.
         rate + self.restitution(place).min(most) * rate.min(0.0)
     }
 
-    /// Returns the restitution of a contact in the present impact: 0 if it is closed, or if the impact ends infinitely
-    /// many.
+    /// Returns the restitution of a contact in the present impact: 0 if it is closed or if the impact ends an infinite
+    /// sequence.
     pub(super) fn restitution(&self, place: usize) -> f64 {
         match self.has_restitution && !self.rests(place) {
             true => self.at[place].restitution,
@@ -201,7 +202,7 @@ impl Contacts {
         }
     }
 
-    /// The rate with which a contact hit so long `ago`, s.
+    /// Returns the rate with which a contact was hit `ago` s before.
     pub(super) fn hit_rate(&self, place: usize, ago: f64) -> f64 {
         let impact = &self.at[place];
         match self.rests(place) {
@@ -210,10 +211,12 @@ impl Contacts {
         }
     }
 
-    /// The impulses of what touches and hit so long `ago` (s), nothing where none keep the bodies apart.
-    /// Newton's law can add energy where contacts of different restitution touch at once, or one that leaves
-    /// is hit again. Contacts that leave no room, as two stops without play, allow no restitution. Then none takes more
-    /// restitution than the most that is possible. Without restitution, twice the energy changes by -P W P.
+    /// Returns the impulses of touching contacts that were hit `ago` s before; `None` if no impulses keep the bodies
+    /// apart.
+    ///
+    /// Newton's law can add energy if contacts of different restitution touch at once, or if a separating contact is
+    /// hit again. Two stops without play allow no restitution. In these cases the restitution of all contacts is
+    /// limited to the largest admissible value. Without restitution, twice the energy changes by -P W P.
     pub(super) fn solve_impulses(&self, touching: &[usize], ago: f64) -> Option<ContactForces> {
         let delassus = self.delassus(touching);
         let with = |most: f64| {
@@ -224,7 +227,7 @@ impl Contacts {
             let impulses = solve_complementarity(&delassus, &stopped);
             is_solution(&delassus, &stopped, &impulses).then_some(impulses)
         };
-        // Of every impulse the rates before and after, which it moves against.
+        // For every impulse, the rates before and after it give its work.
         let adds_energy = |impulses: &[f64]| {
             let rows = touching.iter().zip(&delassus).zip(impulses);
             let (mut gained, mut exchanged) = (0.0, 0.0);
@@ -254,9 +257,9 @@ impl Contacts {
         Some(smooth(found))
     }
 
-    /// Records the `hits` of an impact and returns the contacts that hit each other without end in a finite time, if
-    /// impacts follow each other faster than the `shortest` flights (s). In the limit they move on together (inelastic
-    /// collapse; S. McNamara and W. R. Young, Phys. Fluids A 4, 1992).
+    /// Records the `hits` of an impact. If impacts follow each other faster than the `shortest` flights (s), returns
+    /// the contacts whose infinite sequence of impacts ends in a finite time. In the limit their bodies move on
+    /// together (inelastic collapse; S. McNamara and W. R. Young, Phys. Fluids A 4, 1992).
     fn find_collapse(&mut self, t: f64, hits: &[usize], shortest: f64) -> Vec<usize> {
         if self.recent.len() == MAX_CONSECUTIVE_IMPACTS {
             self.recent.pop_front();
@@ -273,7 +276,7 @@ impl Contacts {
         places
     }
 
-    /// Returns the roundings of the accelerations of the distances, without what contacts push.
+    /// Returns the rounding errors of the accelerations of the distances, without contact forces.
     fn acceleration_roundings(&self, own: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
         let degrees = own.program().degrees_of_freedom();
         let mut rates = vec![0.0; point.state.len()];
@@ -284,8 +287,8 @@ impl Contacts {
             .collect()
     }
 
-    /// Closes those that touch and would not fly in earnest, or that move on together as bodies do
-    /// that fall side by side.
+    /// Closes the touching contacts that do not separate, or whose bodies move on together as two bodies that fall side
+    /// by side.
     fn close_resting(&mut self, touching: &[usize], flight: &Flight) {
         self.closed.clear();
         self.redundant.clear();
@@ -317,7 +320,7 @@ impl Contacts {
     }
 }
 
-/// Returns true if impulses leave no rate negative.
+/// Returns true if no rate is negative after the given impulses.
 fn is_solution(delassus: &[Vec<f64>], rates: &[f64], impulses: &[f64]) -> bool {
     let unsolved = MAX_UNSOLVED_RATE_FRACTION * max_magnitude(rates);
     let mut rows = delassus.iter().zip(rates);

@@ -1,4 +1,4 @@
-//! Contacts at a jump of the rates that no contact causes, as where energies or inputs jump.
+//! Contacts at a jump of the rates that no contact causes, for example a jump of an energy or an input.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DVector;
@@ -28,7 +28,7 @@ impl Contacts {
         touching.collect()
     }
 
-    /// Decides the contacts at rest anew, at a point after a jump: those that the jump parts open, and the others take
+    /// Determines the modes of contacts at rest after a jump. Contacts that the jump separates open; the others take
     /// the directions of their new slips.
     pub fn decide_after_jump(&mut self, own: &mut Evaluator, point: Point<'_>) {
         let touching = self.resting();
@@ -46,14 +46,14 @@ impl Contacts {
         self.close_still(own, point, (&still, &small));
     }
 
-    /// Returns the rates of the distances that count as zero.
+    /// Returns the largest rate of each distance that counts as zero.
     pub(super) fn rate_roundings(&self, own: &Evaluator, state: &[f64]) -> Vec<f64> {
         let rates = self.rate_magnitudes(own, state);
         let sizes = (0..self.at.len()).map(|place| self.rate_size(place, &rates));
         sizes.map(|size| ROUNDING * size).collect()
     }
 
-    /// Closes those of the contacts that touch at rest which push. Slips up to the `small` rates of each contact are zero.
+    /// Closes the contacts at rest that push. Slips up to the rate `small` of each contact are zero.
     pub(super) fn close_still(
         &mut self,
         own: &mut Evaluator,

@@ -39,79 +39,80 @@ pub(crate) use friction::{contact_problem, free_accelerations, rates_and_slips};
 pub(crate) use start::Start;
 use tangents::{ContactForces, Tangent};
 
-/// Largest distance that counts as rounding, relative to its terms.
+/// Largest distance that counts as zero, relative to its terms.
 const ROUNDING: f64 = 1e-11;
 
-/// Rounding of a distance, relative to its terms and to their changes since t = 0.
+/// Rounding error of a distance, relative to its terms and to their changes since t = 0.
 const DISTANCE_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Number of impacts that have no end, if the time between them is below that of the shortest flights.
+/// Number of consecutive impacts, each faster than the shortest flight, that count as an infinite sequence.
 const MAX_CONSECUTIVE_IMPACTS: usize = 256;
 
-/// Corrections of a state with closed contacts; each squares the residual.
+/// Number of corrections of a state with closed contacts; each squares the residual.
 const CORRECTIONS: usize = 2;
 
 /// Contacts of a model along a motion.
 pub(crate) struct Contacts {
     /// Names of the impacts.
     pub names: Vec<String>,
-    /// When the motion began, s.
+    /// Time at which the motion began, s.
     start: Option<f64>,
-    /// When each touched at rest last, or the motion began, s.
+    /// Time at which each contact last touched at rest, or at which the motion began, s.
     open_since: Vec<f64>,
-    /// Those that are closed.
+    /// Indices of the closed contacts.
     closed: Vec<usize>,
-    /// Those that touch at rest because the closed ones determine their distances.
+    /// Indices of the redundant contacts: open contacts that touch at rest because the closed ones determine their
+    /// distances.
     redundant: Vec<usize>,
-    /// The same before the last correction of a state.
+    /// Redundant contacts before the last correction of a state.
     uncorrected_redundant: Vec<usize>,
-    /// What is added to each distance, so that one that leaves from zero is positive.
+    /// Offset added to each distance, so that a distance that starts at zero is positive.
     offsets: Vec<f64>,
-    /// The same before the last correction of a state.
+    /// Offsets before the last correction of a state.
     uncorrected_offsets: Vec<f64>,
-    /// Drifts of each distance by the rounding of rates that surfaces hold.
+    /// Drifts of each distance by rounding errors of rates that surfaces hold.
     drifts: Vec<Vec<Drift>>,
-    /// What is added to the force of each that is closed: rounding of accelerations makes no pull.
+    /// Allowance added to the force of each closed contact, so that rounding of accelerations does not count as a pull.
     allowances: Vec<f64>,
     /// Impacts at the point of the last evaluation.
     at: Vec<ImpactValues>,
-    /// Sizes of coordinates that have not moved.
+    /// Typical sizes of coordinates, used until they move.
     unmoved_sizes: Vec<f64>,
-    /// The same of their rates.
+    /// Typical sizes of rates, used until they move.
     unmoved_rates: Vec<f64>,
-    /// The largest magnitude of the terms of each distance so far.
+    /// Largest magnitude of the terms of each distance so far.
     sizes: Vec<f64>,
-    /// When the last impacts were, s.
+    /// Times (s) and contacts of the last impacts.
     recent: VecDeque<(f64, Vec<usize>)>,
-    /// False for an impact that ends infinitely many.
+    /// False for an impact that ends an infinite sequence.
     has_restitution: bool,
-    /// The work of contacts in the last impact, J.
+    /// Work of contacts in the last impact, J.
     impact_work: f64,
-    /// The impact at which the motion ended, and why.
+    /// Impact at which the motion ended, and the reason.
     overlap: Option<(usize, Overlap)>,
     /// Tangential motion of the contacts with friction.
     tangents: Vec<Tangent>,
-    /// Instants at which friction admitted several motions.
+    /// Times at which friction admits several motions.
     choices: Vec<FrictionChoice>,
-    /// True if no contact forces were found between steps, so that the rates have no value.
+    /// True if no contact forces were found between steps, so that the rates are undefined.
     has_no_forces: bool,
 }
 
-/// Why bodies overlap.
+/// Reason why the motion ended at a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Overlap {
     /// A step ended with a distance below zero.
     Penetrated,
-    /// No impulses keep all bodies apart that touch.
+    /// No impulses keep all touching bodies apart.
     NoImpulse,
-    /// No forces satisfy the law of friction (P. Painlevé).
+    /// No forces satisfy the law of friction (Painlevé paradox).
     NoForces,
-    /// The modes of contacts and of dry friction were not found.
+    /// No consistent modes of contacts and of dry friction were found.
     NoModes,
 }
 
 impl Contacts {
-    /// Creates open contacts between coordinates whose values and rates have these typical sizes.
+    /// Creates open contacts. `values` and `rates` are typical sizes of the coordinates and of their rates.
     pub fn new(names: Vec<String>, [values, rates]: [&[f64]; 2]) -> Self {
         let count = names.len();
         let unmoved = |sizes: &[f64]| -> Vec<f64> {
@@ -143,7 +144,7 @@ impl Contacts {
         }
     }
 
-    /// Adds friction to the contacts at these places.
+    /// Adds friction to the contacts with the given indices.
     pub fn with_friction(mut self, places: impl Iterator<Item = usize>) -> Self {
         self.tangents = places.map(Tangent::new).collect();
         self
@@ -162,12 +163,12 @@ impl Contacts {
         distances.chain(slips).collect()
     }
 
-    /// Returns the instants at which friction admitted several motions.
+    /// Returns the times at which friction admits several motions.
     pub fn choices(&self) -> &[FrictionChoice] {
         &self.choices
     }
 
-    /// Notes a decision at a time (s) if it admits several motions.
+    /// Records a decision at a time (s) if it admits several motions.
     fn note_choice(&mut self, t: f64, (places, decision): (&[usize], &ContactDecision)) {
         if decision.others > 0 {
             let names = places.iter().map(|place| self.names[*place].clone());
@@ -189,7 +190,7 @@ impl Contacts {
         &self.closed
     }
 
-    /// Sets the contacts that are closed at the start, given the modes of all guards.
+    /// Sets the contacts that are closed at the start from the modes of all guards.
     pub fn assume_modes(&mut self, modes: &[SurfaceMode]) {
         let closed = |place: &usize| modes[*place] == SurfaceMode::Closed;
         self.closed = (0..self.names.len()).filter(closed).collect();
@@ -244,7 +245,7 @@ impl Contacts {
         }
     }
 
-    /// Adds the accelerations by the forces of closed contacts.
+    /// Adds the accelerations due to the forces of closed contacts.
     pub fn add_to_rates(&mut self, own: &mut Evaluator, point: Point<'_>, rates: &mut [f64]) {
         if self.has_no_forces {
             return rates.fill(f64::NAN);
@@ -258,7 +259,7 @@ impl Contacts {
         self.add_forces(&self.closed, &forces, &mut rates[degrees..]);
     }
 
-    /// Adds the roundings of the accelerations by the forces of closed contacts.
+    /// Adds the rounding errors of the accelerations due to the forces of closed contacts.
     pub fn add_rate_roundings(&self, accelerations: &mut [f64]) {
         let forces = self.forces();
         let normal = self.closed.iter().zip(&forces.normal);
@@ -275,7 +276,7 @@ impl Contacts {
         }
     }
 
-    /// Returns cause and cure if the motion stopped because bodies overlap at an impact.
+    /// Returns cause and remedy if the motion stopped because bodies overlap at an impact.
     pub fn overlap(&self) -> Option<String> {
         let (place, cause) = self.overlap?;
         let name = &self.names[place];
@@ -302,8 +303,8 @@ impl Contacts {
         })
     }
 
-    /// Closes those of the contacts that touch at rest which then push. The impacts are those at `point`, and `located` is
-    /// the point whose rounding decides where contacts open.
+    /// Closes the contacts at rest that push. The impacts are evaluated at `point`. The rounding errors at `located`
+    /// set the tolerance within which contacts open.
     fn close(
         &mut self,
         own: &mut Evaluator,
@@ -321,11 +322,11 @@ impl Contacts {
             self.allowances[*place] = 0.0;
         }
         self.note_redundant(own, point, touching);
-        // They leave without speed: for a while rounding of the state moves them more.
+        // The contacts separate without speed: at first rounding of the state moves them more.
         self.offset_by_rounding(touching, (located.t, located.state));
     }
 
-    /// Has the distances of those that touch begin above zero.
+    /// Offsets the distances of touching contacts so that they start above zero.
     fn offset_distances(&mut self, touching: &[usize]) {
         for place in touching {
             let distance = self.at[*place].distance;
@@ -333,7 +334,7 @@ impl Contacts {
         }
     }
 
-    /// Has the distances of those that touch begin above zero by the rounding of a state.
+    /// Offsets the distances of touching contacts so that they start above zero by the rounding error of a state.
     fn offset_by_rounding(&mut self, touching: &[usize], at: (f64, &[f64])) {
         self.offset_distances(touching);
         for place in touching {
@@ -341,8 +342,8 @@ impl Contacts {
         }
     }
 
-    /// Has the distances of open contacts that touch after an impact stay positive if a projection moves the state by
-    /// rounding.
+    /// Offsets the distances of open contacts that touch after an impact. They stay positive if a projection moves the
+    /// state by rounding.
     pub fn offset_for_projection(&mut self, at: (f64, &[f64])) {
         for place in 0..self.names.len() {
             let rounding = self.distance_rounding(place, at);
@@ -354,7 +355,7 @@ impl Contacts {
         }
     }
 
-    /// Returns the magnitude of the terms of a distance at these coordinates.
+    /// Returns the magnitude of the terms of a distance at the given coordinates.
     fn distance_size(&self, place: usize, coordinates: &[f64]) -> f64 {
         let sizes = coordinates.iter().zip(&self.unmoved_sizes);
         let sizes = sizes.map(|(coordinate, unmoved)| coordinate.abs().max(*unmoved));
@@ -368,7 +369,7 @@ impl Contacts {
         terms.map(|(entry, rate)| (entry * rate).abs()).sum()
     }
 
-    /// Returns the change of a distance by rounding of state and time.
+    /// Returns the rounding error of a distance due to rounding of state and time.
     fn distance_rounding(&self, place: usize, (t, state): (f64, &[f64])) -> f64 {
         let degrees = self.at[place].row.len();
         let rates = &state[degrees..2 * degrees];
@@ -376,7 +377,7 @@ impl Contacts {
             + DISTANCE_ROUNDING * t.abs() * self.rate_size(place, rates)
     }
 
-    /// Returns the change of a distance by rounding of the coordinates.
+    /// Returns the rounding error of a distance due to rounding of the coordinates.
     fn position_rounding(&self, place: usize, state: &[f64]) -> f64 {
         let degrees = self.at[place].row.len();
         f64::MIN_POSITIVE + DISTANCE_ROUNDING * self.distance_size(place, &state[..degrees])
@@ -391,7 +392,7 @@ impl Contacts {
         }
     }
 
-    /// Returns the magnitudes of the rates of a state, at least those of rates that do not move.
+    /// Returns the magnitudes of the rates of a state, at least the typical sizes of rates that have not moved.
     fn rate_magnitudes(&self, own: &Evaluator, state: &[f64]) -> Vec<f64> {
         let degrees = own.program().degrees_of_freedom();
         let rates = state[degrees..2 * degrees].iter().zip(&self.unmoved_rates);
@@ -400,7 +401,7 @@ impl Contacts {
             .collect()
     }
 
-    /// Closes the contacts that touch at rest at the start, and those assumed to be closed, if they push.
+    /// Closes the contacts that touch at rest at the start, or that are assumed to be closed, if they push.
     fn start_motion(&mut self, own: &mut Evaluator, point: Point<'_>) {
         self.start = Some(point.t);
         self.open_since.fill(point.t);
@@ -420,7 +421,7 @@ impl Contacts {
         self.close_still(own, point, (&still, &small));
     }
 
-    /// Notes that the motion ends if there are no contact forces.
+    /// Records that the motion ends if there are no contact forces.
     fn note_forces(&mut self, found: Result<(), (usize, Overlap)>) {
         if let Err(cause) = found {
             self.overlap = Some(cause);
@@ -434,7 +435,7 @@ impl Contacts {
         self.note_forces(updated);
     }
 
-    /// Keeps or changes the modes of contact friction at a point at which other forces changed.
+    /// Keeps or changes the modes of contact friction at a point at which other forces have changed.
     pub fn revise_modes(&mut self, own: &mut Evaluator, point: Point<'_>) {
         if self.has_friction() && !self.closed.is_empty() {
             let revised = self.revise_friction_modes(own, point);
@@ -442,14 +443,14 @@ impl Contacts {
         }
     }
 
-    /// Ends the motion, because the modes of contacts and those of dry friction contradict each other.
+    /// Ends the motion because the modes of contacts contradict those of dry friction.
     pub fn refuse_modes(&mut self) {
         let first = self.closed.first().copied().unwrap_or(0);
         self.note_forces(Err((first, Overlap::NoModes)));
     }
 
-    /// Opens closed contacts that no longer push, and changes the modes of friction. `located` is the point whose
-    /// rounding decides where contacts open.
+    /// Opens closed contacts that no longer push, and changes the modes of friction. The rounding errors at `located`
+    /// set the tolerance within which contacts open.
     ///
     /// # Errors
     /// No forces satisfy the law of friction.
@@ -475,7 +476,7 @@ impl Contacts {
         Ok(())
     }
 
-    /// Notes that the contacts that touch at rest do so until now, s.
+    /// Records that the contacts at rest touch until the time `t` (s).
     fn note_closed_until(&mut self, t: f64) {
         for place in self.resting() {
             self.open_since[place] = t;
@@ -499,7 +500,7 @@ impl Contacts {
         }
     }
 
-    /// The forces of the closed contacts, in which their distances do not accelerate.
+    /// Returns the forces of the closed contacts for which their distances do not accelerate.
     fn forces(&self) -> ContactForces {
         match self.has_friction() {
             true => self.friction_forces(),
@@ -521,7 +522,7 @@ impl Contacts {
         }
     }
 
-    /// Adds what normal and tangential impulses at these contacts do.
+    /// Adds the effects of normal and tangential impulses at `places` to the rates.
     fn add_forces(&self, places: &[usize], impulses: &ContactForces, rates: &mut [f64]) {
         self.add_impulses(places, &impulses.normal, rates);
         for (place, impulse) in places.iter().zip(&impulses.tangential) {
@@ -532,7 +533,7 @@ impl Contacts {
         }
     }
 
-    /// What at these contacts brings a quantity of theirs to zero.
+    /// Returns the impulses at `places` that reduce a quantity of these contacts to zero.
     fn solve_balance(&self, places: &[usize], quantity: impl Fn(&ImpactValues) -> f64) -> Vec<f64> {
         let quantities: Vec<f64> = places
             .iter()
@@ -542,7 +543,7 @@ impl Contacts {
         solve_rows(&self.delassus(places), &quantities, &rows)
     }
 
-    /// Adds what impulses at these contacts do.
+    /// Adds the effects of impulses at `places` to the rates.
     fn add_impulses(&self, places: &[usize], impulses: &[f64], rates: &mut [f64]) {
         for (place, impulse) in places.iter().zip(impulses) {
             for (rate, entry) in rates.iter_mut().zip(&self.at[*place].column) {
@@ -551,7 +552,7 @@ impl Contacts {
         }
     }
 
-    /// Returns the magnitude of the terms by which impulses at other contacts change the rate of a distance.
+    /// Returns the magnitude of the terms with which impulses at other contacts change the rate of a distance.
     fn push_size(&self, place: usize, others: &[usize], impulses: &ContactForces) -> f64 {
         let pushes = others.iter().zip(&impulses.normal);
         let pushes = pushes.map(|(other, impulse)| (&self.at[*other].column, impulse));
@@ -565,7 +566,7 @@ impl Contacts {
             .sum()
     }
 
-    /// Delassus' matrix of these contacts.
+    /// Returns the Delassus matrix of some contacts.
     fn delassus(&self, places: &[usize]) -> Vec<Vec<f64>> {
         let row = |place: &usize| {
             let entries = &self.at[*place].delassus;

@@ -1,6 +1,6 @@
-//! Work of contacts on T + V. A force F at a distance g(q, t) has the power F (g' - w), where w is the rate at which it
-//! does no work: `g_t` for a kinetic energy that is a quadratic form of the rates. Its impulse does the work -P w, without
-//! the loss by restitution. Friction along the slip acts alike, with the loss by friction.
+//! Work of contacts on T + V. A force F at a distance g(q, t) has the power F (g' - w). At the rate g' = w the force
+//! does no work; w is `g_t` if the kinetic energy is a quadratic form of the rates. Its impulse P does the work -P w,
+//! without the loss by restitution. Friction along the slip has the same form, with the loss by friction.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::ode::ROUNDING_FACTOR;
@@ -17,7 +17,8 @@ impl Contacts {
             .sum()
     }
 
-    /// Returns the rounding (W) of that power: a contact that moves at its workless rate has the rounding of both rates.
+    /// Returns the rounding error (W) of the power of the closed contacts. A contact that moves at its workless rate
+    /// has the rounding errors of both rates.
     pub fn power_rounding(&mut self, own: &mut Evaluator, point: Point<'_>) -> f64 {
         let terms = self.power_terms(own, point);
         let roundings = terms.map(|(force, rates)| {
@@ -26,8 +27,7 @@ impl Contacts {
         roundings.sum()
     }
 
-    /// Returns each force of the closed contacts, with the rate of its distance or slip and the rate at which it does no
-    /// work.
+    /// Returns each force of the closed contacts, with the rate of its distance or slip and its workless rate.
     fn power_terms(
         &mut self,
         own: &mut Evaluator,
@@ -47,7 +47,7 @@ impl Contacts {
             let along = along.map_or([0.0; 2], |one| [one.slip, one.workless_slip]);
             ([contact.rate, contact.workless_rate], along)
         });
-        // There are none without friction.
+        // Without friction there are no tangential forces.
         let tangential = forces.tangential.into_iter().chain(std::iter::repeat(0.0));
         let both = forces.normal.into_iter().zip(tangential);
         let terms = both.zip(rates);
@@ -59,7 +59,7 @@ impl Contacts {
         self.impact_work
     }
 
-    /// Returns the work (J) of impulses at these contacts at the last point, without the losses.
+    /// Returns the work (J) of impulses at some contacts at the last point, without losses.
     pub(super) fn work_of(&self, places: &[usize], impulses: &ContactForces) -> f64 {
         let normal = places.iter().zip(&impulses.normal);
         let normal = normal.map(|(place, impulse)| -impulse * self.at[*place].workless_rate);

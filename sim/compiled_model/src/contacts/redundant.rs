@@ -1,6 +1,6 @@
-//! Redundant contacts: open contacts that touch at rest and whose distances follow from those of the closed ones, as the
-//! second of two stops without play. Their distances keep zero while the others are closed, so that the errors of a step
-//! around zero are no impacts. If a closed contact would pull, they share in the decision which contacts push.
+//! Redundant contacts: open contacts that touch at rest and whose distances depend on those of the closed contacts, for
+//! example the second of two stops without play. Their distances stay zero while the others are closed, so step errors
+//! around zero cause no impacts. If a closed contact would pull, redundant contacts may close instead.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
@@ -18,8 +18,8 @@ impl Contacts {
         self.closed.contains(&place) || self.redundant.contains(&place)
     }
 
-    /// Notes the redundant contacts at a point at which impacts are known. Those of the contacts at rest that do not push,
-    /// but that others prevent from opening, close before.
+    /// Records the redundant contacts at a point at which impacts are known. First closes contacts at rest that do not
+    /// push but that other contacts prevent from opening.
     pub(super) fn note_redundant(
         &mut self,
         own: &mut Evaluator,
@@ -57,7 +57,7 @@ impl Contacts {
         };
         let redundant = self.redundant.iter().copied().filter(moves_along).collect();
         self.redundant = redundant;
-        // A force of rounding that pulls parts no bodies that a redundant contact holds.
+        // A pulling force of rounding size does not separate bodies that a redundant contact holds.
         for place in self.closed.clone() {
             let delassus = &self.at[place].delassus;
             if self.redundant.iter().any(|other| delassus[*other] != 0.0) {
@@ -68,7 +68,7 @@ impl Contacts {
         }
     }
 
-    /// Closes those of the contacts at rest that others at rest prevent from opening, if neither pushes.
+    /// Closes the contacts at rest that other contacts at rest prevent from opening, if neither pushes.
     fn close_confined(&mut self, resting: &[usize]) {
         for place in resting {
             if self.closed.contains(place)
@@ -89,8 +89,8 @@ impl Contacts {
         }
     }
 
-    /// Returns the part of a quantity of a contact that does not follow from those of the closed ones, and the size of
-    /// its terms.
+    /// Returns the part of a quantity of a contact that is independent of the closed contacts, and the magnitude of its
+    /// terms.
     fn compare_with_closed(
         &self,
         place: usize,
@@ -108,13 +108,14 @@ impl Contacts {
         })
     }
 
-    /// Returns true if the distance of a contact follows from those of these contacts, and falls while one of them grows.
+    /// Returns true if the distance of a contact depends on those of the closed contacts and falls when one of them
+    /// grows.
     pub(super) fn is_blocked_by(&self, closed: &[usize], place: usize) -> bool {
         let parts = self.parts_of(closed, place);
         parts.is_some_and(|parts| parts.iter().any(|part| *part < 0.0))
     }
 
-    /// Releases the redundant contacts whose distances no longer follow from those of the closed ones.
+    /// Releases the redundant contacts whose distances no longer depend on those of the closed contacts.
     pub(super) fn release_independent(&mut self, state: &[f64]) {
         if self.redundant.is_empty() {
             return;
@@ -125,7 +126,7 @@ impl Contacts {
         self.offset_distances(&released);
     }
 
-    /// Returns those of the redundant contacts whose distances follow from those of the closed ones and are zero to rounding.
+    /// Returns the redundant contacts whose distances depend on those of the closed contacts and are zero to rounding.
     fn find_redundant(&self, state: &[f64]) -> Vec<usize> {
         let degrees = self.at.first().map_or(0, |impact| impact.row.len());
         let size = |place: usize| self.distance_size(place, &state[..degrees]);
@@ -138,7 +139,8 @@ impl Contacts {
         known.filter(is_redundant).collect()
     }
 
-    /// Returns the row of a contact as a sum of those of closed ones; `None` if it is independent.
+    /// Returns the coefficients of a contact's row in terms of the rows of closed contacts; `None` if it is
+    /// independent.
     fn parts_of(&self, closed: &[usize], place: usize) -> Option<Vec<f64>> {
         let column = closed.iter().map(|other| -self.at[*other].delassus[place]);
         let column: Vec<f64> = column.collect();
@@ -147,7 +149,7 @@ impl Contacts {
         let terms = parts.iter().zip(&column);
         let follows: f64 = terms.map(|(part, entry)| -part * entry).sum();
         let whole = self.at[place].delassus[place];
-        // Rounding of a part that is zero has no sign.
+        // The sign of a coefficient that is zero to rounding has no meaning.
         for (part, other) in parts.iter_mut().zip(closed) {
             let unit = (whole / self.at[*other].delassus[*other]).sqrt();
             if part.abs() <= MIN_INDEPENDENT_PIVOT * unit {

@@ -1,5 +1,5 @@
-//! Open contacts at bodies that surfaces held. The bodies touch and do not move, so that these contacts close without an
-//! impact when the surfaces release the bodies.
+//! Open contacts at bodies that surfaces held. The bodies touch and do not move. When the surfaces release them, these
+//! contacts close without an impact.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::contact_friction::ContactMode;
@@ -7,15 +7,15 @@ use eomgen_sim::contact_friction::ContactMode;
 use super::Contacts;
 
 impl Contacts {
-    /// Returns the open contacts at bodies that surfaces hold, as last noted.
+    /// Returns the open contacts at bodies that surfaces hold, from the last call of `note_drifts`.
     pub fn at_held_bodies(&self) -> Vec<usize> {
         let open = (0..self.names.len()).filter(|place| !self.rests(*place));
         open.filter(|place| self.touches_held_body(*place))
             .collect()
     }
 
-    /// Closes contacts that touch at rest at a point, and returns the state of the point without the rounding of their
-    /// distances and rates.
+    /// Closes contacts that touch at rest at a point. Returns the state of the point without the rounding errors of
+    /// their distances and rates.
     pub fn close_at_rest(
         &mut self,
         own: &mut Evaluator,
@@ -40,7 +40,7 @@ impl Contacts {
         state
     }
 
-    /// Returns those of these closed contacts that push at a point.
+    /// Returns those of the given closed contacts that push at a point.
     pub fn find_pushing(
         &mut self,
         own: &mut Evaluator,
@@ -54,7 +54,7 @@ impl Contacts {
         pushing.map(|(place, _)| *place).collect()
     }
 
-    /// Opens these closed contacts.
+    /// Opens the given closed contacts.
     pub fn reopen(&mut self, places: &[usize]) {
         self.closed.retain(|place| !places.contains(place));
     }

@@ -1,7 +1,7 @@
-//! Impacts at one instant. Contacts that are hit together receive their impulses together. A contact that leaves and is
-//! hit again is hit in turn: the distances of impacts that follow each other can fall below rounding long before their
-//! speeds do. Without end, these impacts stop the bodies (inelastic collapse; S. McNamara and W. R. Young, Phys. Fluids A
-//! 4, 1992).
+//! Impacts at one instant. Contacts that are hit together receive simultaneous impulses. A contact that separates and
+//! is hit again is hit in a later impact of the sequence. The distances of such impacts can fall below rounding long
+//! before their speeds do. An infinite sequence stops the bodies (inelastic collapse; S. McNamara and W. R. Young,
+//! Phys. Fluids A 4, 1992).
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
@@ -9,13 +9,14 @@ use super::impulses::MAX_UNSOLVED_RATE_FRACTION;
 use super::tangents::ContactForces;
 use super::{Contacts, DISTANCE_ROUNDING, Overlap};
 
-/// Number of impacts at one instant after which the bodies move on together. Speeds that shrink by 1 % in two impacts are
-/// rounding after 6500.
+/// Number of impacts at one instant after which the bodies move on together. Speeds that shrink by 1 % in two impacts
+/// are at rounding level after 6500 impacts.
 const MAX_IMPACTS_AT_ONE_INSTANT: usize = 10_000;
 
 impl Contacts {
-    /// Changes the rates of a state by the impulses of contacts that touch and hit so long `ago` (s), and of
-    /// those that these bring to touch in turn. Returns all that touched and the rounding of the rate of each distance.
+    /// Changes the rates of a state by the impulses of contacts that touch and were hit `ago` s before, and of the
+    /// contacts that these impulses close. Returns all contacts that touched, and the rounding error of the rate of
+    /// each distance.
     pub(super) fn apply_impulses(
         &mut self,
         own: &mut Evaluator,
@@ -42,7 +43,7 @@ impl Contacts {
             self.add_forces(&hit, &impulses, rates);
             self.add_forces(&hit, &impulses.scaled(ago), coordinates);
             own.impacts(Point { t, state, inputs }, &mut self.at);
-            // Distances are located to rounding, which must not add up.
+            // Distances are located to rounding; these rounding errors must not accumulate.
             let mut below = touching.clone();
             below.retain(|place| self.at[*place].distance < 0.0);
             let corrections = self.solve_balance(&below, |impact| impact.distance);
@@ -57,7 +58,7 @@ impl Contacts {
                 let unsolved = MAX_UNSOLVED_RATE_FRACTION * pushes[*place];
                 self.at[*place].rate < -unsolved.max(roundings[*place])
             };
-            // The rate of a closed contact is rounding, as is one that needs no impulse.
+            // The rate of a closed contact is rounding; so is a rate that needs no impulse.
             let mut open = touching.iter().filter(|place| !self.rests(**place));
             let has_pushed = impulses.normal.iter().any(|impulse| *impulse > 0.0);
             if more.is_empty() && !(has_pushed && open.any(approaches)) {
@@ -69,7 +70,7 @@ impl Contacts {
         Ok((touching, roundings))
     }
 
-    /// Returns the contacts that are hit together, and their impulses. A contact that leaves is not among them.
+    /// Returns the contacts that are hit together, and their impulses. A contact that separates is not included.
     ///
     /// # Errors
     /// No impulses keep the bodies apart.

@@ -1,10 +1,10 @@
-//! Initial states on contacts: distances that are negative by rounding are set to zero.
+//! Initial states at contacts: distances that are negative by rounding are set to zero.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::{CORRECTIONS, Contacts, ROUNDING};
 
-/// Start of a motion.
+/// Start of a motion whose initial state may touch contacts.
 pub(crate) struct Start<'s> {
     /// Start, s.
     pub t: f64,
@@ -12,13 +12,13 @@ pub(crate) struct Start<'s> {
     pub end: f64,
     /// Inputs.
     pub inputs: &'s [f64],
-    /// The largest known length of each impact, in the unit of its distance.
+    /// Largest known length of each impact, in the unit of its distance.
     pub lengths: &'s [f64],
 }
 
 impl Start<'_> {
-    /// Moves coordinates so that no distance of an impact is negative by rounding, relative to its
-    /// length or to the distance covered with its rate and acceleration at the start.
+    /// Moves coordinates so that no distance of an impact is negative by rounding. The rounding error is relative to
+    /// the length of the impact, or to the distance travelled with rate and acceleration at the start.
     ///
     /// # Errors
     /// Index and value of the first distance that is more negative or NaN.

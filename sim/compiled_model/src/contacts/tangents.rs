@@ -15,7 +15,7 @@ pub(super) struct Tangent {
     pub slip_size: f64,
     /// Offset of the slip in its direction, so that it is positive if it begins at zero.
     pub slip_offset: f64,
-    /// Offset of the margin of friction: rounding of forces ends no rest.
+    /// Allowance added to the margin of friction, so that rounding of forces does not end sticking.
     pub force_allowance: f64,
 }
 
@@ -32,8 +32,7 @@ impl Tangent {
     }
 }
 
-/// Normal and tangential impulses, or forces, of some contacts. Without any friction there are no tangential
-/// ones.
+/// Normal and tangential impulses, or forces, of some contacts. Tangential ones exist only with friction.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactForces {
     pub normal: Vec<f64>,
@@ -41,7 +40,7 @@ pub(super) struct ContactForces {
 }
 
 impl ContactForces {
-    /// Splits impulses of a problem.
+    /// Splits the solution of a contact problem into normal and tangential impulses.
     pub fn from_directions(mut impulses: Vec<f64>) -> Self {
         let tangential = impulses.split_off(impulses.len() / 2);
         Self {
@@ -50,7 +49,7 @@ impl ContactForces {
         }
     }
 
-    /// Returns these impulses times a factor.
+    /// Returns the impulses times a factor.
     pub fn scaled(&self, factor: f64) -> Self {
         let scale = |values: &[f64]| values.iter().map(|value| value * factor).collect();
         Self {

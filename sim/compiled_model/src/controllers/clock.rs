@@ -1,4 +1,4 @@
-//! Order of samples and actions of several controllers.
+//! Order of samples and output actions of several controllers.
 
 use std::collections::VecDeque;
 
@@ -8,22 +8,22 @@ use eomgen_sim::ode::Settings;
 use super::memory::{NextSample, PendingOutputs};
 use crate::error::Error;
 
-/// Largest difference of times at one instant, as a fraction of the shortest period: far below any wanted difference,
-/// and above the rounding errors of the times.
+/// Largest difference of two times at the same instant, as a fraction of the shortest period. It is far below any
+/// intended difference and above the rounding errors of the times.
 const COINCIDENCE: f64 = 1e-9;
 
-/// Samples and actions to come.
+/// Times of the next samples and pending output actions.
 pub struct Clock {
     schedules: Vec<Schedule>,
-    /// Number of the next sample of each controller.
+    /// Index of the next sample of each controller.
     next: Vec<f64>,
-    /// Outputs that will act, in the order of their samples.
+    /// Outputs that have not acted yet, in the order of their samples.
     pending: VecDeque<PendingOutputs>,
     shortest: f64,
 }
 
 impl Clock {
-    /// Starts at a time (s), with the first sample of each controller that is not before it.
+    /// Creates a clock at a time (s). The first sample of each controller is not before this time.
     pub fn new(schedules: Vec<Schedule>, start: f64) -> Self {
         let periods = schedules.iter().map(|schedule| schedule.period);
         let shortest = periods.reduce(f64::min).unwrap_or(0.0);
@@ -43,13 +43,13 @@ impl Clock {
         clock
     }
 
-    /// Returns the largest difference (s) of times that are one instant.
+    /// Returns the largest difference (s) of times at the same instant.
     pub fn tolerance(&self, t: f64) -> f64 {
         let rounding = 8.0 * f64::EPSILON * t.abs();
         rounding.max(COINCIDENCE * self.shortest)
     }
 
-    /// Checks that the samples of each controller between two times (s) are at most as many as the steps of a solver.
+    /// Checks that each controller has at most as many samples between two times (s) as a solver may take steps.
     ///
     /// # Errors
     /// A period that is too short for the span.
@@ -83,13 +83,13 @@ impl Clock {
         all.map(sample).collect()
     }
 
-    /// Returns the outputs that will act, in the order of their samples.
+    /// Returns the outputs that have not acted yet, in the order of their samples.
     pub fn pending(&self) -> impl Iterator<Item = &PendingOutputs> {
         self.pending.iter()
     }
 
-    /// Continues at a time (s) with these next samples, and with outputs that will act. A controller with other sample
-    /// times has its next sample after this time.
+    /// Continues at a time (s) with the given next samples and pending outputs. A controller whose sample times differ
+    /// from those in `samples` has its next sample after this time.
     pub fn resume(&mut self, t: f64, samples: &[NextSample], pending: &[PendingOutputs]) {
         let within = self.tolerance(t);
         for (controller, known) in samples.iter().enumerate() {
@@ -152,7 +152,7 @@ mod tests {
 
     #[test]
     fn rounded_sample_times_coincide() {
-        // 3*0.1 is greater than 0.3.
+        // In floating point, 3*0.1 is greater than 0.3.
         let mut clock = Clock::new(vec![schedule(0.1, 0.0, 0.0), schedule(0.3, 0.0, 0.0)], 0.0);
         let mut taken = Vec::new();
         while taken.len() < 7 {
@@ -196,7 +196,7 @@ mod tests {
         }
         let pending: Vec<_> = clock.pending().cloned().collect();
         assert_eq!(pending.len(), 3);
-        // Samples at 0.3 s are taken; with a period of 0.15 s, so is that at 0.3 s.
+        // The samples at 0.3 s have been taken. With a period of 0.15 s the sample at 0.3 s has been taken too.
         for (period, next) in [(0.1, 0.4), (0.15, 0.45), (0.08, 0.32)] {
             let mut other = Clock::new(vec![schedule(period, 0.0, 0.25)], 0.3);
             other.resume(0.3, &clock.next_samples(), &pending);

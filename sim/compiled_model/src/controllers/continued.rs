@@ -1,4 +1,4 @@
-//! Simulations with controllers that continue from call to call.
+//! Simulations with controllers that continue over several calls.
 
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::Trajectory;
@@ -13,10 +13,11 @@ use crate::resumable::Simulation;
 use crate::solver_options::SolverOptions;
 
 impl<'m> Instance<'m> {
-    /// Prepares a simulation with controllers from a time (s), a state and inputs, before the samples at this time.
+    /// Prepares a simulation with controllers from a time (s), a state and inputs. The samples at this time are not
+    /// taken yet.
     ///
     /// # Errors
-    /// Two controllers that drive one input; same as [`Instance::start_simulation`].
+    /// Two controllers drive the same input; see also [`Instance::start_simulation`].
     pub(crate) fn prepare_controlled<'c>(
         &self,
         (start, inputs): ((f64, &[f64]), HeldInputs),
@@ -36,11 +37,11 @@ impl<'m> Instance<'m> {
         Ok(simulation)
     }
 
-    /// Starts a simulation with the controllers of the specification at a time at which their samples are taken, with
+    /// Continues a simulation with the controllers of the specification at a time whose samples are already taken, with
     /// their memory and the present inputs.
     ///
     /// # Errors
-    /// A memory of other controllers; same as [`Instance::start_simulation`].
+    /// The memory belongs to other controllers; see also [`Instance::start_simulation`].
     pub fn continue_simulation(
         &self,
         (t, state): (f64, &[f64]),
@@ -84,10 +85,11 @@ impl<'m> Instance<'m> {
 }
 
 impl Simulation<'_> {
-    /// Continues to a time (s) with the controllers, and adds the rows to the record. Returns the reason of an early stop.
+    /// Continues to a time (s) with the controllers and adds the rows to the record. Returns the reason of an early
+    /// stop.
     ///
     /// # Errors
-    /// Times that are not finite, not ascending or before the time reached.
+    /// Times that are not finite, not ascending or before the current time.
     pub(crate) fn follow(
         &mut self,
         (until, rows): (f64, &[f64]),
@@ -121,7 +123,7 @@ impl Simulation<'_> {
         controls.map_or_else(Vec::new, ControlLoop::state_names)
     }
 
-    /// Returns the first input that a controller drives, and whose value in `inputs` is not the present one.
+    /// Returns the first controlled input whose value in `inputs` differs from the present one.
     pub(crate) fn find_driven(&self, inputs: &[f64]) -> Option<usize> {
         let controls = self.controls.as_ref()?;
         let mut pairs = self.inputs().iter().zip(inputs).enumerate();

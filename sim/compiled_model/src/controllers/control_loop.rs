@@ -1,4 +1,4 @@
-//! Controllers in a loop with a motion: samples, actions of their outputs, and inputs from outside.
+//! Closed loop of controllers and a motion: samples, output actions and external inputs.
 
 use eomgen_model_spec::schedule::Schedule;
 use eomgen_sim::inputs::HeldInputs;
@@ -13,34 +13,35 @@ use crate::solver_options::SolverOptions;
 
 /// Motion whose inputs controllers drive.
 pub(crate) trait Plant {
-    /// Returns the time reached, s.
+    /// Returns the current time, s.
     fn time(&self) -> f64;
 
-    /// Returns the time (s) at which the rates are evaluated there.
+    /// Returns the time (s) at which the rates are evaluated at the current time.
     fn evaluation_time(&self) -> f64 {
         self.time()
     }
 
-    /// Returns the state at the time reached, SI.
+    /// Returns the state at the current time, SI.
     fn state(&self) -> &[f64];
 
-    /// Writes the observables at the time reached.
+    /// Writes the observables at the current time.
     fn write_observables(&mut self, out: &mut [f64]);
 
-    /// Changes the inputs from the time reached on. Adds the events of the change to `trajectory`.
+    /// Changes the inputs from the current time on. Adds the events of the change to `trajectory`.
     ///
     /// # Errors
-    /// A motion that cannot follow the jump.
+    /// The motion cannot follow the jump of the inputs.
     fn change_inputs(
         &mut self,
         inputs: HeldInputs,
         trajectory: &mut Trajectory,
     ) -> Result<(), Error>;
 
-    /// Continues to a time (s) with the present inputs and the rows (s) up to it. Returns the reason of an early stop.
+    /// Continues to a time (s) with the present inputs and the output rows (s) up to it. Returns the reason of an early
+    /// stop.
     ///
     /// # Errors
-    /// Times that are not possible.
+    /// Times that are not finite, not ascending or before the current time.
     fn go_on(
         &mut self,
         asked: (f64, &[f64]),
@@ -49,14 +50,14 @@ pub(crate) trait Plant {
     ) -> Result<Option<EarlyStop>, Error>;
 }
 
-/// Record of a loop during a call.
+/// Trajectory and controller data of one call.
 pub(crate) struct LoopRecord<'t> {
     pub trajectory: &'t mut Trajectory,
-    /// Rows of the trajectory before the call.
+    /// Number of rows in the trajectory before the call.
     first: usize,
     /// States of the controllers at the rows of the call.
     pub states: Vec<Vec<f64>>,
-    /// Times of changes of the held inputs, s, and all held values from then on.
+    /// Times (s) at which held inputs change, with all held values from then on.
     pub changes: Vec<(f64, Vec<f64>)>,
 }
 
@@ -70,7 +71,7 @@ impl<'t> LoopRecord<'t> {
         }
     }
 
-    /// Returns the rows of a call that are still to come.
+    /// Returns the rows of a call that are not written yet.
     fn rest<'r>(&self, rows: &'r [f64]) -> &'r [f64] {
         &rows[self.trajectory.times.len() - self.first..]
     }
@@ -88,7 +89,8 @@ fn states_of(controllers: &[Box<dyn SampledController + '_>]) -> Vec<f64> {
     states.collect::<Vec<_>>().concat()
 }
 
-/// Limits the steps of a solver to the shortest period: longer ones would end between samples, and lose digits there.
+/// Limits the steps of a solver to the shortest period. Longer steps would end at samples anyway and be less accurate
+/// there.
 pub(crate) fn limit_steps(
     options: SolverOptions,
     schedules: impl Iterator<Item = Schedule>,
@@ -103,25 +105,25 @@ pub(crate) fn limit_steps(
     }
 }
 
-/// Controllers with their clock and the inputs of a motion.
+/// Controllers, their clock and the inputs of a motion.
 pub(crate) struct ControlLoop<'c> {
     /// Controllers in the order of their states and inputs.
     controllers: Vec<Box<dyn SampledController + 'c>>,
     clock: Clock,
-    /// Inputs from outside.
+    /// External inputs.
     given: HeldInputs,
-    /// Held values of all inputs; driven ones are those of the controllers.
+    /// Held values of all inputs; controllers set the values of the inputs that they drive.
     held: Vec<f64>,
-    /// Inputs in use.
+    /// Inputs of the motion at present.
     current: HeldInputs,
-    /// For each input, true if an output acts on it by now.
+    /// For each input, true if a controller output has acted on it.
     has_acted: Vec<bool>,
     observables: Vec<f64>,
 }
 
 impl<'c> ControlLoop<'c> {
-    /// Creates a loop at a time (s), before the samples at this time. No two of the controllers drive one input, and none
-    /// drives an input that is a function of time.
+    /// Creates a loop at a time (s), before the samples at this time. An input has at most one controller, and no
+    /// controller drives an input that is a function of time.
     pub fn new(
         controllers: Vec<Box<dyn SampledController + 'c>>,
         given: HeldInputs,
@@ -140,8 +142,8 @@ impl<'c> ControlLoop<'c> {
         }
     }
 
-    /// Follows the motion to a time (s), with the samples and changes at it, and adds the rows to the record. Rows at
-    /// a sample have the values after it. Returns the reason of an early stop.
+    /// Continues the motion to a time (s), including samples and input changes at this time, and adds the rows to the
+    /// record. Rows at a sample have the values after it. Returns the reason of an early stop.
     ///
     /// # Errors
     /// Times that are not possible for the motion.
@@ -171,8 +173,8 @@ impl<'c> ControlLoop<'c> {
         self.go_on(plant, (until, before), record, progress)
     }
 
-    /// Returns the time (s) of the next sample, action or change of an input from `now` to `until`. Samples and actions
-    /// that differ from a row or the end by rounding are there.
+    /// Returns the time (s) of the next sample, output action or input change from `now` to `until`. Samples and
+    /// actions that differ from a row or the end only by rounding are moved to it.
     fn find_next(&self, now: f64, (until, rows): (f64, &[f64])) -> Option<f64> {
         let within = self.clock.tolerance(now.abs().max(until.abs()));
         let instant = self.clock.next_instant().map(|instant| {
@@ -198,7 +200,7 @@ impl<'c> ControlLoop<'c> {
         Ok(stop)
     }
 
-    /// Adds the rows at the time reached.
+    /// Adds the rows at the current time.
     fn push_rows_at(
         &self,
         plant: &dyn Plant,
@@ -212,7 +214,7 @@ impl<'c> ControlLoop<'c> {
         record.complete_states(&self.controllers);
     }
 
-    /// Samples the controllers that are due at an instant and changes the inputs.
+    /// Samples the controllers that are due at an instant, and changes the inputs.
     fn sample(
         &mut self,
         plant: &mut dyn Plant,
@@ -245,7 +247,7 @@ impl<'c> ControlLoop<'c> {
         self.update_inputs(plant, instant, record)
     }
 
-    /// Applies the outputs that act at an instant, and the changes of other inputs.
+    /// Applies the outputs that act at an instant, and the changes of the other inputs.
     fn update_inputs(
         &mut self,
         plant: &mut dyn Plant,
@@ -277,7 +279,7 @@ impl<'c> ControlLoop<'c> {
         }
     }
 
-    /// Holds the inputs from outside at a time (s), except those on which an output acts.
+    /// Sets the external inputs to their values at a time (s), except inputs on which a controller output acts.
     fn hold_given(&mut self, t: f64) {
         let given = self.given.last_sample(t);
         for ((held, value), has_acted) in self.held.iter_mut().zip(given).zip(&self.has_acted) {
@@ -287,8 +289,8 @@ impl<'c> ControlLoop<'c> {
         }
     }
 
-    /// Changes the inputs from outside at the time reached; returns the inputs of the motion from then on. Those that a
-    /// controller drives keep the values of its outputs.
+    /// Changes the external inputs at the current time. Returns the inputs of the motion from then on. Driven inputs
+    /// keep the values of the controller outputs.
     pub fn give(&mut self, t: f64, inputs: HeldInputs) -> HeldInputs {
         let before = self.current.evaluate(t).into_owned();
         self.given = inputs;
@@ -310,7 +312,7 @@ impl<'c> ControlLoop<'c> {
     /// Continues at a time (s) with a memory.
     ///
     /// # Errors
-    /// A memory of another model.
+    /// The memory belongs to another model.
     pub fn resume(&mut self, t: f64, memory: &ControlMemory) -> Result<(), Error> {
         let outputs = |controller: usize| {
             let own = self.controllers.get(controller);

@@ -9,7 +9,7 @@ pub struct Sample<'s> {
     pub t: f64,
     /// State of the model.
     pub state: &'s [f64],
-    /// Inputs before the sample.
+    /// Inputs just before the sample.
     pub inputs: &'s [f64],
     /// Observables with these inputs; `energy` and `power` are the last two.
     pub observables: &'s [f64],
@@ -30,12 +30,12 @@ pub trait SampledController {
     /// The reason why the motion cannot continue, as a sentence without the time.
     fn sample(&mut self, at: &Sample<'_>, outputs: &mut [f64]) -> Result<(), String>;
 
-    /// Returns the states after the last sample, SI.
+    /// Returns the controller states after the last sample, SI.
     fn states(&self) -> &[f64] {
         &[]
     }
 
-    /// Continues with other states, SI; a controller without states ignores them.
+    /// Sets the controller states, SI, from which to continue. Controllers without states ignore them.
     fn set_states(&mut self, _states: &[f64]) {}
 
     /// Returns the names of the states.

@@ -1,4 +1,4 @@
-//! Controllers of a specification at parameter values.
+//! Controllers of a specification at given parameter values.
 
 use eomgen_codegen::program::{ControlValues, MeasuredSource, Program, ProgramController};
 use eomgen_model_spec::schedule::Schedule;
@@ -27,7 +27,7 @@ impl Instance<'_> {
     /// Returns the controllers of the specification in their initial states.
     ///
     /// # Errors
-    /// Inadmissible times or initial states at these parameter values.
+    /// Inadmissible times or initial states at the parameter values of the instance.
     pub fn controllers(&self) -> Result<Vec<DeclaredController>, Error> {
         let model = self.model().model();
         let declared = model.controllers.iter();
@@ -44,7 +44,7 @@ impl DeclaredController {
     /// Returns the controllers of a program at independent parameters (SI) in their initial states.
     ///
     /// # Errors
-    /// Inadmissible times or initial states at these parameters.
+    /// Inadmissible times or initial states at `parameters`.
     pub(crate) fn all(program: &Program, parameters: &[f64]) -> Result<Vec<Self>, Error> {
         let controllers = program.controllers.iter();
         let started = controllers.map(|controller| Self::start(controller, parameters));
@@ -121,7 +121,7 @@ impl SampledController for DeclaredController {
         }
         let values = self.controller.next.iter();
         let named = values.zip(&self.controller.states);
-        // A sample that fails changes no state.
+        // If the sample fails, no state is changed.
         let next = named.map(|(place, state)| finite(*place, "the state", &state.name));
         let next = next.collect::<Result<Vec<f64>, String>>()?;
         self.states.copy_from_slice(&next);

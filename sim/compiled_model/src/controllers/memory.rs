@@ -1,6 +1,6 @@
-//! Memory of controllers, with which another motion continues.
+//! Memory of controllers, to continue a motion.
 
-/// Next sample of a controller, at `offset` + `number` `period`.
+/// Next sample of a controller, at the time `offset` + `number` `period`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NextSample {
     /// Time between two samples, s.
@@ -11,27 +11,27 @@ pub struct NextSample {
     pub number: f64,
 }
 
-/// Outputs of a sample that will act.
+/// Outputs of a sample that have not acted yet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PendingOutputs {
     /// Time of the action, s.
     pub time: f64,
     /// Index of the controller.
     pub controller: usize,
-    /// Values of its inputs.
+    /// Values of the driven inputs.
     pub values: Vec<f64>,
 }
 
-/// Memory of the controllers of a motion at the time reached. The values of the inputs are not part of it.
+/// Memory of the controllers at the current time. The input values are not part of it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ControlMemory {
     /// States of all controllers, SI.
     pub states: Vec<f64>,
     /// Next sample of each controller.
     pub samples: Vec<NextSample>,
-    /// For each input, true if an output acts on it by now.
+    /// For each input, true if a controller output has acted on it.
     pub has_acted: Vec<bool>,
-    /// Outputs that will act, in the order of their samples.
+    /// Outputs that have not acted yet, in the order of their samples.
     pub pending: Vec<PendingOutputs>,
 }
 

@@ -1,6 +1,12 @@
-//! Sampled controllers: `controller` is their interface, `declared` those of a specification, `clock` the order of
-//! samples and actions, `memory` the values with which another motion continues, `control_loop` the loop of controllers
-//! with a motion, `continued` a simulation with controllers from call to call, `simulation` a whole one.
+//! Sampled controllers.
+//!
+//! - `controller`: their interface
+//! - `declared`: controllers of a specification
+//! - `clock`: order of samples and output actions
+//! - `memory`: values from which a motion continues
+//! - `control_loop`: closed loop of controllers and motion
+//! - `continued`: simulation over several calls
+//! - `simulation`: simulation in one call
 
 mod clock;
 #[cfg(feature = "derive")]

@@ -1,4 +1,4 @@
-//! Motion with sampled controllers over all times of a request.
+//! Simulation of a request with sampled controllers.
 
 use eomgen_sim::ode::Trajectory;
 
@@ -16,11 +16,11 @@ use crate::solver_options::SolverOptions;
 pub type Controllers<'c> = [&'c mut dyn SampledController];
 
 impl Instance<'_> {
-    /// Simulates a request with controllers, up to the time that the solver reaches. A row at the time of a sample has
-    /// the values after it. Calls `progress` with the time reached, s. Held inputs jump at samples, which does no work.
+    /// Simulates a request with controllers until the end or an early stop. A row at the time of a sample has the
+    /// values after it. Calls `progress` with the current time, s. Jumps of held inputs at samples do no work.
     ///
     /// # Errors
-    /// Two controllers that drive one input; same as [`Instance::simulate_until_stop`].
+    /// Two controllers drive the same input; see also [`Instance::simulate_until_stop`].
     pub fn simulate_controlled(
         &self,
         request: &Request<'_>,
@@ -30,7 +30,7 @@ impl Instance<'_> {
         self.simulate_with_controllers(Observed::new(request), controllers, progress)
     }
 
-    /// Simulates like [`Instance::simulate_controlled`], with measurements.
+    /// Simulates like [`Instance::simulate_controlled`] and evaluates meters.
     pub(crate) fn simulate_with_controllers(
         &self,
         Observed {
@@ -46,7 +46,7 @@ impl Instance<'_> {
             tolerance: request.tolerance,
             max_step: request.max_step,
         };
-        // A solver would name its steps, which the periods limit.
+        // The error message would otherwise name the step size, which the periods limit.
         let schedules = controllers.iter().map(|own| own.schedule()).collect();
         Clock::new(schedules, start).check_sample_count((start, end))?;
         let controllers = controllers.iter_mut();

@@ -1,22 +1,22 @@
-//! Closed contacts in a jump of the rates: those act that push, and those open that would pull.
+//! Closed contacts at a jump of the rates: contacts that push act, contacts that would pull open.
 
 use nalgebra::DVector;
 
 use super::sided_point::{Jump, SidedPoint, TouchingContact};
 
-/// Number of changes of the contacts that act, for each contact. If contacts depend on each other, the changes may have
-/// no end.
+/// Maximum number of changes of the active contacts, for each contact. If contacts are linearly dependent, the changes
+/// may cycle.
 const MAX_CHANGES_PER_CONTACT: usize = 4;
 
-/// Number of contacts of which all combinations are tried then.
+/// Maximum number of contacts for which all combinations are tried after a cycle.
 const MAX_COMBINED_CONTACTS: usize = 10;
 
-/// Largest pull of a contact, and speed into it, that count as rounding, relative to the motion.
+/// Largest pull of a contact, and approach speed, that count as zero, relative to the motion.
 const CONTACT_ROUNDING: f64 = 1e-9;
 
-/// Applies a jump with the contacts that push. A contact that pulls opens, and one into which bodies move acts, one at a
-/// time with the least index first. This method for complementarity problems (K. G. Murty) ends if the contacts are
-/// independent. Otherwise the combinations of independent contacts are tried.
+/// Applies a jump with the contacts that push. A contact that pulls becomes inactive, and a contact that bodies
+/// approach becomes active, one at a time, lowest index first. This method for complementarity problems (K. G. Murty)
+/// ends if the contacts are independent. Otherwise the combinations of independent contacts are tried.
 pub(super) fn apply_with_contacts(
     point: &mut SidedPoint<'_>,
     mut apply: impl FnMut(&mut SidedPoint<'_>) -> Option<Jump>,
@@ -51,7 +51,7 @@ pub(super) fn apply_with_contacts(
     None
 }
 
-/// Returns a contact that pulls, or into which bodies move, after a jump from the rates `before`.
+/// Returns a contact that pulls, or that bodies approach, after a jump from the rates `before`.
 fn find_contradiction(
     point: &SidedPoint<'_>,
     before: &DVector<f64>,
@@ -69,10 +69,10 @@ fn find_contradiction(
     Some((0..point.contacts.len()).find(contradicts))
 }
 
-/// Rates and impulses of contacts relative to the motion, in the norm of the kinetic energy.
+/// Rates and impulses of contacts, relative to the motion in the norm of the kinetic energy.
 struct ContactMeasure {
     inverse: nalgebra::Cholesky<f64, nalgebra::Dyn>,
-    /// Largest length of the rates, of those without momenta, and of the speeds of the contacts' surfaces.
+    /// Largest norm of the rates, of the rates at zero momenta, and of the surface speeds of contacts.
     size: f64,
 }
 
@@ -90,7 +90,7 @@ impl ContactMeasure {
         Some(Self { size, ..own })
     }
 
-    /// Returns the length of the row of a contact.
+    /// Returns the norm of the row of a contact.
     fn length(&self, contact: &TouchingContact) -> f64 {
         contact.row.dot(&self.inverse.solve(&contact.row)).sqrt()
     }

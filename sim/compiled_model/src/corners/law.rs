@@ -1,4 +1,4 @@
-//! The corner conditions at one surface: rates beyond it, or reflected from it.
+//! Corner conditions at one surface: rates after transmission through it or reflection from it.
 
 use eomgen_codegen::program::evaluator::Evaluator;
 use nalgebra::DVector;
@@ -6,17 +6,17 @@ use nalgebra::DVector;
 use super::contacts::apply_with_contacts;
 use super::sided_point::{Jump, Passage, SidedPoint};
 
-/// Difference of Hamiltonians, relative to their magnitude, that counts as rounding.
+/// Difference of Hamiltonians that counts as zero, relative to their magnitude.
 const ENERGY_ROUNDING: f64 = 1e-13;
 
-/// Applies the corner conditions at the surface `place`, with the contacts that push and do not pull. `None` if the rates
-/// do not follow from the momenta beyond, or no choice of contacts is free of contradiction.
+/// Applies the corner conditions at the surface `place`, with the contacts that push. Returns `None` if the momenta do
+/// not determine the rates beyond the surface, or if every choice of contacts is contradictory.
 pub(super) fn pass(point: &mut SidedPoint<'_>, place: usize, side: f64) -> Option<Passage> {
     let jump = apply_with_contacts(point, |point| cross(point, place, side))?;
     Some(jump.passage)
 }
 
-/// Changes the rates for given momenta, with the contacts that push and do not pull.
+/// Changes the rates for given momenta, with the contacts that push.
 pub(super) fn keep_momenta(point: &mut SidedPoint<'_>, momenta: &DVector<f64>) -> Option<()> {
     apply_with_contacts(point, |point| {
         let balance = point.balance()?;
@@ -27,12 +27,13 @@ pub(super) fn keep_momenta(point: &mut SidedPoint<'_>, momenta: &DVector<f64>) -
     Some(())
 }
 
-/// Applies the corner conditions at the surface `place`, with the contacts that act, to the rates of a point. Its side
-/// there changes to `side` if the motion passes. `None` if the rates do not follow from the momenta beyond.
+/// Applies the corner conditions at the surface `place`, with the active contacts, to the rates of a point. If the
+/// motion passes the surface, its side changes to `side`. Returns `None` if the momenta do not determine the rates
+/// beyond the surface.
 ///
-/// With the rates v0 at unchanged momenta, D = dv/dlambda and a = dg/dq D, the energy balance is
-/// c + r lambda + a lambda^2/2 = 0, where r is the rate of g at v0 and c the change of H there. The rate of g
-/// at the solutions is +-sqrt(r^2 - 2 a c); beyond the surface it keeps its sign.
+/// Notation: v0 are the rates at unchanged momenta, D = dv/dlambda, a = dg/dq D, r is the rate of g at v0, and c is the
+/// change of the Hamiltonian at v0. The energy balance is c + r lambda + a lambda^2/2 = 0. The rate of g at the
+/// solutions is +-sqrt(r^2 - 2 a c); for transmission it keeps its sign.
 fn cross(point: &mut SidedPoint<'_>, place: usize, side: f64) -> Option<Jump> {
     let first_side = point.inputs.len() - sides(point.evaluator);
     let direction = if side > 0.0 { 1.0 } else { -1.0 };

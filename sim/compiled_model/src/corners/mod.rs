@@ -1,8 +1,9 @@
-//! Corners of a motion, where the energies jump: at a surface g(q, t) = 0, or where inputs jump.
+//! Corners of a motion: jumps of the energies at a surface g(q, t) = 0, or when inputs jump.
 //!
-//! Position and time are continuous there; momenta and energy follow the corner conditions of Weierstrass
-//! and Erdmann ([`law`]). The motion passes the surface, or returns from it if its energy does not suffice.
-//! Closed contacts act if they push ([`contacts`]). Surfaces that are crossed at one instant are tried in every order, and all orders must agree.
+//! Position and time are continuous; momenta and energy satisfy the corner conditions of Weierstrass and Erdmann
+//! ([`law`]). The motion passes the surface, or returns from it if its energy does not suffice. Closed contacts act if
+//! they push ([`contacts`]). Surfaces that are crossed at one instant are tried in every order, and all orders must
+//! agree.
 
 mod contacts;
 mod law;
@@ -14,52 +15,52 @@ use nalgebra::DVector;
 use sided_point::SidedPoint;
 pub(crate) use sided_point::TouchingContact;
 
-/// Maximum number of surfaces that are crossed at one instant.
+/// Maximum number of surfaces crossed at one instant.
 const MAX_COINCIDENT: usize = 4;
 
-/// Largest difference of rates, relative to the largest one, between orders of surfaces that agree.
+/// Largest difference between the rates of two orders of surfaces that agree, relative to the largest rate.
 const ORDER_AGREEMENT: f64 = 1e-9;
 
-/// Number of attempts to move a state to the near side of a surface; the distance doubles each time.
+/// Maximum number of attempts to move a state to the near side of a surface; the distance doubles each time.
 const RETURN_ATTEMPTS: usize = 60;
 
-/// First distance, relative to the magnitude of the terms of the function.
+/// First distance to move, relative to the magnitude of the terms of the function.
 const RETURN_FRACTION: f64 = 4.0 * f64::EPSILON;
 
 /// Corners along a motion.
 pub(crate) struct Corners {
     evaluator: Evaluator,
-    /// Side of each surface, 0 or 1, on which the motion is; `None` if it has not been off the surface.
+    /// Side of each surface on which the motion is, 0 or 1; `None` if the motion has always been on the surface.
     sides: Vec<Option<f64>>,
     guards: Vec<f64>,
     /// Cause of a stop.
     failure: Option<String>,
 }
 
-/// Energy at a corner, in J.
+/// Energies at a corner.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CornerEnergy {
-    /// Energy before.
+    /// Energy before the corner, J.
     pub before: f64,
-    /// Work of the surfaces and constraints that move with time.
+    /// Work of moving surfaces and constraints, J.
     pub work: f64,
 }
 
-/// Surfaces that a motion crosses at one instant, and the sides of all before and after.
+/// Surfaces that a motion crosses at one instant, and the sides of all surfaces before and after.
 struct Crossed {
     from: Vec<f64>,
     to: Vec<f64>,
     crossed: Vec<usize>,
 }
 
-/// Rates and sides after surfaces that are crossed at one instant.
+/// Rates and sides after the motion has crossed surfaces at one instant.
 struct Outcome {
     state: Vec<f64>,
     sides: Vec<f64>,
 }
 
 impl Corners {
-    /// Wraps an evaluator of a program with the quantities at corners, prepared at its parameters.
+    /// Wraps an evaluator of a program with corner quantities, prepared at its parameters.
     pub fn new(evaluator: Evaluator) -> Self {
         Self {
             sides: vec![None; sides(&evaluator)],
@@ -79,8 +80,8 @@ impl Corners {
         (0..self.sides.len()).any(|place| self.guard(place) == guard)
     }
 
-    /// Records on which sides the motion is. On a surface it is on the side of `above(0) = 0`, unless it came from the
-    /// other one.
+    /// Updates the side of each surface. A state on a surface keeps the last side; without one it has the side of
+    /// `above(0) = 0`.
     pub fn update(&mut self, (t, state): (f64, &[f64]), inputs: &[f64]) {
         let values = self.functions((t, state), inputs);
         for (side, value) in self.sides.iter_mut().zip(values) {
@@ -88,15 +89,15 @@ impl Corners {
         }
     }
 
-    /// Returns the energy of a state on the sides on which the motion was last, J.
+    /// Returns the energy (J) of a state, evaluated on the last sides of the motion.
     pub fn energy(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Option<f64> {
         let functions = self.functions(at, inputs);
         let sides = self.last_sides(&functions);
         Some(self.point(at, inputs, &sides).values()?.energy)
     }
 
-    /// Changes the rates of a state just beyond surfaces; `before` is on their near side. A motion that
-    /// returns gets a position on the near side. Returns the energies if the motion has a corner.
+    /// Applies the corner conditions to the rates of a state just beyond surfaces; `before` is on their near side. If
+    /// the motion returns, the state is moved to the near side. Returns the energies if the motion has a corner.
     pub fn apply(
         &mut self,
         (t_before, before): (f64, &[f64]),
@@ -141,7 +142,7 @@ impl Corners {
         !self.find_crossed(before, at, inputs).crossed.is_empty()
     }
 
-    /// Returns the sides on which the motion was last; those of surfaces that it has not been off follow from `functions`.
+    /// Returns the last sides of the motion; sides that are unknown follow from the signs of `functions`.
     fn last_sides(&self, functions: &[f64]) -> Vec<f64> {
         let known = self.sides.iter().zip(functions);
         known
@@ -167,8 +168,7 @@ impl Corners {
         }
     }
 
-    /// Changes the rates of a state at a time at which inputs jump, for constant momenta. Returns the
-    /// energies if the rates change.
+    /// Changes the rates of a state when inputs jump, at constant momenta. Returns the energies if the rates change.
     pub fn apply_input_jump(
         &mut self,
         (t, state): (f64, &mut [f64]),
@@ -209,7 +209,7 @@ impl Corners {
         })
     }
 
-    /// Returns rates and sides after the surfaces `crossed`, in every order.
+    /// Returns rates and sides after the surfaces `crossed`. Tries every order of the surfaces.
     fn find_outcome(
         &mut self,
         (t, state): (f64, &[f64]),
@@ -246,8 +246,8 @@ impl Corners {
         found.ok_or_else(|| singular(t))
     }
 
-    /// Returns the energies at a corner. The work is what the corner conditions give: the change of T + V
-    /// minus that of the Hamiltonian, and that of the Hamiltonian at surfaces that move with time.
+    /// Returns the energies at a corner. The work follows from the corner conditions: the change of T + V minus the
+    /// change of the Hamiltonian, plus the change of the Hamiltonian at moving surfaces.
     fn energies(
         &mut self,
         at: (f64, &[f64]),
@@ -283,7 +283,7 @@ impl Corners {
         })
     }
 
-    /// Moves a state just beyond surfaces to the near side of those from which the motion returns.
+    /// Moves a state just beyond surfaces to the near side of the surfaces from which the motion returns.
     fn return_to_sides(
         &mut self,
         (t, state): (f64, &mut [f64]),
@@ -345,7 +345,7 @@ impl Corners {
         }
     }
 
-    /// Returns the functions of the surfaces.
+    /// Returns the values of the switching functions of the surfaces.
     fn functions(&mut self, (t, state): (f64, &[f64]), inputs: &[f64]) -> Vec<f64> {
         let inputs = [inputs, &vec![0.0; self.sides.len()]].concat();
         let inputs = &inputs[..];
@@ -393,7 +393,7 @@ impl Outcome {
     }
 }
 
-/// Returns the sides at these values of the functions; on a surface that of `otherwise`.
+/// Returns the sides at the given function values; on a surface the side in `otherwise`.
 fn sides_at(functions: &[f64], otherwise: &[f64]) -> Vec<f64> {
     let sides = functions.iter().zip(otherwise);
     sides
@@ -422,7 +422,7 @@ fn singular(t: f64) -> String {
     )
 }
 
-/// Returns all orders of some places.
+/// Returns all permutations of `places`.
 fn permutations(places: &[usize]) -> Vec<Vec<usize>> {
     if places.len() <= 1 {
         return vec![places.to_vec()];

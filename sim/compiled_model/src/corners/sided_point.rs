@@ -1,23 +1,23 @@
-//! A model with given sides of its surfaces at a position and time: its rates at given momenta.
+//! Model at a position and time with given sides of its surfaces: rates for given momenta.
 
 use eomgen_codegen::independence::dependence::dependent_rows;
 use eomgen_codegen::independence::vectors::norm;
 use eomgen_codegen::program::evaluator::{CornerValues, Evaluator, Point};
 use nalgebra::{DMatrix, DVector};
 
-/// Largest remainder of a dependent row of the constraints, relative to its length.
+/// Largest remainder of a dependent constraint row, relative to its norm.
 const MAX_DEPENDENT_REMAINDER: f64 = 1e-9;
 
-/// Contact at which bodies touch at rest: it acts during the jump if it pushes.
+/// Contact at which bodies touch at rest. It acts during the jump if it pushes.
 #[derive(Clone, Debug)]
 pub(crate) struct TouchingContact {
     /// Rate of the distance at zero rates of the coordinates.
     pub drift: f64,
-    /// Derivatives of the distance by the coordinates.
+    /// Derivatives of the distance with respect to the coordinates.
     pub row: DVector<f64>,
 }
 
-/// Model with given sides of its surfaces, at a position and time.
+/// Model at a position and time with given sides of its surfaces.
 pub(super) struct SidedPoint<'e> {
     pub evaluator: &'e mut Evaluator,
     pub t: f64,
@@ -25,12 +25,12 @@ pub(super) struct SidedPoint<'e> {
     /// Inputs of the model, then the sides.
     pub inputs: Vec<f64>,
     pub contacts: &'e [TouchingContact],
-    /// True for the contacts that act.
+    /// True for active contacts.
     pub acts: Vec<bool>,
 }
 
 impl<'e> SidedPoint<'e> {
-    /// Sets the contacts at which bodies touch at rest. All act at first.
+    /// Sets the contacts at which bodies touch at rest. All are active at first.
     pub(super) fn with_contacts(mut self, contacts: &'e [TouchingContact]) -> Self {
         self.contacts = contacts;
         self.acts = vec![true; contacts.len()];
@@ -58,7 +58,7 @@ impl SidedPoint<'_> {
         self.state[degrees..2 * degrees].copy_from_slice(rates.as_slice());
     }
 
-    /// Returns the equations for rates with these sides. `None` if the mass matrix is not positive definite.
+    /// Returns the equations for the rates with the present sides. `None` if the mass matrix is not positive definite.
     pub(super) fn balance(&mut self) -> Option<Balance> {
         let degrees = self.degrees();
         let values = self.values()?;
@@ -98,10 +98,10 @@ impl SidedPoint<'_> {
     }
 }
 
-/// Row of a constraint or contact: its contact, its rate at zero rates, its derivatives by the coordinates.
+/// Row of a constraint or contact: contact index, rate at zero rates, derivatives with respect to the coordinates.
 type Row = (Option<usize>, f64, DVector<f64>);
 
-/// Returns the rows without those that depend on the others.
+/// Returns the linearly independent rows.
 fn independent_rows(rows: Vec<Row>, mass: &DMatrix<f64>) -> Vec<Row> {
     let inertia = mass.diagonal();
     let scaled = rows.iter().map(|(_, _, row)| {
@@ -117,8 +117,8 @@ fn independent_rows(rows: Vec<Row>, mass: &DMatrix<f64>) -> Vec<Row> {
     independent.map(|(_, row)| row).collect()
 }
 
-/// Equations M q' - A^T mu = p - b, A q' = -a_t for the rates at given momenta. A has the rows of the constraints and of
-/// the contacts that act.
+/// Equations M q' - A^T mu = p - b, A q' = -a_t for the rates at given momenta p. A has the rows of the constraints and
+/// of the active contacts.
 pub(super) struct Balance {
     pub values: CornerValues,
     mass: DMatrix<f64>,
@@ -126,23 +126,23 @@ pub(super) struct Balance {
     constant_momenta: DVector<f64>,
     /// Rates a_t of the constraints at zero rates of the coordinates.
     pub drift: DVector<f64>,
-    /// Contact of each row.
+    /// Contact index of each row.
     contacts: Vec<Option<usize>>,
     matrix: nalgebra::LU<f64, nalgebra::Dyn, nalgebra::Dyn>,
 }
 
 impl Balance {
-    /// Returns the rates at these momenta, and the impulses of the rows.
+    /// Returns the rates at given momenta, and the impulses of the rows.
     pub(super) fn rates_at(&self, momenta: &DVector<f64>) -> Option<(DVector<f64>, DVector<f64>)> {
         self.solve(&(momenta - &self.constant_momenta), &-&self.drift)
     }
 
-    /// Returns the changes of the rates and of the impulses of the rows by a unit impulse along a row.
+    /// Returns the changes of the rates and of the row impulses due to a unit impulse along a row.
     pub(super) fn column(&self, row: &DVector<f64>) -> Option<(DVector<f64>, DVector<f64>)> {
         self.solve(row, &DVector::zeros(self.drift.len()))
     }
 
-    /// Returns the jump with these equations.
+    /// Creates the jump that these equations give.
     pub(super) fn jump(self, passage: Passage, impulses: DVector<f64>) -> Jump {
         Jump {
             passage,
@@ -169,12 +169,12 @@ impl Balance {
     }
 }
 
-/// Result of an arrival at a surface.
+/// Result of a motion that reaches a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Passage {
     /// The motion continues beyond the surface.
     Transmitted,
-    /// The motion returns: its energy does not suffice, or its rate leads back already.
+    /// The motion returns: its energy does not suffice, or its rate already leads back.
     Returned,
 }
 
@@ -183,7 +183,7 @@ pub(super) struct Jump {
     pub passage: Passage,
     /// Impulse of each row.
     pub impulses: DVector<f64>,
-    /// Contact of each row.
+    /// Contact index of each row.
     pub contacts: Vec<Option<usize>>,
     pub mass: DMatrix<f64>,
     /// Momenta at zero rates.
@@ -191,7 +191,7 @@ pub(super) struct Jump {
 }
 
 impl Jump {
-    /// Returns the impulse of a contact; 0 if it does not act, or depends on others.
+    /// Returns the impulse of a contact; 0 if the contact is inactive or depends on others.
     pub(super) fn impulse_at(&self, contact: usize) -> f64 {
         let mut rows = self.contacts.iter().zip(&self.impulses);
         let found = rows.find(|(own, _)| **own == Some(contact));

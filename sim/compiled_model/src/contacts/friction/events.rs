@@ -1,4 +1,4 @@
-//! Changes of the modes of closed contacts with friction.
+//! Mode changes of closed contacts with friction.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::contact_friction::{ContactDecision, ContactMode};
@@ -6,22 +6,23 @@ use eomgen_sim::contact_friction::{ContactDecision, ContactMode};
 use super::super::tangents::{ContactForces, Tangent};
 use super::super::{Contacts, Overlap, solve_rows};
 
-/// Rounding of a force, relative to the forces of its contact.
+/// Rounding error of a force, relative to the forces of its contact.
 const FORCE_ROUNDING: f64 = 1e-12;
 
-/// Part of the effect of a tangential force on its own slip, with the reactions of other contacts, that is rounding.
+/// A tangential force whose effect on its own slip is below this fraction has no independent effect. The effect
+/// includes the reactions of other contacts.
 const MAX_INDEPENDENT_FRACTION: f64 = 1e-8;
 
-/// Acceleration of a slip that is rounding, relative to its terms.
+/// Rounding error of the acceleration of a slip, relative to its terms.
 const ACCELERATION_ROUNDING: f64 = 1e-11;
 
-/// Multiple of the rounding of a slip that counts as zero where other contacts stick.
+/// Where other contacts stick, a slip below this multiple of its rounding error counts as zero.
 const NEAR_ROUNDINGS: f64 = 1e3;
 
 impl Contacts {
-    /// Changes the modes of the closed contacts, evaluated at `point`, if a guard of theirs is negative: contacts that
-    /// no longer push open, sliding ends at zero slip, and rest ends at the limit of friction. `located` is the point
-    /// whose rounding decides where contacts open.
+    /// Changes the modes of the closed contacts if one of their guards at `point` is negative. Contacts that no longer
+    /// push open, sliding ends at zero slip, and sticking ends at the limit of friction. The rounding errors at
+    /// `located` set the tolerance within which contacts open.
     ///
     /// # Errors
     /// No forces satisfy the law of friction.
@@ -46,7 +47,7 @@ impl Contacts {
                 excluded.push((index, modes[index]));
             }
         }
-        // Before the guards are NaN the forces may have grown beyond bounds.
+        // The forces may have grown beyond all bounds before the guards became NaN.
         let is_finite = forces.normal.iter().all(|force| force.is_finite());
         if excluded.is_empty() && is_finite && !has_left {
             return Ok(());
@@ -64,8 +65,8 @@ impl Contacts {
         Ok(())
     }
 
-    /// Keeps the modes of closed contacts at a point if forces satisfy the law of friction in them, and changes them
-    /// otherwise: other forces may have changed.
+    /// Keeps the modes of closed contacts at a point if forces in these modes satisfy the law of friction. Otherwise
+    /// changes the modes, because other forces may have changed.
     ///
     /// # Errors
     /// No forces satisfy the law of friction.
@@ -101,7 +102,7 @@ impl Contacts {
         Ok(())
     }
 
-    /// Returns the known directions of the slips; `None` for contacts that do not slip.
+    /// Returns the known directions of slip; `None` for contacts that do not slip.
     fn slip_directions(
         &self,
         roundings: &[f64],
@@ -132,7 +133,7 @@ impl Contacts {
         }
     }
 
-    /// Decides the forces of contacts at rest in their normal directions, and the directions of zero slips.
+    /// Determines the modes of contacts at rest in their normal directions, including the directions of zero slips.
     ///
     /// # Errors
     /// No forces satisfy the law of friction.
@@ -152,7 +153,7 @@ impl Contacts {
                 false => ContactMode::Slides(0.0),
             })
             .collect();
-        // Flights that count as rest leave rates; without them a body that rocks does not slip.
+        // Flights too short to resolve leave small rates, which would make a rocking body slip.
         let stopped = self.stopped_slips(places, &modes);
         let slips: Vec<(usize, f64)> = places.iter().copied().zip(stopped).collect();
         let direction = |place: usize| {
@@ -165,7 +166,7 @@ impl Contacts {
         decided.ok_or((places.first().copied().unwrap_or(0), Overlap::NoForces))
     }
 
-    /// Enters modes decided at `point`: contacts that do not push open.
+    /// Enters the modes decided at `point`. Contacts that do not push open.
     pub(in super::super) fn enter_modes(
         &mut self,
         own: &mut Evaluator,
@@ -198,7 +199,7 @@ impl Contacts {
         }
     }
 
-    /// Frees the slips of contacts that others no longer keep at zero. Returns true if there are any.
+    /// Releases the slips of contacts that other contacts no longer keep at zero. Returns true if there are any.
     fn free_left_slips(&mut self, forces: &ContactForces) -> bool {
         let has_left = |tangent: &Tangent| {
             let closed = self.closed.iter().position(|place| *place == tangent.place);
@@ -212,9 +213,8 @@ impl Contacts {
         left.contains(&true)
     }
 
-    /// Marks contacts at the limit of friction whose slip other contacts keep at zero, as those of a box that rests
-    /// on two edges, or of the floor under a body at a wall: their slip follows from the directions in which the others do not
-    /// move.
+    /// Marks contacts at the limit of friction whose slip other contacts keep at zero: a box on two edges, or the floor
+    /// under a body at a wall. Their slip depends on the directions in which the other contacts do not move.
     fn mark_bearing(&mut self, roundings: &[f64]) {
         for tangent in &mut self.tangents {
             tangent.bears = false;
@@ -252,7 +252,7 @@ impl Contacts {
         }
     }
 
-    /// Sets the offsets of a closed contact so that its guard of friction begins above zero.
+    /// Sets the offsets of a closed contact so that its friction guard starts above zero.
     pub(in super::super) fn reset_offsets(
         &mut self,
         place: usize,

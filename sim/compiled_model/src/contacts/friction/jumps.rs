@@ -1,5 +1,5 @@
-//! Impulses of contacts with friction. Restitution at a single contact is energetic (W. J. Stronge). Contacts
-//! that are hit together receive their impulses together, with a common limit of their restitutions.
+//! Impulses of contacts with friction. Restitution at a single contact is energetic (W. J. Stronge). Contacts that are
+//! hit together receive simultaneous impulses, with a common limit of their restitutions.
 
 use eomgen_codegen::independence::vectors::max_magnitude;
 use eomgen_sim::contact_friction::{SingleImpact, energetic_impulse};
@@ -8,11 +8,12 @@ use super::super::Contacts;
 use super::super::impulses::{ENERGY_GAIN_ROUNDING, RESTITUTION_HALVINGS};
 use super::super::tangents::ContactForces;
 
-/// A rate below this fraction of the largest is zero.
+/// Rates below this fraction of the largest rate count as zero.
 const RATE_ROUNDING: f64 = 1e-12;
 
 impl Contacts {
-    /// Returns the impulses of contacts that touch and hit so long `ago` (s); `None` if none keep the bodies apart.
+    /// Returns the impulses of contacts that touch and were hit `ago` s before; `None` if no impulses keep the bodies
+    /// apart.
     pub(in super::super) fn solve_friction_impulses(
         &self,
         touching: &[usize],
@@ -23,7 +24,7 @@ impl Contacts {
             .map(|place| self.required_rate_change(*place, ago, 1.0))
             .collect();
         let small = RATE_ROUNDING * max_magnitude(&required);
-        // The rate of a closed contact is rounding, which must not decide that it is hit.
+        // The rate of a closed contact is only rounding and must not count as a hit.
         let is_hit = |index: &usize| !self.rests(touching[*index]) && required[*index] < -small;
         let mut hit = (0..touching.len()).filter(is_hit);
         if let (Some(index), None) = (hit.next(), hit.next())
@@ -35,7 +36,7 @@ impl Contacts {
         self.solve_together(touching, ago)
     }
 
-    /// Returns the magnitude of the terms of the acceleration of each slip, with the forces of closed contacts.
+    /// Returns the magnitude of the terms in the acceleration of each slip, including the forces of closed contacts.
     pub(in super::super) fn slip_acceleration_sizes(&self) -> Vec<f64> {
         if !self.has_friction() {
             return Vec::new();
@@ -83,14 +84,14 @@ impl Contacts {
         Some(impulses)
     }
 
-    /// Returns the rates of distances, then of slips, when they hit.
+    /// Returns the rates of the distances, then of the slips, at the time of the hit.
     fn hit_rates(&self, touching: &[usize], ago: f64) -> Vec<f64> {
         let normal = touching.iter().map(|place| self.hit_rate(*place, ago));
         let slips = touching.iter().map(|place| self.hit_slip(*place, ago));
         normal.chain(slips).collect()
     }
 
-    /// Returns true if no distance decreases after these impulses.
+    /// Returns true if no distance decreases after the given impulses.
     fn leaves_apart(&self, touching: &[usize], impulses: &ContactForces, ago: f64) -> bool {
         let before = self.hit_rates(touching, ago);
         let changes = self.rate_changes(touching, impulses);
@@ -102,7 +103,7 @@ impl Contacts {
         })
     }
 
-    /// Returns the changes of the rates of distances, then of slips, by impulses.
+    /// Returns the changes of the rates of distances, then of slips, by the given impulses.
     pub(super) fn rate_changes(&self, touching: &[usize], impulses: &ContactForces) -> Vec<f64> {
         let all: Vec<f64> = impulses
             .normal
@@ -129,7 +130,7 @@ impl Contacts {
             let decided = self.problem(touching, |_| None, &rates).decide(None, &[])?;
             Some(ContactForces::from_directions(decided.impulses))
         };
-        // Energy gained, and the size of its terms.
+        // Returns the energy gain and the magnitude of its terms.
         let gain = |impulses: &ContactForces| {
             let changes = self.rate_changes(touching, impulses);
             let all = impulses.normal.iter().chain(&impulses.tangential);

@@ -17,13 +17,13 @@ use super::Contacts;
 use super::tangents::{ContactForces, Tangent};
 pub(crate) use problem::{contact_problem, free_accelerations, full_delassus, rates_and_slips};
 
-/// Relative change of a rate for its effect on a slip.
+/// Relative change of a rate, for a difference quotient of the slip.
 const RELATIVE_CHANGE: f64 = 1e-6;
 
-/// Acceleration of a slip, relative to its terms, beyond which other contacts no longer keep it at zero.
+/// Relative acceleration of a slip beyond which other contacts no longer keep it at zero.
 const MAX_BEARING_ACCELERATION: f64 = 1e-10;
 
-/// Rounding of a slip, relative to the largest sum of its terms so far.
+/// Rounding error of a slip, relative to the largest sum of its terms so far.
 const SLIP_ROUNDING: f64 = 1024.0 * f64::EPSILON;
 
 impl Contacts {
@@ -55,7 +55,7 @@ impl Contacts {
         tangent.map_or(ContactMode::Slides(0.0), |tangent| tangent.mode)
     }
 
-    /// Returns the friction of a contact with friction at the last point.
+    /// Returns the friction values of a contact at the last point; `None` without friction.
     pub(super) fn friction_at(&self, place: usize) -> Option<&FrictionValues> {
         self.at[place].friction.as_ref()
     }
@@ -65,7 +65,8 @@ impl Contacts {
             .map_or(0.0, |friction| friction.slip)
     }
 
-    /// Returns the problem of some contacts with the slip directions `direction`; see [`contact_problem`].
+    /// Returns the complementarity problem of some contacts with the slip directions `direction`; see
+    /// [`contact_problem`].
     fn problem(
         &self,
         places: &[usize],
@@ -92,7 +93,7 @@ impl Contacts {
         ContactForces::from_directions(problem.forces(&modes))
     }
 
-    /// Returns the impulses that stop the closed contacts and the slips of those that stick.
+    /// Returns the impulses that stop the closed contacts and the slips of contacts that stick.
     pub(super) fn stopping_impulses(&self) -> ContactForces {
         let sticks = |place: &usize| self.mode(*place) == ContactMode::Sticks;
         let modes = self.closed.iter().map(|place| match sticks(place) {
@@ -102,8 +103,9 @@ impl Contacts {
         self.impulses_to_stop(&self.closed, &modes.collect::<Vec<ContactMode>>())
     }
 
-    /// Returns the same with the friction of contacts that slide; `None` if one does not slide on. A contact that closes
-    /// after an impact has a smaller impulse of friction, because a part of its normal impulse is removed.
+    /// Returns the impulses that stop the closed contacts, with friction at contacts that slide; `None` if a contact
+    /// stops sliding. A contact that closes after an impact has a smaller friction impulse, because part of its normal
+    /// impulse is removed.
     pub(super) fn closing_impulses(&self) -> Option<ContactForces> {
         let modes: Vec<ContactMode> = self.closed.iter().map(|place| self.mode(*place)).collect();
         let impulses = self.impulses_to_stop(&self.closed, &modes);
@@ -123,7 +125,7 @@ impl Contacts {
         ContactForces::from_directions(problem.impulses(modes))
     }
 
-    /// Returns the slips after the impulses that stop these contacts and the slips of those that stick.
+    /// Returns the slips after impulses that stop the contacts and the slips of contacts that stick.
     fn stopped_slips(&self, places: &[usize], modes: &[ContactMode]) -> Vec<f64> {
         let impulses = self.impulses_to_stop(places, modes);
         let changes = self.rate_changes(places, &impulses);
@@ -133,8 +135,8 @@ impl Contacts {
             .collect()
     }
 
-    /// Writes the guards of friction: the slip in its direction while a contact slides, the margin mu N - |T|
-    /// while it sticks. That of a contact whose slip others keep at zero is negative if they no longer do.
+    /// Writes the friction guards: the slip in its direction while a contact slides, the margin mu N - |T| while it
+    /// sticks. If other contacts keep the slip at zero, the guard is negative when they no longer do.
     pub(super) fn write_friction_guards(&self, forces: &ContactForces, out: &mut [f64]) {
         for (slot, tangent) in out.iter_mut().zip(&self.tangents) {
             let closed = self.closed.iter().position(|place| *place == tangent.place);
@@ -145,7 +147,7 @@ impl Contacts {
         }
     }
 
-    /// Returns the guard of a closed contact, the one with this index among the closed ones.
+    /// Returns the friction guard of a closed contact; `index` counts the closed contacts.
     fn friction_guard(&self, tangent: &Tangent, index: usize, forces: &ContactForces) -> f64 {
         let Some(friction) = self.friction_at(tangent.place) else {
             return 1.0;
@@ -164,7 +166,8 @@ impl Contacts {
         }
     }
 
-    /// Returns the acceleration of the slip of the closed contact with this index, and the size of its terms.
+    /// Returns the acceleration of the slip of a closed contact, and the magnitude of its terms. `index` counts the
+    /// closed contacts.
     pub(super) fn slip_acceleration(&self, index: usize, forces: &ContactForces) -> (f64, f64) {
         let count = self.closed.len();
         let delassus = self.full_delassus(&self.closed);
@@ -185,8 +188,8 @@ impl Contacts {
         }
     }
 
-    /// Returns the effect of rounding of the rates on each slip. At rest the rates are the rounding of
-    /// earlier, larger ones, or of rates that have not moved.
+    /// Returns the rounding error of each slip due to rounding of the rates. At rest the rounding comes from earlier,
+    /// larger rates, or from the typical sizes of rates that have not moved.
     pub(super) fn slip_roundings(&mut self, own: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
         let degrees = own.program().degrees_of_freedom();
         own.impacts(point, &mut self.at);

@@ -1,10 +1,10 @@
-//! The problem of contact forces, from the values of impacts at a point.
+//! Contact force problem from the values of impacts at a point.
 
 use eomgen_codegen::program::evaluator::ImpactValues;
 use eomgen_sim::contact_friction::{ContactFriction, ContactProblem};
 
-/// Returns the problem of the contacts at `places` with the slip directions `direction`, of which only those with
-/// friction have one. The rates are those of the distances, then of the slips.
+/// Returns the problem of the contacts at `places`. `direction` has the slip directions of the contacts with friction.
+/// The rates are those of the distances, then of the slips.
 pub(crate) fn contact_problem(
     impacts: &[ImpactValues],
     places: &[usize],

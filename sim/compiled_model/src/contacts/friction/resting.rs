@@ -1,4 +1,4 @@
-//! Contacts with friction that close: at the start and after an impact.
+//! Contacts with friction that close at the start or after an impact.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::contact_friction::ContactMode;
@@ -8,8 +8,7 @@ use super::super::tangents::ContactForces;
 use super::super::{Contacts, DISTANCE_ROUNDING, Overlap};
 
 impl Contacts {
-    /// Closes those of the contacts at rest that push at the start. Slips up to the `small` rates of each contact are
-    /// zero.
+    /// Closes the contacts at rest that push at the start. Slips up to the rate `small` of each contact are zero.
     ///
     /// # Errors
     /// No forces satisfy the law of friction.
@@ -29,7 +28,8 @@ impl Contacts {
         Ok(())
     }
 
-    /// Closes those that touch and would not fly after an impact, or that move on together.
+    /// After an impact, closes the touching contacts that would not separate, and the contacts whose bodies move on
+    /// together.
     ///
     /// # Errors
     /// No forces satisfy the law of friction.
@@ -75,7 +75,7 @@ impl Contacts {
         };
         let forces = ContactForces::from_directions(decision.impulses.clone());
         self.note_choice(point.t, (&resting, &decision));
-        // Contacts that move on together without a force stay closed.
+        // Contacts whose bodies move on together without a force stay closed.
         let decided = resting.iter().zip(&decision.modes);
         let pushing = decided.filter(|(_, mode)| **mode != ContactMode::Open);
         let pushing: Vec<usize> = pushing.map(|(place, _)| *place).collect();
@@ -102,8 +102,9 @@ impl Contacts {
         Ok(())
     }
 
-    /// Returns the mode of a closed contact without a normal force: its friction is zero, so that it sticks only if its
-    /// slip neither moves nor accelerates. Slips up to their roundings or the `small` rate are zero.
+    /// Returns the mode of a closed contact without a normal force. Its friction is zero, so the contact sticks only if
+    /// its slip and the acceleration of its slip are zero. Slips up to their rounding errors or the rate `small` count
+    /// as zero.
     fn force_free_mode(
         &self,
         place: usize,
@@ -130,7 +131,7 @@ impl Contacts {
         }
     }
 
-    /// Returns the accelerations of the distances of contacts with these forces at others.
+    /// Returns the accelerations of the distances of contacts due to the forces of other contacts.
     fn resting_accelerations(
         &self,
         touching: &[usize],
@@ -143,8 +144,8 @@ impl Contacts {
         touching.iter().map(acceleration).collect()
     }
 
-    /// Returns the acceleration by these forces of the direction with this row of Delassus' matrix, and the sum of its terms'
-    /// magnitudes.
+    /// Returns the acceleration due to `forces` in the direction with the given row of the Delassus matrix, and the sum
+    /// of the magnitudes of its terms.
     fn pushes(&self, row: &[f64], (resting, forces): (&[usize], &ContactForces)) -> (f64, f64) {
         let normal = resting.iter().zip(&forces.normal);
         let normal = normal.map(|(other, force)| row[*other] * force);
