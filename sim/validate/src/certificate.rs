@@ -24,15 +24,15 @@ pub struct Certificate {
     pub specification_sha256: String,
     /// SHA-256 of the emitted source; `None` if no source was emitted.
     pub source_sha256: Option<String>,
-    /// Emitted C.
+    /// Hashes of the emitted C, one entry for each prefix.
     pub c_sources: Vec<CSourceHashes>,
-    /// Emitted functions for CasADi, if any.
+    /// Hash of the emitted functions for CasADi; `None` if there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub casadi: Option<CasadiHash>,
-    /// Functional mock-up unit, if any.
+    /// Hash of the functional mock-up unit; `None` if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit: Option<UnitHash>,
-    /// Hashes of the sources in their identities, as `eomgen identify` prints them.
+    /// Hashes in the identity symbols of the emitted sources, as `eomgen identify` prints them.
     pub identities: Vec<String>,
     /// Requested outputs, by their names in `--with`.
     pub with: Vec<String>,
@@ -63,7 +63,7 @@ pub struct Certificate {
 /// Hashes of the two files of emitted C.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct CSourceHashes {
-    /// Prefix of its names: the files are `NAME.c` and `NAME.h`.
+    /// Prefix of the C names: the files are `NAME.c` and `NAME.h`.
     pub name: String,
     /// SHA-256 of `NAME.c`.
     pub source_sha256: String,
@@ -85,7 +85,7 @@ pub struct CasadiHash {
 /// Hash of a functional mock-up unit.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct UnitHash {
-    /// Name: the file is `NAME.fmu`.
+    /// Name of the unit: the file is `NAME.fmu`.
     pub name: String,
     /// SHA-256 of the file.
     pub sha256: String,
@@ -162,7 +162,7 @@ pub struct Check {
     /// Reason for skipping the check; `None` (`false` in JSON) if it was run.
     #[serde(serialize_with = "or_false")]
     pub skipped: Option<Skip>,
-    /// Number of states compared and place of the largest deviation, or the reason for skipping.
+    /// Number of compared states and location of the largest deviation, or the reason for skipping.
     pub detail: String,
 }
 
@@ -177,13 +177,13 @@ pub struct CertificateHeader {
     pub specification_sha256: String,
     /// SHA-256 of the emitted source, if any.
     pub source_sha256: Option<String>,
-    /// Emitted C.
+    /// Hashes of the emitted C, one entry for each prefix.
     pub c_sources: Vec<CSourceHashes>,
-    /// Emitted functions for CasADi, if any.
+    /// Hash of the emitted functions for CasADi; `None` if there are none.
     pub casadi: Option<CasadiHash>,
-    /// Functional mock-up unit, if any.
+    /// Hash of the functional mock-up unit; `None` if there is none.
     pub unit: Option<UnitHash>,
-    /// Hashes of the sources in their identities.
+    /// Hashes in the identity symbols of the emitted sources.
     pub identities: Vec<String>,
     /// Parameters that were set, in their declared units.
     pub settings: Vec<(String, f64)>,
@@ -211,7 +211,7 @@ impl Certificate {
         listed.map(|check| check.name.clone()).collect()
     }
 
-    /// Creates the certificate of `about`. A certificate without checks does not pass.
+    /// Creates the certificate with the header `about`. A certificate without checks does not pass.
     pub fn new(about: CertificateHeader, coverage: Option<Coverage>, checks: Vec<Check>) -> Self {
         let verdict = Verdict::from_checks(&checks);
         Self {
@@ -270,7 +270,7 @@ impl Check {
         }
     }
 
-    /// Creates a skipped check: the model has nothing to compare.
+    /// Creates a skipped check that has nothing to compare in this model.
     pub fn not_applicable(
         name: impl Into<String>,
         tolerance: f64,
@@ -302,7 +302,7 @@ impl Check {
     }
 }
 
-/// Largest deviation so far and its place. NaN counts as infinity, and so does no deviation at all.
+/// Largest deviation so far and its location. NaN counts as infinity, and so does a check without any deviation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Worst {
     value: f64,
@@ -319,7 +319,7 @@ impl Default for Worst {
 }
 
 impl Worst {
-    /// Creates a deviation with a description of its place. NaN becomes infinity.
+    /// Creates a deviation with a description of its location. NaN becomes infinity.
     pub fn from_deviation(value: f64, detail: impl Into<String>) -> Self {
         Self {
             value: if value.is_nan() { f64::INFINITY } else { value },
@@ -327,7 +327,7 @@ impl Worst {
         }
     }
 
-    /// Adds the deviation of another comparison, with its detail if only it deviates.
+    /// Combines two comparisons. If only `other` deviates, its detail replaces the first one.
     pub fn with(self, other: Option<Self>) -> Self {
         let Some(other) = other else { return self };
         let detail = match (self.value > 0.0, other.value > 0.0) {
@@ -347,7 +347,7 @@ impl Worst {
         }
     }
 
-    /// Prefixes the description with the number of compared items; `what` is their plural noun.
+    /// Prefixes the description with the number of compared items; `what` is the plural noun for the items.
     pub fn with_count(self, count: usize, what: &str) -> Self {
         Self {
             detail: format!("{count} {what}, worst: {}", self.detail),

@@ -57,9 +57,10 @@ pub struct Subject<'s> {
     pub outputs: Option<&'s dyn Fn() -> Result<Box<dyn Outputs>, String>>,
     /// Emitted source with the parameters of the specification, or the reason for its absence.
     pub emitted: Result<Emitted, String>,
-    /// Program of the emitted sources, to compare their interface with; `None` leaves this out.
+    /// Program from which the sources were emitted; their interfaces are compared with it. `None` skips this
+    /// comparison.
     pub program: Option<&'s Program>,
-    /// Emitted C, one source for each prefix.
+    /// Emitted C sources, one for each prefix.
     pub c_sources: &'s [CSource],
     /// Emitted functions for CasADi with their program, or the reason for its absence.
     pub casadi: Option<(&'s CasadiSource, &'s Result<Program, String>)>,
@@ -187,7 +188,7 @@ fn source_checks(
     Ok(checks)
 }
 
-/// Compares the requested outputs with the oracle, then those of the functions for CasADi that were not requested.
+/// Compares the requested outputs with the oracle, then the further outputs of the functions for CasADi.
 fn output_checks(
     subject: &Subject<'_>,
     oracle: &Oracle,

@@ -19,9 +19,9 @@ pub struct Compiler {
 /// Optimisation level of the emitted source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Optimization {
-    /// Full, as in a release build: optimisation could change a number.
+    /// Full optimisation as in a release build, because optimisation could change a result.
     Full,
-    /// No optimisation: compiles in a sixth of the time, for many instances with few calls.
+    /// No optimisation: compilation takes a sixth of the time. It suits many instances with few calls.
     None,
 }
 
@@ -37,7 +37,7 @@ pub struct Output {
 }
 
 impl Compiler {
-    /// Finds the compiler, `RUSTC` of the environment or `rustc`, and tests it in `folder`.
+    /// Finds the compiler (environment variable `RUSTC`, otherwise `rustc`) and tests it in `folder`.
     pub fn find(folder: &Path) -> Result<Self, String> {
         let program = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
         Self::from_program(program, folder)
@@ -66,7 +66,7 @@ impl Compiler {
         }
     }
 
-    /// Compiles `source` to `target` with the further arguments `more`.
+    /// Compiles `source` to `target` with the additional arguments `more`.
     pub fn compile(
         &self,
         source: &Path,
@@ -101,7 +101,7 @@ pub fn write(path: &Path, text: &str) -> Result<(), String> {
     std::fs::write(path, text).map_err(|error| format!("{}: {error}", path.display()))
 }
 
-/// Returns the first line of a compiler's message with an error, or else its first line with text.
+/// Returns the first line of a compiler's message that contains an error, otherwise its first nonblank line.
 pub fn first_line(text: &str) -> &str {
     let mut lines = text.lines();
     (lines.clone().find(|line| line.contains("error:")))
@@ -109,7 +109,7 @@ pub fn first_line(text: &str) -> &str {
         .unwrap_or("no message")
 }
 
-/// Runs a command with `input` on its standard input, within the time limit.
+/// Runs a command with `input` on its standard input. The process is stopped after the time limit.
 pub fn run(command: &mut Command, input: &str) -> Result<Output, String> {
     let name = command.get_program().to_os_string();
     let failed = |error: std::io::Error| format!("{}: {error}", Path::new(&name).display());
@@ -123,7 +123,7 @@ pub fn run(command: &mut Command, input: &str) -> Result<Output, String> {
     let stderr = child.stderr.take().map(collect);
     let writer = child.stdin.take().map(|mut stdin| {
         let input = input.to_owned();
-        // A write error is ignored: the exit status decides.
+        // A write error is ignored, because the exit status reports a failure of the process.
         std::thread::spawn(move || drop(stdin.write_all(input.as_bytes())))
     });
     let success = wait(&mut child, &name);

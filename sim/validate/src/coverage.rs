@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// Numbers of regimes of the piecewise functions.
+/// Numbers of possible, sampled and unreachable regimes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Coverage {
     /// Combinations of sides that are not proven unreachable.

@@ -1,4 +1,4 @@
-//! Adapter from the evaluator of a derived program to [`Variant`].
+//! Adapter that implements [`Variant`] with the evaluator of a derived program.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::ode::NOT_POSITIVE_DEFINITE_MESSAGE;
@@ -11,7 +11,7 @@ pub struct Derived {
 }
 
 impl Derived {
-    /// Creates the adapter of an evaluator that was prepared with the parameters to use.
+    /// Creates the adapter; the evaluator must be prepared with the parameters to use.
     pub fn new(evaluator: Evaluator) -> Self {
         Self { evaluator }
     }

@@ -1,4 +1,4 @@
-//! Adapter from the evaluator of a derived program to [`Outputs`].
+//! Adapter that implements [`Outputs`] with the evaluator of a derived program.
 
 use eomgen_codegen::program::BlockPlace;
 use eomgen_codegen::program::Jacobian;
@@ -14,7 +14,7 @@ pub struct DerivedOutputs {
 }
 
 impl DerivedOutputs {
-    /// Creates the adapter of an evaluator that was prepared with the parameters to use.
+    /// Creates the adapter; the evaluator must be prepared with the parameters to use.
     pub fn new(evaluator: Evaluator) -> Self {
         Self { evaluator }
     }

@@ -6,14 +6,14 @@ use super::oracle::{Oracle, Side};
 use super::sampler::Sample;
 use eomgen_model_spec::model::{Model, ParameterValue};
 
-/// Weights of f(k h) - f(-k h), k = 1 .. 4 (Fornberg, "Generation of finite difference
-/// formulas on arbitrarily spaced grids", Math. Comp. 51, 1988, table 1).
+/// Weights of f(k h) - f(-k h) for k = 1 .. 4 (Fornberg, "Generation of finite difference formulas on arbitrarily
+/// spaced grids", Math. Comp. 51, 1988, table 1).
 const WEIGHTS: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Slope {
     pub value: f64,
-    /// Largest addend of the quantity. A step of length 1 changes it by at most a few of these.
+    /// Largest addend of the quantity. A step of length 1 changes the quantity by at most a few times this scale.
     pub scale: f64,
 }
 
@@ -57,8 +57,8 @@ pub(super) fn slopes(
 /// Number of points of [`one_sided_slopes`].
 const ONE_SIDED_POINTS: u32 = 8;
 
-/// Returns differences of seventh order from points on the side of the sign of `step`, without the middle; `None` if a
-/// value is missing or not finite.
+/// Returns one-sided differences of seventh order. All points are in the direction of the sign of `step`; the point 0
+/// is not used. Returns `None` if a value is missing or not finite.
 pub(super) fn one_sided_slopes(
     step: f64,
     mut at: impl FnMut(f64) -> Option<Vec<Slope>>,

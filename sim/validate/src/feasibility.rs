@@ -3,16 +3,16 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Residual below which inequalities contradict each other, for rows of length 1.
+/// Residual of the least squares problem below which inequalities are infeasible, for rows of length 1.
 const MAX_INFEASIBLE_RESIDUAL: f64 = 1e-12;
 /// Maximum number of corrections per unknown.
 const MAX_CORRECTIONS_PER_UNKNOWN: usize = 10;
-/// Scaling rounds. Each round halves the remaining differences of the logarithms.
+/// Number of scaling rounds. Each round halves the remaining differences of the logarithms of the entries.
 const SCALING_ROUNDS: usize = 20;
 const SVD_ITERATIONS: usize = 10_000;
 
-/// Returns true if no point z has a positive product with every row. By Gordan's theorem, a
-/// combination of rows with nonnegative weights is then 0. Rows of zeros are ignored.
+/// Returns true if no point z has a positive product with every row. By Gordan's theorem, this is true if a combination
+/// of rows with nonnegative weights, not all 0, is 0. Rows of zeros are ignored.
 pub(crate) fn cone_is_empty(rows: &[Vec<f64>]) -> bool {
     let rows: Vec<DVector<f64>> = equilibrate_rows(rows)
         .into_iter()
@@ -97,7 +97,8 @@ pub(crate) fn nearest_point(rows: &[(Vec<f64>, f64)]) -> Option<Vec<f64>> {
     )
 }
 
-/// Returns the residual of the combination of the rows, each extended by 1, nearest to (0, 1).
+/// Returns the residual of the nonnegative combination of rows that is nearest to (0, 1). Each row is extended by one
+/// entry.
 fn residual(rows: &[DVector<f64>]) -> Option<DVector<f64>> {
     let size = rows.first()?.len();
     let columns: Vec<DVector<f64>> = rows.iter().map(|row| row.clone().push(1.0)).collect();

@@ -29,19 +29,19 @@ pub struct InstructionBounds {
 pub struct FunctionBounds {
     /// Name.
     pub name: String,
-    /// Executed instructions, those with a false condition included; `None` if there is no bound.
+    /// Executed instructions, including conditional instructions whose condition is false; `None` if there is no bound.
     pub instructions: Option<u64>,
-    /// The same if no operand of a product or quotient of doubles that libgcc computes is subnormal.
+    /// Executed instructions if no operand of a double-precision product or quotient in libgcc is subnormal.
     pub instructions_without_subnormals: Option<u64>,
-    /// Bytes of stack below the stack pointer of the caller.
+    /// Stack in bytes, below the stack pointer of the caller.
     pub stack: Option<u64>,
     /// Reason why there is no bound.
     pub reason: Option<String>,
 }
 
 impl InstructionBounds {
-    /// Compiles emitted C with the prefix `name` with a command such as `arm-none-eabi-gcc -mcpu=cortex-m4 -O2` and bounds
-    /// its functions.
+    /// Compiles emitted C that has the prefix `name` and computes the bounds of its functions. An example of `command`
+    /// is `arm-none-eabi-gcc -mcpu=cortex-m4 -O2`.
     ///
     /// # Errors
     /// As [`InstructionBounds::of_file`].
@@ -57,10 +57,10 @@ impl InstructionBounds {
         Self::of_file(&path("c"), command)
     }
 
-    /// Compiles a C file with a command and bounds its functions. Headers are searched in the folder of the file.
+    /// Compiles a C file with a command and computes the bounds of its functions. Headers are searched in the folder of
+    /// the file.
     ///
-    /// # Errors
-    /// A compiler that cannot be run, a source that does not compile, and objects of other processors.
+    /// # Errors A compiler that cannot be run, a source that does not compile, or an object file for another processor.
     pub fn of_file(file: &Path, command: &str) -> Result<Self, String> {
         let words: Vec<&str> = command.split_whitespace().collect();
         let (program, options) = words.split_first().ok_or("the command is blank")?;
@@ -84,7 +84,7 @@ impl InstructionBounds {
         let source = file.display().to_string();
         let headers = format!("-I{}", file.parent().unwrap_or(&file).display());
         compile(&[&headers, "-c", "-o", "source.o", &source])?;
-        // Also links the functions of the compiler's library, such as those of doubles.
+        // Also links the functions of libgcc, for example double-precision arithmetic.
         compile(&["-nostdlib", "-r", "-o", "linked.o", "source.o", "-lgcc"])?;
         let objdump = output(program, &["-print-prog-name=objdump"])?;
         let listing = output(objdump.trim(), &["-t", "-d", "-r", "linked.o"])?;

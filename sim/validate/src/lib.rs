@@ -1,13 +1,12 @@
 //! Validation of derived equations of motion.
 //!
-//! The [`oracle`] forms the equations of motion a second time, from the checked model by automatic
-//! differentiation. It shares no code with the derivation under test. The [`sampler`] draws
-//! [`random`] states in every regime. The [`checks`] compare a [`variant::Variant`] and its
-//! [`outputs::Outputs`] with the oracle, and a [`compiler`] builds the emitted source. Hand-written
-//! equations of known machines are [`mod@references`]. [`certify`](certify::certify) runs all checks
-//! and writes the [`certificate`]; [`model_certificate`] certifies a model with its emitted source.
-//! [`meaning`] describes the checks in words. [`rounding`] bounds the rounding errors of a variant,
-//! [`instructions`] the instructions and the stack of its compiled C.
+//! The [`oracle`] computes the equations of motion a second time, by automatic differentiation of the expressions of
+//! the checked model. It shares no code with the derivation under test. The [`sampler`] draws [`random`] states in
+//! every regime. The [`checks`] compare a [`variant::Variant`] and its [`outputs::Outputs`] with the oracle, and a
+//! [`compiler`] builds the emitted source. Hand-written equations of known machines are [`mod@references`].
+//! [`certify`](certify::certify) runs all checks and writes the [`certificate`]; [`model_certificate`] certifies a
+//! model with its emitted source. [`meaning`] describes the checks in words. [`rounding`] bounds the rounding errors of
+//! a variant. [`instructions`] bounds the instructions and the stack of the compiled C.
 //!
 //! Example: residuals of the oracle's own accelerations of a pendulum.
 //!

@@ -1,4 +1,4 @@
-//! Meanings of the checks as sentences.
+//! Description of each check as a sentence.
 
 /// Returns the statement that a check confirms if it passes; `None` for an unknown name.
 pub fn describe(name: &str) -> Option<String> {

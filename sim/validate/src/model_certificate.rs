@@ -28,11 +28,10 @@ use eomgen_compiled_model::{CompiledModel, Error, Orders};
 use eomgen_sim::ode::Names;
 use eomgen_sim::piecewise_linear::Propagator;
 
-/// Certifies a model as emitted with `outputs`, by an oracle and by the hand-written equations that
-/// apply to it. `orders` must be equal for all fields.
+/// Certifies a model with the requested outputs `outputs`. It is compared with an oracle and with the hand-written
+/// equations that apply to it. `orders` must be equal for all fields.
 ///
-/// # Errors
-/// Models that cannot be derived or emitted, and orders that differ.
+/// # Errors A model that cannot be derived or emitted, or fields with different orders.
 pub fn certify_model(
     model: &Model,
     orders: &[usize],
@@ -66,11 +65,11 @@ pub fn certify_specification(
 /// Emitted sources of one variant, at least one.
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
-    /// Rust, in any packaging that is a module or a crate.
+    /// Rust source; the packaging must be a module or a crate.
     pub rust: Option<String>,
-    /// C, one source for each prefix.
+    /// C sources, one for each prefix.
     pub c: Vec<CSource>,
-    /// Functions for CasADi, whose outputs are not among the requested ones.
+    /// Functions for CasADi. They have requested outputs of their own.
     pub casadi: Option<CasadiSource>,
     /// Functional mock-up unit.
     pub unit: Option<UnitSource>,
@@ -130,7 +129,7 @@ fn certificate(
     with_subject(model, order, outputs, sources, certify)
 }
 
-/// Runs only the checks of [`certify_sources`] that compile the sources.
+/// Runs only those checks of [`certify_sources`] that compile the sources.
 ///
 /// # Errors
 /// As [`certify_model`], and a variant that cannot be evaluated.
@@ -146,7 +145,7 @@ pub fn check_sources(
     checks.map_err(Error::Request)
 }
 
-/// Calls `work` with everything that the checks of the sources need.
+/// Builds the [`Subject`] of the checks and calls `work` with it.
 fn with_subject<R>(
     model: &Model,
     order: usize,
@@ -309,8 +308,8 @@ fn build_program(
     Ok(lower_with_outputs(model, &equations, parameters, &formed))
 }
 
-/// Adds the controllers of a model to its program. At an order without a mode that one measures there are none, and
-/// nothing is emitted.
+/// Adds the controllers of a model to its program. If a controller measures a mode that the order does not have, no
+/// controller is emitted.
 fn with_controllers(model: &Model, mut program: Program) -> Program {
     program.controllers = lower_controllers(model, &program).unwrap_or_default();
     program

@@ -26,7 +26,8 @@ pub fn requested_jacobians(names: &[String]) -> Vec<&'static str> {
     JACOBIANS.into_iter().filter(is_requested).collect()
 }
 
-/// Output functions of one variant, `None` if not requested. Observables end in `energy`, `power`.
+/// Output functions of one variant. A function returns `None` if its output was not requested. `energy` and `power` are
+/// the last observables.
 pub trait Outputs {
     /// Returns the names of the requested outputs, as in `--with`.
     fn names(&self) -> Vec<String>;

@@ -1,12 +1,12 @@
-//! Explanation of deviations that are not finite by parameters that are too large for the number format.
+//! Explains a deviation that is not finite if a parameter is too large for the number format.
 
 use crate::certificate::Check;
 
-/// Name of the check in single precision.
+/// Name of the single-precision check.
 const SINGLE_PRECISION: &str = "f32";
 
-/// Adds the largest parameter to the detail of failed checks with a deviation that is not finite, if its square
-/// overflows. Parameters are in SI.
+/// Adds the name of the largest parameter to the detail of failed checks without a finite deviation, if the square of
+/// this parameter overflows. Parameters are in SI.
 pub fn name_overflowing_parameter(checks: &mut [Check], parameters: &[(String, f64)]) {
     let sized = parameters
         .iter()

@@ -8,22 +8,22 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 pub struct Random(SplitMix64);
 
 impl Random {
-    /// Creates the sequence of `seed`.
+    /// Creates the sequence with the seed `seed`.
     pub fn new(seed: u64) -> Self {
         Self(SplitMix64::seed_from_u64(seed))
     }
 
-    /// Returns a number that is uniform in [0, 1).
+    /// Returns a random number, uniform in [0, 1).
     pub fn unit(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 * (0.5_f64).powi(53)
     }
 
-    /// Returns a number that is uniform in [-1, 1).
+    /// Returns a random number, uniform in [-1, 1).
     pub fn symmetric(&mut self) -> f64 {
         2.0 * self.unit() - 1.0
     }
 
-    /// Returns a number with a random sign and a magnitude that is uniform in [1/4, 1).
+    /// Returns a random number with either sign and a magnitude that is uniform in [1/4, 1).
     pub fn away_from_zero(&mut self) -> f64 {
         let signed = self.symmetric();
         signed.signum() * (0.25 + 0.75 * signed.abs())

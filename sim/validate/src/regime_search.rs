@@ -1,4 +1,4 @@
-//! Moves a state into a regime by the shortest change, to first order.
+//! Moves a state into a regime by the shortest change of a linearised problem.
 
 use super::feasibility::nearest_point;
 use super::oracle::{Oracle, OracleError, Side, SwitchValue};
@@ -31,7 +31,7 @@ pub(super) fn move_into_regime(
         }
         let margin = 0.5_f64.powi(correction) * random.unit();
         let rows = regime_inequalities(oracle, sample, regime, sizes, margin)?;
-        // A margin that is too large makes the inequalities infeasible. The next one is smaller.
+        // If the margin is too large, the inequalities are infeasible. The next correction uses a smaller margin.
         if let Some(change) = nearest_point(&rows) {
             shift_sample(sample, &change, sizes);
         }
@@ -39,7 +39,7 @@ pub(super) fn move_into_regime(
     is_inside(oracle, sample, regime)
 }
 
-/// Returns true if a state is in `regime` and every quantity at rest has no slope.
+/// Returns true if a state is in `regime` and every quantity that must be constantly zero has zero slope.
 fn is_inside(oracle: &Oracle, sample: &Sample, regime: &Regime) -> Result<bool, OracleError> {
     if Regime::from_state(oracle, sample)? != *regime {
         return Ok(false);
@@ -75,7 +75,7 @@ fn regime_inequalities(
     let mut rows = Vec::new();
     let sides = oracle.switches().iter().zip(&regime.sides);
     for (index, (value, (switch, side))) in values.iter().zip(sides).enumerate() {
-        // Other switches move this quantity to zero.
+        // Changes of the other switches bring this quantity to zero.
         if *side == Side::Free && switch.rests_at_zero() {
             continue;
         }
@@ -112,8 +112,8 @@ fn regime_inequalities(
     Ok(rows)
 }
 
-/// Returns the inequalities of one switch. The slopes are those of the quantity and of the
-/// half-width, in units of the sizes. Inequalities that are satisfied remain satisfied.
+/// Returns the inequalities of one switch. `slopes` are the derivatives of the quantity and of the half-width, scaled
+/// by the sizes. Inequalities that are already satisfied remain satisfied.
 fn side_inequalities(
     value: &SwitchValue,
     (quantity, half_width): &(Vec<f64>, Vec<f64>),

@@ -1,6 +1,6 @@
-//! Sampled state.
+//! State with time and inputs, as a point of comparison.
 
-/// State with its time and inputs.
+/// State with time and inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
     /// Time, in s.

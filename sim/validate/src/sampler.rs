@@ -3,8 +3,8 @@
 //! States outside the model's domain (for example a root of a negative number) are drawn again and
 //! counted. After several misses, states are drawn nearer to the initial state.
 //!
-//! The magnitude of an entry is at least a quarter of its size. If all terms of a row were small,
-//! the check would measure only the rounding of other rows.
+//! The magnitude of an entry is at least a quarter of its size. If all terms of a row were small, the check would
+//! measure only the rounding errors of other rows.
 
 use super::oracle::{Equations, Oracle, OracleError, Side, SwitchValue};
 use super::random::Random;
@@ -27,7 +27,7 @@ const MAX_RELATIVE_ENTRY: f64 = 1e6;
 /// State in the model's domain with the equations of motion at that state.
 #[derive(Clone, Debug)]
 pub struct SampledState {
-    /// Sampled state.
+    /// State with time and inputs, as a point of comparison.
     pub sample: Sample,
     /// Equations of the oracle.
     pub equations: Equations,
@@ -51,7 +51,7 @@ pub struct Sampler<'o> {
     random: Random,
     sizes: Vec<f64>,
     input_sizes: Vec<f64>,
-    /// Last regime that changes of single entries did not reach.
+    /// Last regime that could not be reached by changes of single entries.
     last_unreachable: Option<Regime>,
     /// Fraction of the distance from the initial state to a drawn state, initially 1.
     draw_fraction: f64,
@@ -119,7 +119,7 @@ impl<'o> Sampler<'o> {
         })
     }
 
-    /// Draws a state in any regime, inside or outside the domain.
+    /// Draws a state in any regime; it may be outside the domain.
     pub fn draw(&mut self) -> Sample {
         let (random, reach, ranges) = (&mut self.random, self.draw_fraction, self.oracle.ranges());
         let time = random.unit();
@@ -179,7 +179,7 @@ impl<'o> Sampler<'o> {
                 return Ok(Some(drawn));
             }
         }
-        // The reach found for one regime does not apply to the others.
+        // Each regime starts again with the distance that was valid before.
         self.draw_fraction = reach;
         Ok(None)
     }
@@ -221,8 +221,8 @@ impl<'o> Sampler<'o> {
         Ok(None)
     }
 
-    /// Moves a sample onto constraints that depend on each other. Returns false if it leaves its regime or if no state on
-    /// them is found.
+    /// Projects a sample onto dependent constraints. Returns false if the projected sample is in another regime or if
+    /// the projection fails.
     fn move_onto_constraints(&mut self, sample: &mut Sample) -> Result<bool, OracleError> {
         if !self.oracle.has_dependent_constraints() {
             return Ok(true);
@@ -246,7 +246,7 @@ impl<'o> Sampler<'o> {
         ranged && sized.all(|sized| sized)
     }
 
-    /// Changes one entry per switch on the wrong side; returns true if there was none.
+    /// Changes one entry for each switch that is on the wrong side; returns true if all sides are correct.
     fn correct(&mut self, sample: &mut Sample, regime: &Regime) -> Result<bool, OracleError> {
         let Sample {
             time,
@@ -265,7 +265,8 @@ impl<'o> Sampler<'o> {
                 continue;
             };
             if resting {
-                // Other switches move the quantity to zero; its own slope would cross it.
+                // Changes of the other switches bring the quantity to zero; a step along its own slope would cross
+                // zero.
                 let slopes = self.oracle.switch_slopes(index, *time, state, inputs)?;
                 right &= value.side() == *side && slopes.iter().all(|slope| *slope == 0.0);
                 continue;

@@ -1,13 +1,13 @@
 //! Typical sizes of the entries of a state and of the inputs, in SI.
 //!
-//! A coordinate with a range has half of that range as its size, a coordinate in a dead zone twice
-//! the half-width, and any other coordinate 1. The first mode of a field has a twentieth of the
-//! field's length. Rates follow from stiffness and inertia of each coordinate.
+//! The size of a coordinate is half of its range. Without range, it is twice the half-width of a dead zone in which the
+//! coordinate appears, otherwise 1. The size of a field's first mode is a twentieth of the field's length. Sizes of
+//! rates are computed from stiffness and inertia of each coordinate.
 //!
-//! Amplitudes of modes decrease as 1/beta^3, between equal elastic energies (1/beta^2) and equal
-//! elastic forces (1/beta^4). With a faster decrease, the contribution of the first mode to the
-//! elastic force of row 64 (1e-17 from quadrature instead of zero) would be 1e-12 of that row. With
-//! a slower decrease, the same would be true of mode 64 in the inertia of row 1.
+//! Amplitudes of modes decrease as 1/beta^3, between equal elastic energies (1/beta^2) and equal elastic forces
+//! (1/beta^4). The first mode contributes an error of the quadrature (1e-17 instead of zero) to the elastic force of
+//! row 64. With a faster decrease, this error would be 1e-12 of the row. With a slower decrease, mode 64 would have a
+//! similar error in the inertia of row 1.
 
 use super::oracle::{Oracle, OracleError};
 
@@ -16,7 +16,7 @@ pub(super) fn state_sizes(oracle: &Oracle) -> Result<Vec<f64>, OracleError> {
     let mut sizes = coordinate_sizes(oracle, &inputs)?;
     let mut state = sizes.clone();
     state.resize(oracle.state_length(), 0.0);
-    // If the state of all sizes is outside the model's domain, use the initial state.
+    // If the state whose entries equal their sizes is outside the model's domain, use the initial state.
     if oracle.equations_inside(0.0, &state, &inputs)?.is_none() {
         state = oracle.initial().to_vec();
     }
@@ -39,7 +39,7 @@ pub(super) fn state_sizes(oracle: &Oracle) -> Result<Vec<f64>, OracleError> {
     Ok(sizes)
 }
 
-/// Returns the inputs' sizes: half the range, the mean of parameters of equal dimension, or 1.
+/// Returns the inputs' sizes: half the range, otherwise the mean of the parameters of equal dimension, otherwise 1.
 pub(super) fn input_sizes(oracle: &Oracle) -> Vec<f64> {
     let ranges = oracle.ranges();
     let inputs = ranges.inputs.iter().zip(&ranges.input_scales);
@@ -65,8 +65,8 @@ fn geometric_mean(sizes: impl Iterator<Item = f64>) -> f64 {
 /// Returns the sizes of first-order states. The first known value of this list applies:
 ///
 /// - half of the range;
-/// - the steady state of a decaying state, if other first-order states are 0 and coordinates and
-///   rates have their sizes;
+/// - the steady state of a decaying state, with the other first-order states 0 and coordinates and rates equal to their
+///   sizes;
 /// - the geometric mean of the initial value and of the parameters of the same dimension;
 /// - 1 in SI.
 fn first_order_sizes(
@@ -100,7 +100,7 @@ fn first_order_sizes(
         .collect())
 }
 
-/// Returns the coordinates' sizes, 0 for modes, in dead zones that depend on no other one.
+/// Returns the sizes of coordinates; 0 for modes. Only dead zones of a single coordinate determine a size.
 fn coordinate_sizes(oracle: &Oracle, inputs: &[f64]) -> Result<Vec<f64>, OracleError> {
     let mut sizes = vec![1.0; oracle.size()];
     for row in oracle.modes().flatten() {

@@ -139,7 +139,7 @@ bearing = { on = "theta", value = "-d*dot(theta)" }
 torque = { on = "theta", value = "u" }
 "#;
 
-/// Free rotor in Cartesian coordinates of its point: all terms of its only row cancel.
+/// Free rotor whose kinetic energy is written in Cartesian coordinates of a point: all terms of the single row cancel.
 pub(super) const ROTOR: &str = r#"
 [model]
 name = "rotor"
@@ -179,7 +179,7 @@ tank = "1/2*m*dot(x)^2*(2 + sin(t/tau))"
 spring = "1/2*k*x^2"
 "#;
 
-/// Mass in a logarithmic potential, which is defined on one side only.
+/// Mass in a logarithmic potential, which is defined for positive arguments only.
 pub(super) const LOGARITHM: &str = r#"
 [model]
 name = "logarithm"
@@ -199,7 +199,7 @@ mass = "1/2*m*dot(x)^2"
 well = "-e*ln(x/L) + e*x/L"
 "#;
 
-/// Mass on a spring with a term linear in its rate, far from most sampled states.
+/// Mass on a spring with a force linear in the rate that acts only far from most sampled states.
 pub(super) const FAR_TERM_TEXT: &str = r#"
 [model]
 name = "far"

@@ -1,4 +1,4 @@
-//! Hand-written outputs of the tests' spring, with an optional error of 0.1 % in one number.
+//! Hand-written outputs of the test model `SPRING`, with an optional error of 0.1 % in one number.
 
 use super::outputs::Outputs;
 use super::sampler::Sample;
@@ -24,7 +24,7 @@ fn force(sample: &Sample) -> f64 {
 }
 
 impl SpringOutputs {
-    /// Returns the numbers; if the function has the fault, the last nonzero one is 0.1 % larger.
+    /// Returns the numbers; if the fault is in this function, the last nonzero number is increased by 0.1 %.
     fn with_fault(&self, name: &str, mut numbers: Vec<f64>) -> Vec<f64> {
         let last = numbers.iter_mut().rev().find(|number| **number != 0.0);
         if let (true, Some(number)) = (self.0 == name, last) {

@@ -74,7 +74,7 @@ pub(super) enum Fault {
     None,
     VelocitySign,
     Coupling,
-    /// Asymmetry of the mass matrix, fifty times its rounding.
+    /// Asymmetry of the mass matrix, fifty times its rounding error.
     Asymmetry,
     Energy,
     Power,
@@ -225,7 +225,7 @@ pub(super) const LOGARITHMIC: SingleCoordinate = SingleCoordinate {
     power: |_, _, _| 0.0,
 };
 
-/// Mass of 2 kg on a spring of 30 N/m, with a term beyond 3 m.
+/// Mass of 2 kg on a spring of 30 N/m, with an additional force beyond 3 m.
 pub(super) const FAR_TERM: SingleCoordinate = SingleCoordinate {
     name: "x",
     mass: |_, _, _| 2.0,
@@ -268,7 +268,7 @@ impl Preload {
         -7.0 * side - 300.0 * stretch
     }
 
-    /// Returns the derivative of a solver; with `faulty` it treats zero as negative.
+    /// Returns the state derivative of a solver; if `faulty`, it evaluates a zero quantity on the negative side.
     pub fn derivative(faulty: bool) -> impl Fn(f64, &[f64], &[f64]) -> Result<ScaledRates, String> {
         move |_, state: &[f64], _: &[f64]| {
             let inside = state[0].abs() <= 0.01;
@@ -306,7 +306,7 @@ impl Equations for Preload {
     }
 }
 
-/// Kernels of its regimes as emitted source. The force within the play is `WITHIN`.
+/// Emitted source with regime kernels of the preloaded mass. `WITHIN` stands for the force within the play.
 pub(super) const KERNELS: &str = r"#![no_std]
 pub const STATES: usize = 2;
 #[derive(Default)]
@@ -336,7 +336,7 @@ pub fn rates_in_regime_into<const REGIME: u32, T: Copy + Into<f64>>(
 }
 ";
 
-/// Beam with the oracle's own equations, for the comparison of two orders.
+/// Variant of the beam that evaluates the oracle's equations, for the comparison of two orders.
 pub(super) struct Beam {
     pub oracle: Oracle,
     /// True if the third mode is coupled to the hub.
@@ -371,7 +371,7 @@ impl Equations for Beam {
     }
 }
 
-/// Spring as emitted source, only rates and energy.
+/// Emitted source of the spring with rates and energy only.
 pub(super) const EMITTED: &str = r"#![no_std]
 pub const STATES: usize = 2;
 #[derive(Default)]

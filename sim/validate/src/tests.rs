@@ -442,7 +442,7 @@ fn output_with_error_of_one_thousandth_fails() {
 #[test]
 fn nan_only_at_rest_is_found() {
     let rotor = certify_single_coordinate(ROTOR, || SingleCoordinate {
-        // 0, but 0/0 at rest.
+        // The acceleration is 0, but NaN (0/0) at zero rate.
         acceleration: |_, _, rate| rate / rate - 1.0,
         ..FREE_ROTOR
     });

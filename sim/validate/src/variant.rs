@@ -45,8 +45,8 @@ pub trait Variant {
     /// Returns the power of all non-conservative forces, in W.
     fn power(&mut self, time: f64, state: &[f64], inputs: &[f64]) -> Result<f64, String>;
 
-    /// Returns the function of a surface at which the energies jump, so that rates jump; `None` if there is
-    /// none.
+    /// Returns the switching function of a surface at which the energies, and therefore the rates, jump; `None` if
+    /// there is no such surface.
     fn corner(&self) -> Option<String> {
         None
     }

@@ -1,6 +1,6 @@
-//! Power balance d(T + V)/dt = power along trajectories of the variant. At every step the rate of
-//! the energy along the variant's own motion is computed by automatic differentiation, with
-//! explicit time. The balance therefore holds to rounding, independent of the integration error.
+//! Power balance d(T + V)/dt = power along trajectories of the variant. At every step, automatic differentiation
+//! computes the rate of the energy for the variant's accelerations, including explicit time. Therefore the balance
+//! holds to rounding, independent of the integration error.
 
 use super::super::certificate::{Check, Worst};
 use super::super::oracle::{Conditioned, Equations, Oracle, OracleError};
@@ -11,13 +11,13 @@ use super::{ROW_TOLERANCE, unknowns};
 const NAME: &str = "power_balance";
 /// Number of steps to check, on all trajectories together.
 const CHECKED_STEPS: usize = 200;
-/// Maximum number of trajectories. One ends where the motion leaves the domain or comes to rest.
+/// Maximum number of trajectories. A trajectory ends if the motion leaves the domain or comes to rest.
 const TRAJECTORIES: usize = 20;
-/// Maximum number of halvings of a step. A jump of the rates would never be accepted.
+/// Maximum number of halvings of a step. At a jump of the rates no step size would be accepted.
 const MAX_STEP_HALVINGS: usize = 10;
-/// Largest difference between two half steps and one step, relative to the state and its size.
+/// Largest accepted difference between two half steps and one full step, relative to the state and its typical size.
 const MAX_STEP_DIFFERENCE: f64 = 1e-3;
-/// Magnitude in W below which products of terms are subnormal, with a larger relative error.
+/// Smallest magnitude of the terms that is compared, in W. Below it, products are subnormal and less accurate.
 const MIN_POWER_W: f64 = 1e-280;
 const SEED: u64 = 0xba1a_4ce5;
 
@@ -94,7 +94,8 @@ impl BalanceCheck {
         Ok(())
     }
 
-    /// Takes a step, halved until two half steps agree with it, and doubles it for the next one.
+    /// Takes a step with step size control: halves the step until two half steps agree with it, then doubles it for the
+    /// next call.
     fn take_checked_step(
         &self,
         variant: &mut dyn Variant,
@@ -125,9 +126,9 @@ impl BalanceCheck {
 
 /// Returns |d(T + V)/dt - power| relative to the terms of both, and the magnitude of these.
 ///
-/// The difference is the power of the residuals at the variant's accelerations. A residual is only
-/// small relative to the largest term of its row, and inertias of other coordinates can cancel in
-/// the row. The scale therefore includes each row's term times the row's rate.
+/// The difference is the power of the residuals at the variant's accelerations. A residual is small only relative to
+/// the largest term of its row, and inertia terms can cancel within a row. Therefore the scale includes the largest
+/// term of each row times the rate of its coordinate.
 fn power_imbalance(
     oracle: &Oracle,
     equations: &Equations,

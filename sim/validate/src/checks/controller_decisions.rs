@@ -1,14 +1,14 @@
-//! Samples of controllers next to the decisions of their operations. A quantised or limited result hides a change of its
-//! argument, except next to the place at which the result changes.
+//! Controller samples close to a threshold of an operation. A quantised or clamped result hides an error of its
+//! argument, except close to a threshold at which the result changes.
 
 use eomgen_codegen::program::{ControlOp, ControlValues, ProgramController};
 use eomgen_elementary::Function as Elementary;
 use eomgen_model_spec::function::Function;
 
-/// Number of halvings between two samples, beyond the precision of their numbers.
+/// Maximum number of bisections between two samples, more than double precision can resolve.
 const HALVINGS: usize = 64;
 
-/// Decisions of the operations of a controller at parameters in SI.
+/// Evaluator for the threshold operations (quantisation, selection) of a controller; parameters are in SI.
 pub struct Decisions<'c> {
     controller: &'c ProgramController,
     parameters: &'c [f64],
@@ -27,7 +27,7 @@ impl<'c> Decisions<'c> {
         }
     }
 
-    /// Returns the operation that decides in the call with this index, each in turn; `None` if none decides.
+    /// Returns the threshold operation to test in the call with this index, in cyclic order; `None` if there is none.
     pub fn choose(controller: &ProgramController, call: usize) -> Option<usize> {
         let values = controller.values.iter().enumerate();
         let deciding = values.filter(|(_, op)| is_deciding(op));
@@ -35,8 +35,8 @@ impl<'c> Decisions<'c> {
         places.get(call % places.len().max(1)).copied()
     }
 
-    /// Returns the neighbouring rows between two rows at which the decision of an operation changes; `None` if both rows
-    /// have the same decision.
+    /// Bisects between two rows and returns two neighbouring rows with different decisions of an operation; `None` if
+    /// both rows have the same decision.
     pub fn bracket(&mut self, op: usize, [first, last]: [&[f64]; 2]) -> Option<[Vec<f64>; 2]> {
         let decision = self.decide(op, first);
         if decision.to_bits() == self.decide(op, last).to_bits() {
@@ -54,7 +54,8 @@ impl<'c> Decisions<'c> {
         Some([near, far])
     }
 
-    /// Returns the result of a step function, or 1 for the larger first operand of a selection.
+    /// Returns the decision at a row: the result of a step function, or 1 if the first operand of a selection is
+    /// larger.
     fn decide(&mut self, op: usize, row: &[f64]) -> f64 {
         let (measured, states) = row.split_at(self.controller.measured.len());
         let given = ControlValues {

@@ -1,6 +1,7 @@
-//! Functions of sampled controllers: start and update, compared with the operations of the program in double precision, bit
-//! for bit. Measured quantities and states are random, from far below to far above 1, so that limits and quantisation act.
-//! Two samples of each call are next to a decision of an operation, one on either side.
+//! Comparison of the functions of sampled controllers (start and update) with the operations of the program in double
+//! precision, bit for bit. Measured quantities and states are random, with magnitudes from far below to far above 1, to
+//! reach limits and quantisation steps. Two samples of each call are close to a threshold of an operation, one on each
+//! side.
 
 use eomgen_codegen::program::{ControlValues, Program, ProgramController, Quantity};
 
@@ -13,10 +14,10 @@ const SEED: u64 = 0x5a3d_c0de;
 /// Number of samples after each start.
 const UPDATES: usize = 6;
 
-/// Places of the updates of a call next to a decision; both have given states.
+/// Indices of the updates of a call that are close to a threshold; both have prescribed states.
 const BESIDE_DECISION: [usize; 2] = [3, 5];
 
-/// Number of pairs of samples that are drawn for different decisions.
+/// Maximum number of pairs of samples that are drawn until their decisions differ.
 const MAX_DRAWS: usize = 16;
 
 /// Largest decimal exponent of a measured quantity and of a state.
@@ -33,7 +34,7 @@ pub struct ControllerCalls<'p> {
 }
 
 impl<'p> ControllerCalls<'p> {
-    /// Draws the samples of calls with these independent parameters, SI.
+    /// Draws the samples of calls; `calls` are their independent parameters in SI.
     pub fn new(program: &'p Program, calls: &[&[f64]]) -> Self {
         let mut random = Random::new(SEED);
         let mut draw = |controller: &ProgramController| -> Vec<Row> {
@@ -63,7 +64,7 @@ impl<'p> ControllerCalls<'p> {
         Self { program, rows }
     }
 
-    /// Returns the names and results of a call (from 0) at independent parameters, SI.
+    /// Returns the names and results of the call with index `call` at independent parameters in SI.
     pub fn results(&self, call: usize, parameters: &[f64]) -> Vec<(String, Vec<f64>)> {
         let mut lines = Vec::new();
         let mut results = Vec::new();
@@ -119,7 +120,7 @@ impl<'p> ControllerCalls<'p> {
     }
 }
 
-/// Returns true if the states before an update are those of its row; otherwise the controller continues.
+/// Returns true if an update starts from the states of its row; otherwise it continues from the previous update.
 fn has_given_states(update: usize) -> bool {
     update % 2 == 1
 }
@@ -130,13 +131,13 @@ fn names(quantities: &[Quantity]) -> impl Iterator<Item = &str> {
     quantities.iter().map(|quantity| &*quantity.name)
 }
 
-/// Returns the fields of the memory.
+/// Returns the field names of the memory.
 fn memory_fields(controller: &ProgramController) -> Vec<String> {
     let all = TIMES.into_iter().chain(names(&controller.states));
     all.map(|name| format!("memory.{name}")).collect()
 }
 
-/// Returns the fields of the outputs, then those of the memory.
+/// Returns the field names of the outputs, then of the memory.
 fn updated_fields(controller: &ProgramController) -> String {
     let outputs = names(&controller.outputs).map(|name| format!("outputs.{name}"));
     let all: Vec<String> = outputs.chain(memory_fields(controller)).collect();
@@ -220,7 +221,7 @@ fn rust_call(controller: &ProgramController, rows: &[Row]) -> String {
     )
 }
 
-/// Returns the lines of a call.
+/// Returns the expected lines of a call.
 pub fn expected_lines(
     calls: &ControllerCalls<'_>,
     (call, parameters): (usize, &[f64]),

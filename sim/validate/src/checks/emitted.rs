@@ -19,7 +19,7 @@ const NAME: &str = "emitted_rust";
 const STATES: usize = 100;
 const SEED: u64 = 0x0e31_77ed;
 
-/// Compiles `emitted` and counts the numbers that differ from `variant` and `functions` by a bit.
+/// Compiles `emitted` and counts the numbers that are not bit-identical to `variant` and `functions`.
 pub fn check(
     oracle: &Oracle,
     variant: &mut dyn Variant,
@@ -75,7 +75,7 @@ pub fn check(
     Ok(checks)
 }
 
-/// Compares the interface in double and in single precision.
+/// Compares the interface of the emitted source with the program, in double and in single precision.
 fn check_interface(
     compiler: &Compiler,
     folder: &Path,

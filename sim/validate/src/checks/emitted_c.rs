@@ -16,14 +16,14 @@ use crate::variant::Variant;
 
 const NAME: &str = "emitted_c";
 
-/// Emitted C with the command that compiles it.
+/// Emitted C with the compiler to use.
 #[derive(Clone, Debug)]
 pub struct CSource {
-    /// Prefix of its names, and name of the header.
+    /// Prefix of the C names, and name of the header.
     pub name: String,
-    /// Name of the file with the functions: `NAME.c`, or `NAME.h` if it is one header.
+    /// Name of the file with the functions: `NAME.c`, or `NAME.h` if the packaging is a single header.
     pub file: String,
-    /// Text that compiles the functions.
+    /// Text of the file to compile.
     pub source: String,
     /// Text of `NAME.h`.
     pub header: String,
@@ -41,7 +41,7 @@ pub struct CCompiler {
 }
 
 impl Default for CCompiler {
-    /// Returns `cc`, or `CC` of the environment, with the options of the documentation.
+    /// Returns `cc`, or the value of the environment variable `CC`, with the documented options.
     fn default() -> Self {
         let program = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
         let options = ["-std=c99", "-O2", "-ffp-contract=off"];
@@ -73,7 +73,7 @@ impl CCompiler {
         self.options.iter().any(|option| option.contains("_REAL="))
     }
 
-    /// Compiles an empty file, which any usable compiler can.
+    /// Tests the compiler by compiling an almost empty file.
     pub(super) fn probe(&self, folder: &Path) -> Result<(), String> {
         let probe = folder.join("probe.c");
         write(&probe, "typedef int probe;\n")?;
@@ -107,8 +107,8 @@ const FUNCTIONS: [EmittedFunction; 6] = [
     EmittedFunction::MassMatrix,
 ];
 
-/// Compiles each of `emitted` and counts the numbers that differ from `variant` and, with its interface, from
-/// `program` by a bit.
+/// Compiles each source and counts the numbers that are not bit-identical to `variant`. With `program`, the interface
+/// is compared too.
 pub fn check(
     oracle: &Oracle,
     (variant, program): (&mut dyn Variant, Option<&Program>),

@@ -6,7 +6,7 @@ use super::super::variant::Variant;
 use super::regime_interiors::interior_samples;
 
 const NAME: &str = "exact_derivative";
-/// Tolerance relative to the magnitudes of a rate's terms, which are summed in another order.
+/// Tolerance relative to the magnitudes of a rate's terms. The exact solver sums them in another order.
 const TOLERANCE: f64 = 1e-11;
 const STATES_PER_REGIME: usize = 20;
 const SEED: u64 = 0x0e4a_c7d5;
@@ -46,12 +46,12 @@ pub fn check(
     Ok(Check::from_deviation(NAME, worst, TOLERANCE))
 }
 
-/// Returns the check as not applicable, for models without an exact solution.
+/// Returns the skipped check (not applicable) of a model without an exact solution.
 pub fn skipped_check(reason: impl Into<String>) -> Check {
     Check::not_applicable(NAME, TOLERANCE, reason)
 }
 
-/// Returns the largest deviation relative to the sizes; NaN counts as infinity.
+/// Returns the largest deviation relative to the magnitudes; NaN counts as infinity.
 fn rate_deviation(found: &ScaledRates, expected: &[f64]) -> f64 {
     if found.rates.len() != expected.len() || found.magnitudes.len() != expected.len() {
         return f64::INFINITY;

@@ -1,4 +1,5 @@
-//! Quadrature of integrals over a field whose integrand is no polynomial of the motion, at random states.
+//! Comparison of the quadrature of integrals along a field with a finer rule at random states. Only integrands that are
+//! not polynomials of the motion are compared.
 
 use eomgen_codegen::mechanics::fields::resolution::{
     MAX_ERROR, State, has_nonlinear_integrals, worst_at_state,
@@ -13,7 +14,7 @@ const NAME: &str = "integrals";
 const SEED: u64 = 0x1a7e_94a1;
 const STATES: usize = 20;
 
-/// Compares the quadrature with panels that resolve the integrand; `None` without such integrals.
+/// Compares the quadrature with a rule of panels that resolve the integrand; `None` if the model has no such integral.
 pub fn check(
     oracle: &Oracle,
     (model, order, parameters): (&Model, usize, &[f64]),

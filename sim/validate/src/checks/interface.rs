@@ -1,6 +1,6 @@
-//! Everything that emitted source offers to its callers, compared with its program: sizes, names, indices, units, initial
-//! state, ranges, default parameters, conversions from arrays, preparation with other parameters, and all functions at zeros, in the domain
-//! and at large values, in double and in single precision, bit for bit.
+//! Bit-for-bit comparison of the interface of emitted source with its program, in double and in single precision. It
+//! covers sizes, names, indices, units, initial state, ranges, default parameters, conversions from arrays and
+//! preparation with other parameters. All functions are called at zeros, in the domain and at large values.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::program::{Output, Program, SURFACES_OF_A_REGIME};
@@ -14,16 +14,16 @@ use crate::random::Random;
 use crate::sampler::Sample;
 
 const SEED: u64 = 0x1a7e_0f0c;
-/// Number of parameter sets, with that of the specification.
+/// Number of parameter sets, including the values of the specification.
 const PARAMETER_SETS: usize = 4;
-/// Number of states in the domain for each set, first of its calls.
+/// Number of states in the domain for each parameter set. They are the first calls of the set.
 pub const STATES: usize = 5;
 /// Number of functions of every emitted source: rates, observables, energy, power, guards and mass matrix.
 pub const USUAL_FUNCTIONS: usize = 6;
-/// Factor of states far outside the usual range, exact in any precision.
+/// Factor for states far outside the usual range, exact in any precision.
 const LARGE: f64 = 1024.0;
 
-/// Names of the constants with sizes, in the order of the lines.
+/// Names of the size constants, in the order of the printed lines.
 const SIZES: [&str; 6] = [
     "DEGREES_OF_FREEDOM",
     "STATES",
@@ -38,7 +38,7 @@ pub const BITS: &str = include_str!("harness/bits.c");
 /// Precision of a harness.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Precision {
-    /// Everything in double precision.
+    /// Preparation and functions in double precision.
     Double,
     /// Functions in single precision, preparation in double precision.
     Cast,
@@ -55,7 +55,7 @@ impl Precision {
     }
 }
 
-/// Call of all functions: parameters, time, state and inputs.
+/// Arguments of one call of all functions.
 struct Call {
     parameters: Vec<f64>,
     sample: Sample,
@@ -70,7 +70,7 @@ pub struct Calls<'p> {
 }
 
 impl<'p> Calls<'p> {
-    /// Draws parameters and combines them with states of the domain, zeros and large states.
+    /// Draws parameter sets and combines each with states of the domain, zeros and large states.
     pub fn new(program: &'p Program, samples: &[Sample]) -> Self {
         let mut random = Random::new(SEED);
         let defaults = program.default_parameters();
@@ -120,8 +120,9 @@ impl<'p> Calls<'p> {
         calls.map(|call| (&*call.parameters, &call.sample))
     }
 
-    /// Counts the lines of `found` that differ from those of the program: those of the interface if `with_names`, then
-    /// those of the calls. Returns the first one. `functions` is the number of functions that the harness calls.
+    /// Compares the printed lines `found` with the expected lines: first the lines of the interface (if `with_names`),
+    /// then the lines of the calls. Returns the number of differences with the first one. `functions` is the number of
+    /// functions that the harness calls.
     pub fn compare<'f>(
         &self,
         found: &mut impl Iterator<Item = &'f str>,
@@ -184,7 +185,8 @@ impl<'p> Calls<'p> {
                 state: &state,
                 inputs: &inputs,
             };
-            // Converted coefficients keep the answer of the double precision that prepared them.
+            // Coefficients converted from double precision keep the result of the test for definite mass from
+            // `prepare`.
             let definite = match precision {
                 Precision::Cast => {
                     double.prepare(&call.parameters);
@@ -200,7 +202,7 @@ impl<'p> Calls<'p> {
             let printed = |place: usize, name: &str| place < functions || name == "step";
             let all = all.into_iter().enumerate();
             for (_, (name, numbers)) in all.filter(|(place, (name, _))| printed(*place, name)) {
-                // The evaluator adds two numbers of a product in double precision.
+                // The evaluator adds the two numbers of this product in double precision, so the sum must be rounded.
                 let numbers: Vec<f64> = numbers.iter().map(round).collect();
                 lines.push((format!("{name}, call {count}"), format_bits(&numbers)));
             }
@@ -212,7 +214,7 @@ impl<'p> Calls<'p> {
     }
 }
 
-/// Replaces negative zeros: a product that is added to an entry of zeros has none.
+/// Replaces -0 by 0: a product that is added to a zero entry cannot be -0.
 fn without_sign_of_zero(line: &str) -> String {
     line.replace("8000000000000000", "0000000000000000")
 }
@@ -225,12 +227,12 @@ fn scaled(sample: &Sample, factor: f64) -> Sample {
     }
 }
 
-/// Returns number `place` of an argument that is the same in every call, exact in any precision.
+/// Returns the number at index `place` of an argument that is equal in every call. It is exact in any precision.
 fn argument(place: usize) -> f64 {
     0.5 + 0.25 * place as f64
 }
 
-/// Returns `count` numbers of an argument.
+/// Returns the first `count` numbers of this argument.
 pub fn arguments(count: usize) -> Vec<f64> {
     (0..count).map(argument).collect()
 }
@@ -311,7 +313,7 @@ fn results(evaluator: &mut Evaluator, point: Point<'_>) -> Vec<(String, Vec<f64>
             };
             let mut nonzeros = room(jacobian.nonzeros());
             evaluator.jacobian(place, point, &mut nonzeros);
-            // nalgebra stores columns, C rows.
+            // nalgebra stores matrices by columns, C by rows.
             let matrix = dense(jacobian, &nonzeros).transpose();
             all.push((format!("linearise, {name}"), matrix.as_slice().to_vec()));
         }
@@ -333,10 +335,10 @@ fn results(evaluator: &mut Evaluator, point: Point<'_>) -> Vec<(String, Vec<f64>
     all
 }
 
-/// Step of the harnesses in s, exact in any precision.
+/// Step size of the harnesses in s, exact in any precision.
 const STEP: f64 = 1.0 / 1024.0;
 
-/// Returns the names of the Jacobians in a linearisation that have columns.
+/// Returns the names of the Jacobians of a linearisation that have at least one column.
 fn linearised(program: &Program) -> Vec<&'static str> {
     let names = [
         "rates_by_state",
@@ -348,7 +350,7 @@ fn linearised(program: &Program) -> Vec<&'static str> {
     names.into_iter().filter(has_columns).collect()
 }
 
-/// Returns the lines of sizes, names, indices, default parameters and conversions from arrays.
+/// Collects the expected lines of sizes, names, indices, default parameters and conversions from arrays.
 fn interface_lines(program: &Program, precision: Precision, lines: &mut Vec<(String, String)>) {
     let mut add = |what: &str, text: String| lines.push((what.to_owned(), text));
     let guards = Evaluator::new(program.clone()).guard_count();
@@ -528,7 +530,7 @@ pub fn c_harness(all: &Calls<'_>, name: &str) -> String {
         }
     }
     if has(Output::Regimes) {
-        // On a surface, the rates in a regime are those of one side.
+        // On a switching surface, `rates_in_regime` has the rates of one side, so `rates` is called instead.
         let unused = match guards {
             0 => String::new(),
             _ => format!(
@@ -610,7 +612,7 @@ pub fn rust_harness(all: &Calls<'_>, emitted: &str) -> String {
     };
     interface += "    let parameters = model::Parameters::default();\n";
     interface += &show("parameters", parameters().collect());
-    // Types without numbers have no conversion.
+    // A type without fields has no conversion from an array.
     if !program.parameters.is_empty() {
         let list = |of: &str, end: &str| -> String {
             let fields = parameters().map(|field| format!("{of}.{field}{end}"));
@@ -654,7 +656,7 @@ pub fn rust_harness(all: &Calls<'_>, emitted: &str) -> String {
             "                //CONTROLLERS\n",
             &all.controllers.rust_calls(),
         );
-    // A type without numbers is not generic.
+    // A type without fields is not generic.
     let has_coefficients = emitted.contains("pub struct Coefficients<");
     source
         .replace(

@@ -12,7 +12,7 @@ use crate::variant::Variant;
 pub struct Emitted {
     /// Text of the crate root.
     pub source: String,
-    /// Fields of its `Inputs`, in the order of the model.
+    /// Field names of `Inputs`, in the order of the model.
     pub input_fields: Vec<String>,
     /// Functions to compare.
     pub functions: Vec<EmittedFunction>,
@@ -38,7 +38,7 @@ pub enum EmittedFunction {
 }
 
 impl EmittedFunction {
-    /// Returns its name in the emitted source.
+    /// Returns the name of the function in the emitted source.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rates => "rates",
@@ -50,7 +50,7 @@ impl EmittedFunction {
         }
     }
 
-    /// Returns the variant's value at a state.
+    /// Returns the result of the variant for this function at a state.
     pub fn expected(self, variant: &mut dyn Variant, sample: &Sample) -> Result<Vec<f64>, String> {
         let Sample {
             time,
@@ -91,7 +91,7 @@ fn build_program(
     require_success("the emitted source", output).map(drop)
 }
 
-/// Compiles the source, calls it with `calls` at every sample and returns the printed lines.
+/// Compiles the source with a program that executes `calls` at every sample, and returns the printed lines.
 pub fn run_program(
     compiler: &Compiler,
     folder: &Path,
@@ -127,7 +127,7 @@ pub fn run_linked(
     require_success("the compiled model", output)
 }
 
-/// Returns the output of a successful process, or the first line of its message.
+/// Returns the output of a successful process, or the first line of its error message.
 pub fn require_success(what: &str, output: compiler::Output) -> Result<String, String> {
     if output.success {
         Ok(output.stdout)
@@ -221,7 +221,7 @@ pub fn count_differing_numbers(line: &str, expected: &[f64]) -> usize {
     expected.iter().filter(differs).count()
 }
 
-/// Counts the words that differ between two lines, missing ones included. All NaNs are equal.
+/// Counts the words that differ between two lines, including missing words. All NaNs are equal.
 pub fn count_differences(found: &str, expected: &str) -> usize {
     let (found, expected): (Vec<_>, Vec<_>) =
         (found.split(' ').collect(), expected.split(' ').collect());

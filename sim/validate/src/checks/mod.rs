@@ -3,7 +3,7 @@
 //! - [`states`]: random states in every regime;
 //! - [`zeros`]: states with entries equal to 0;
 //! - [`balance`]: power balance along trajectories;
-//! - [`integrals`]: quadrature of integrands that are no polynomials of the motion;
+//! - [`integrals`]: quadrature of integrands that are not polynomials of the motion;
 //! - [`nesting`]: agreement between orders;
 //! - [`outputs`]: requested outputs;
 //! - [`emitted`]: emitted source, with `number_types` for single precision, SIMD and requested outputs;
@@ -13,8 +13,8 @@
 //! - [`regimes`]: emitted kernels of regimes;
 //! - [`exact`]: state derivative of the exact solver.
 //!
-//! The oracle is accurate to 1e-14 of the largest term of a row (at order 128). The tolerance of
-//! 1e-12 is therefore available to the variant under test.
+//! The oracle is accurate to 1e-14 of the largest term of a row (at order 128). Therefore nearly the whole tolerance of
+//! 1e-12 is available to the variant under test.
 
 pub mod balance;
 pub mod casadi;
@@ -39,15 +39,16 @@ use super::oracle::Equations;
 use super::variant::Variant;
 use nalgebra::DMatrix;
 
-/// Tolerance of rows, relative to the largest addend of the row before cancellation.
+/// Tolerance of rows of the equations, relative to the largest addend of the row before cancellation.
 pub const ROW_TOLERANCE: f64 = 1e-12;
 /// Tolerance of entries of the mass matrix: about a thousand roundings. It is relative to the
 /// geometric mean of the two diagonal entries or to the terms that cancel in the entry.
 pub const MASS_TOLERANCE: f64 = 2e-13;
-/// Tolerance of the mass matrix's asymmetry, for products of a few factors in another order.
+/// Tolerance of the mass matrix's asymmetry, which is due to products with another order of factors.
 pub const SYMMETRY_TOLERANCE: f64 = 1e-15;
 
-/// Returns accelerations and first-order rates; fails if coordinate rates differ from the state.
+/// Returns the variant's accelerations and rates of first-order states. Errors: rates of coordinates that differ from
+/// the state.
 fn unknowns(
     variant: &mut dyn Variant,
     time: f64,

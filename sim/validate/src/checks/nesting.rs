@@ -1,6 +1,5 @@
-//! Comparison of two orders: with the added modes at zero amplitude and rate, the larger variant
-//! must have the rows of the smaller one. The rows of the added modes are ignored. With all modes
-//! at zero this is the rigid limit.
+//! Comparison of two orders. If the added modes have zero amplitude and rate, the remaining rows of the larger order
+//! must equal the rows of the smaller order. If all modes are zero, this is the rigid limit.
 
 use super::super::certificate::{Check, Worst};
 use super::super::oracle::{Oracle, OracleError, Residual};
@@ -12,8 +11,8 @@ use nalgebra::DMatrix;
 const STATES: usize = 50;
 const SEED: u64 = 0x0e57_ed00;
 
-/// Compares mass matrices, velocity terms and forces of two orders. `oracle` belongs to the smaller
-/// one. The checks are `name` with `_mass`, `_bias` and `_forces`.
+/// Compares mass matrices, velocity terms and forces of two orders. `oracle` belongs to the smaller order. The checks
+/// have the names `name` with `_mass`, `_bias` and `_forces`.
 pub fn check(
     name: &str,
     oracle: &Oracle,

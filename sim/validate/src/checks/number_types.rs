@@ -1,8 +1,7 @@
 //! Comparison of emitted source with other number types:
 //!
 //! - requested outputs and 8-wide SIMD: bit for bit with the evaluator;
-//! - single precision: within an error bound from running the same source with numbers that carry
-//!   the bound.
+//! - single precision: within an error bound that the same source computes with numbers that carry error bounds.
 
 use super::super::certificate::{Check, SkipKind, Worst};
 use super::super::compiler::{Compiler, Optimization};
@@ -13,7 +12,7 @@ use super::super::variant::Variant;
 use super::linked_program::{Emitted, count_differences, format_bits, run_linked};
 use std::path::Path;
 
-/// Tolerance in error bounds; rounding in double precision adds much less than 1e-6.
+/// Tolerance in units of the error bound. Double precision changes the bound by much less than 1e-6.
 const SINGLE_TOLERANCE: f64 = 1.0 + 1e-6;
 /// Maximum number of states, compared in groups of eight for SIMD.
 const STATES: usize = 48;

@@ -1,10 +1,11 @@
-//! Sampled states inside regimes. On a switching surface both sides are correct.
+//! Random states inside regimes. States on a switching surface are excluded, because the equations of both sides are
+//! correct there.
 
 use super::super::oracle::{Oracle, OracleError};
 use super::super::sampler::{Sample, Sampler};
 use super::super::variant::Variant;
 
-/// Displacement for the test of a guard at rest, relative to the sizes of the entries.
+/// Displacement that tests whether a guard remains 0 nearby, relative to the sizes of the entries.
 const REST_DISPLACEMENT: f64 = 1e-6;
 
 /// Draws up to `per_regime` states in every regime and as many in any regime.

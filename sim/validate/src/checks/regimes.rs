@@ -13,11 +13,11 @@ use std::fmt::Write as _;
 const NAME: &str = "regime_kernels";
 const STATES_PER_REGIME: usize = 10;
 const MAX_KERNELS: usize = 100;
-/// Maximum number of switching surfaces in the number of a regime.
+/// Maximum number of switching surfaces that a regime number can encode.
 const MAX_SURFACES: usize = u32::BITS as usize;
 const SEED: u64 = 0x2e61_3e5a;
 
-/// Compiles the kernels in `emitted` and counts the numbers that differ from `variant`.
+/// Compiles the regime kernels in `emitted` and counts the numbers that differ from `variant`.
 pub fn check(
     oracle: &Oracle,
     variant: &mut dyn Variant,
@@ -51,7 +51,7 @@ pub fn check(
     Ok(Check::from_deviation(NAME, worst, 0.0))
 }
 
-/// Returns the check as not applicable, for variants without kernels or regimes.
+/// Returns the skipped check (not applicable) of a variant without kernels or regimes.
 pub fn skipped_check(reason: impl Into<String>) -> Check {
     Check::not_applicable(NAME, 0.0, reason)
 }

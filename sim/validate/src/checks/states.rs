@@ -15,15 +15,15 @@ const STATES_PER_REGIME: usize = 200;
 const STATES: usize = 81 * STATES_PER_REGIME;
 /// Minimum number of states for a regime to count as sampled.
 const MIN_STATES_PER_REGIME: usize = 20;
-/// Failed draws after which the search in a regime ends.
+/// Number of failed draws after which the search in a regime ends.
 const MAX_FAILED_DRAWS: usize = 5;
 const SEED: u64 = 0x0dd5_eed5;
 
 /// Hand-written equations to compare accelerations with.
 pub struct Reference {
-    /// Name in the certificate.
+    /// Name of the check in the certificate.
     pub name: String,
-    /// Deviation of accelerations at (time, state, inputs), relative to each row's largest term.
+    /// Function of (time, state, inputs, accelerations) that returns the deviation relative to each row's largest term.
     #[expect(clippy::type_complexity, reason = "a plain function of four arguments")]
     pub deviation: Box<dyn Fn(f64, &[f64], &[f64], &[f64]) -> f64>,
 }
@@ -43,7 +43,7 @@ struct Findings<'f> {
     /// True if no energy depends explicitly on time.
     scleronomic: bool,
     compared_states: usize,
-    /// Regimes with enough states.
+    /// Number of regimes with enough states.
     sampled_regimes: u64,
     per_regime: usize,
 }
@@ -313,8 +313,8 @@ fn scale_to_unit_diagonal(mass: &DMatrix<f64>) -> DMatrix<f64> {
     })
 }
 
-/// Check that the signs of the guards identify the regime: two regimes with different equations
-/// must differ in a sign. A switch without influence on the equations needs no guard.
+/// Signs of the guards in each regime. Two regimes with different equations must differ in at least one sign. A switch
+/// without influence on the equations needs no guard.
 #[derive(Default)]
 struct Guards {
     regimes: HashMap<Vec<bool>, Regime>,

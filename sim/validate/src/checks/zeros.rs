@@ -1,4 +1,5 @@
-//! Rates and Jacobians with coordinates or rates equal to 0, where roots or quotients can be NaN.
+//! Check of rates and Jacobians at states with coordinates or rates equal to 0. Roots or quotients can be NaN at such
+//! states.
 
 use super::unknowns;
 use crate::certificate::{Check, Worst};
@@ -10,7 +11,7 @@ use crate::variant::Variant;
 
 const SEED: u64 = 0x2e20_0f0f;
 
-/// Two steps, in sizes of the entries, for a test of differentiability.
+/// Two step sizes for a test of differentiability, relative to the sizes of the entries.
 const STEPS: [f64; 2] = [1e-3, 1e-5];
 
 /// Largest ratio of the deviations from linearity at the two steps if a derivative exists.
@@ -22,7 +23,7 @@ const MAX_ROUNDING_DEVIATION: f64 = 1e-6;
 const RATES: &str = "rates_at_zeros";
 const JACOBIANS_AT_ZEROS: &str = "jacobians_at_zeros";
 
-/// Checks that rates and Jacobians are finite, except where the oracle's are not.
+/// Checks that rates and Jacobians are finite at every state at which the oracle's are finite.
 pub fn check(
     oracle: &Oracle,
     variant: &mut dyn Variant,
@@ -56,7 +57,7 @@ pub fn check(
             };
             let is_finite = jacobian.iter().all(|entry| entry.is_finite());
             let place = format!("{name}, {place}");
-            // The oracle provides only accelerations, so only this Jacobian can be excluded.
+            // The oracle computes accelerations, not Jacobians, so differentiability is tested for this Jacobian only.
             let is_judged = name == "rates_by_state";
             if is_finite || is_judged && has_derivative(oracle, &sample, &accelerations, &sizes)? {
                 jacobians.record_result(is_finite, &place);

@@ -9,12 +9,13 @@ use eomgen_model_spec::function::Function;
 
 use super::DoubleDouble;
 
-/// pi/2 and ln 2 as sums of three numbers.
+/// pi/2 as a sum of three numbers.
 const HALF_PI: [f64; 3] = [
     consts::FRAC_PI_2,
     6.123_233_995_736_766e-17,
     -1.497_384_904_859_169_8e-33,
 ];
+/// ln 2 as a sum of three numbers.
 const LN_2: [f64; 3] = [
     consts::LN_2,
     2.319_046_813_846_299_6e-17,
@@ -27,7 +28,7 @@ const ONE: DoubleDouble = DoubleDouble::new(1.0);
 /// Number of terms of the series, enough for arguments up to 0.8.
 const TERMS: usize = 34;
 
-/// Largest whole exponent of a power by multiplications.
+/// Largest integer exponent for which a power is computed by multiplications.
 const LARGEST_WHOLE: f64 = 64.0;
 
 impl DoubleDouble {
@@ -39,14 +40,14 @@ impl DoubleDouble {
         self * DoubleDouble::new(0.5)
     }
 
-    /// Subtracts the multiple `count` of a sum of three numbers.
+    /// Subtracts `count` times the sum of the three numbers `parts`.
     fn reduce(self, count: f64, parts: [f64; 3]) -> Self {
         let [first, second, third] = parts.map(|part| Self::product(count, part));
         self - first - second - third
     }
 
-    /// Sum of the terms of a power series whose term n is the previous one times x/n, with `sign` for every second power.
-    /// Returns the sums of even and odd powers.
+    /// Sums a power series whose term n is the previous term times x/n. `sign` multiplies every second term of the even
+    /// and of the odd powers. Returns the sums of even and odd powers.
     fn series(self, sign: f64) -> [Self; 2] {
         let (mut even, mut odd) = (ZERO, ZERO);
         let mut term = ONE;
@@ -99,7 +100,7 @@ impl DoubleDouble {
         }
     }
 
-    /// Returns the angle of the point with this ordinate.
+    /// Returns the polar angle of the point (`abscissa`, `self`).
     fn angle(self, abscissa: Self) -> Self {
         let first = DoubleDouble::new(self.high.atan2(abscissa.high));
         let [sine, cosine] = first.sine_and_cosine();
@@ -207,7 +208,7 @@ mod tests {
         assert!(rest.high.abs() < 1e-29, "{what}: {rest:?}");
     }
 
-    // Identities hold only to the accuracy of both sides.
+    // The tolerance allows for the errors of both sides of an identity.
     #[test]
     fn identities_hold_to_29_digits() {
         for place in 1..40 {

@@ -1,4 +1,5 @@
-//! Double-double numbers of about 32 digits, for Gauss-Legendre rules, phases of mode shapes and rounding errors of programs.
+//! Double-double arithmetic (about 32 digits) for Gauss-Legendre rules, phases of mode shapes and rounding errors of
+//! programs.
 
 mod functions;
 
@@ -9,7 +10,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 pub struct DoubleDouble {
     /// Leading part.
     pub high: f64,
-    /// Rest.
+    /// Trailing part.
     pub low: f64,
 }
 

@@ -1,5 +1,5 @@
-//! Affine forms of expressions in one regime: a constant plus multiples of time, state entries,
-//! inputs and atoms. An atom is a subexpression that is not affine.
+//! Affine forms of expressions in one regime: a constant plus multiples of time, state entries, inputs and atoms. An
+//! atom is a subexpression that is not affine.
 
 use super::Oracle;
 use super::functions;
@@ -25,7 +25,7 @@ pub(super) struct Affine {
     pub terms: Vec<(Variable, f64)>,
 }
 
-/// Relative size below which a coefficient after cancellation is rounding error.
+/// Size, relative to the summands, below which a sum is treated as rounding error.
 const MAX_CANCELLATION_RATIO: f64 = 1e-14;
 
 impl Affine {
@@ -143,7 +143,8 @@ impl<'o> AffineForms<'o> {
         }
     }
 
-    /// Returns the affine form of a piecewise function on a side, if it is linear in one argument.
+    /// Returns the affine form of a piecewise function on a side, if the function is linear in one argument on this
+    /// side.
     fn branch_form(
         &mut self,
         function: eomgen_model_spec::model::Function,
@@ -154,7 +155,7 @@ impl<'o> AffineForms<'o> {
             .iter()
             .map(|tree| self.affine_form(tree))
             .collect();
-        // The value on a side is linear, so values at unit arguments are coefficients.
+        // The function is linear on each side, so its values at unit arguments are the coefficients.
         let at = |numbers: &[f64]| functions::evaluate_on_side(function, side, numbers);
         let constant = at(&vec![0.0; arguments.len()])?;
         let mut form = Affine::constant(constant);

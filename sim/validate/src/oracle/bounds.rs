@@ -65,7 +65,7 @@ fn bound_call(function: Function, bounds: &[Interval], side: Option<Side>) -> In
     }
 }
 
-/// Returns true if the value on this side is constant.
+/// Returns true if the function is constant on this side.
 fn has_levels(function: Function, side: Side) -> bool {
     match function {
         Function::Sign | Function::Above | Function::Contact => true,

@@ -1,9 +1,10 @@
-//! Numbers with a scale of their rounding error. Each number carries the magnitude of the largest
-//! term that contributed to it, multiplied as an error of that term would be. This is a running
-//! error analysis (Wilkinson, Higham) in units of one rounding. Without cancellation the magnitude
-//! is that of the value. After cancellation it bounds the accuracy of the value.
+//! Numbers with a scale of their rounding error. Each number carries the magnitude of the largest term that contributed
+//! to it. Operations propagate this magnitude as they propagate an error of the term. This is a running error analysis
+//! (Wilkinson, Higham) in units of one rounding. Without cancellation, the magnitude equals the absolute value of the
+//! number. After cancellation, it bounds the accuracy of the number.
 //!
-//! The values are those of plain `f64`; dual numbers of these give magnitudes of derivatives too.
+//! The values are identical to plain `f64` arithmetic. Dual numbers over this type also give the magnitudes of
+//! derivatives.
 
 use num_dual::{DualNum, DualStruct, Mappable};
 use num_traits::{FromPrimitive, Inv, Num, One, Signed, Zero};
@@ -17,7 +18,7 @@ use std::ops::{
 /// Value with the magnitude of its terms.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Conditioned {
-    /// The value.
+    /// Value, as computed in plain `f64`.
     pub value: f64,
     /// Largest magnitude among the terms, at least that of the value.
     pub magnitude: f64,

@@ -44,7 +44,7 @@ pub(super) fn stabilisation_rate(model: &Model, parameters: &[f64]) -> f64 {
 }
 
 impl LoweredConstraint {
-    /// Returns the residual of a holonomic constraint (0 for others), and its rate or the residual of others.
+    /// Returns the residual and its rate for a holonomic constraint; 0 and the residual for a nonholonomic one.
     pub(super) fn values(&self, scene: &Scene<'_>) -> (f64, f64) {
         let zero = Pass::new(scene, Direction::Time, Direction::Zero).value(&self.zero);
         match self.is_nonholonomic {
@@ -93,7 +93,8 @@ impl Oracle {
             .unwrap_or_else(unknown)
     }
 
-    /// Returns the power of the constraint forces, from prescribed motion and from residuals.
+    /// Returns the power of the constraint forces. It is nonzero if prescribed motion moves a constraint or if a
+    /// residual is not 0.
     pub(super) fn reaction_power(&self, scene: &Scene<'_>, rates: &[f64]) -> Conditioned {
         let multipliers = self.multipliers(scene);
         let mut total = Conditioned::default();

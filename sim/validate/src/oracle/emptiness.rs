@@ -1,5 +1,5 @@
-//! Proofs that no state has a given combination of sides. In an empty regime the affine forms of
-//! the switches, the ranges and the bounds of atoms contradict each other.
+//! Proofs that no state has a given combination of sides. A regime is empty if the inequalities of the switches, the
+//! ranges and the bounds of atoms contradict each other.
 
 use super::affine::{Affine, AffineForms, Variable};
 use super::switches::{PrescribedSides, Side, is_piecewise_function};
@@ -9,10 +9,10 @@ use crate::feasibility::cone_is_empty;
 use eomgen_model_spec::interval::Interval;
 use eomgen_model_spec::model::Function;
 
-/// Relative widening of bounds, so that a range as narrow as rounding is no contradiction.
+/// Relative widening of bounds. Without it, a range as narrow as the rounding error would be a contradiction.
 const RELATIVE_SLACK: f64 = 1e-9;
 
-/// Relative rounding error of an affine form at the end of a range.
+/// Bound of the relative rounding error of an affine form.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Kind of an inequality.
@@ -165,9 +165,9 @@ impl Oracle {
         found: &mut Vec<&'t Tree>,
     ) {
         match tree {
-            // A piecewise function can ignore a NaN argument.
+            // A piecewise function can have a finite value although an argument is NaN.
             Tree::Call(function, _) if is_piecewise_function(*function) => return,
-            // The argument differs between places or modes.
+            // The argument has another value at each node or mode.
             Tree::Places { .. } | Tree::Sum { .. } => return,
             Tree::Call(Function::Sqrt | Function::Ln, arguments) => found.extend(arguments),
             Tree::Power(base, exponent) if exponent.fract() != 0.0 => found.push(base),
@@ -205,9 +205,9 @@ fn side_rows(forms: &mut AffineForms<'_>, switch: &Switch, side: Side) -> Vec<(A
         (Side::Free, None) if forms.is_nonzero_almost_everywhere(switch.quantity()) => {
             vec![(Affine::constant(-1.0), Relation::NotNegative)]
         }
-        // It is unknown if an atom is at rest at 0.
+        // It is unknown whether an atom is constantly 0.
         (Side::Free, None) if quantity.has_atoms() => Vec::new(),
-        // The quantity is at rest at 0, so neither sign is possible.
+        // The quantity is constantly 0, so the positive and the negative sign must both be impossible.
         (Side::Free, None) => [1.0, -1.0]
             .map(|sign| (signed(sign), Relation::NotNegative))
             .into(),

@@ -34,7 +34,7 @@ pub struct RowTerm {
     pub name: String,
     /// Kind of the term.
     pub kind: RowTermKind,
-    /// Value in every row, on the side of the accelerations.
+    /// Value in every row, on the left side of the equation, together with the accelerations.
     pub rows: DVector<f64>,
     /// Magnitudes of the values' terms, before cancellation.
     pub magnitudes: DVector<f64>,
@@ -100,7 +100,7 @@ impl Residual {
     }
 }
 
-/// Minimum square of a pivot of the scaled mass matrix, below which rounding decides.
+/// Minimum square of a pivot of the scaled mass matrix. Smaller pivots are treated as rounding error.
 const SMALLEST_PIVOT: f64 = 1e-13;
 
 /// Smallest nonzero eigenvalue of the scaled A M^-1 A^T of dependent constraints.
@@ -125,7 +125,8 @@ impl Equations {
             && rates.all(|rate| rate.value.is_finite() && rate.magnitude.is_finite())
     }
 
-    /// Returns true if mass is positive definite and constraints independent, beyond rounding.
+    /// Returns true if the mass matrix is positive definite and the constraints are independent, with a margin over
+    /// rounding.
     pub fn is_definite(&self) -> bool {
         has_pivots(&self.scaled_mass().1)
             && match self.excess {
@@ -180,9 +181,9 @@ impl Equations {
         Some(gradients * solved)
     }
 
-    /// Returns the multipliers of the constraints with the magnitudes of their terms, from A M^-1
-    /// A^T lambda = b - A M^-1 (f - c); those of dependent constraints have the least norm, each scaled with the square
-    /// root of its diagonal entry. Returns `None` if the accelerations cannot be solved for.
+    /// Returns the multipliers of the constraints with the magnitudes of their terms, from A M^-1 A^T lambda = b - A
+    /// M^-1 (f - c); for dependent constraints, the solution of least norm, scaled with the square roots of the
+    /// diagonal entries. Returns `None` if the accelerations cannot be solved for.
     pub fn multipliers(&self) -> Option<Vec<Conditioned>> {
         if self.constraints.is_empty() {
             return Some(Vec::new());
@@ -307,7 +308,8 @@ impl Equations {
         self.size() + self.state_rates.len()
     }
 
-    /// Returns each row's residual for accelerations, then first-order rates; missing ones are 0.
+    /// Returns each row's residual for `unknowns`: accelerations, then rates of first-order states. Missing unknowns
+    /// count as 0.
     pub fn residuals(&self, unknowns: &[f64]) -> Vec<Residual> {
         self.row_residuals(unknowns, &self.constraint_reactions())
     }
@@ -323,14 +325,14 @@ impl Equations {
         rows.into_iter().chain(of_states).collect()
     }
 
-    /// Returns the residual of every row for given accelerations, without constraint forces. These
-    /// are the forces that the accelerations require in addition to those of the specification.
+    /// Returns the residual of every row for given accelerations, without constraint forces. The residuals are the
+    /// forces that the accelerations require in addition to the forces of the specification.
     pub fn missing_forces(&self, accelerations: &[f64]) -> Vec<Residual> {
         self.degree_residuals(accelerations, &vec![Vec::new(); self.size()])
     }
 
-    /// Returns the residual of every constraint. The accelerations have the rounding errors of all forces, with those
-    /// of the constraints, even where they cancel.
+    /// Returns the residual of every constraint. The scale includes the rounding errors of all forces, including
+    /// constraint forces, even if the forces cancel.
     fn constraint_residuals(
         &self,
         accelerations: &[f64],
@@ -443,9 +445,9 @@ fn pseudo_inverse(matrix: &DMatrix<f64>, excess: usize) -> Option<DMatrix<f64>> 
     Some(parts.recompose())
 }
 
-/// Adds the rounding errors of a pseudo-inverse to the magnitudes of multipliers. They are relative to the length of all
-/// multipliers, divided by `scale`, times the condition number of the matrix (P.-A. Wedin, BIT 13, 1973), so that a
-/// multiplier that vanishes has an error too.
+/// Adds the rounding errors of a pseudo-inverse to the magnitudes of multipliers. The errors are proportional to the
+/// length of the scaled vector of multipliers and to the condition number of the matrix (P.-A. Wedin, BIT 13, 1973).
+/// Therefore a multiplier that vanishes has an error too.
 fn add_pseudo_inverse_errors(
     multipliers: &mut [Conditioned],
     scale: &DVector<f64>,

@@ -1,4 +1,4 @@
-//! Models, possibly valid, that the oracle does not support.
+//! Errors of the oracle, including valid models that it does not support.
 
 use thiserror::Error;
 

@@ -1,5 +1,5 @@
-//! Evaluation of a tree at a scene with derivatives in two directions. A time derivative adds one
-//! dual part along the motion; `lower` rejects accelerations, which would need two.
+//! Evaluation of a [`Tree`] at a [`Scene`] with derivatives in two directions. A time derivative adds a dual part along
+//! the motion. `lower` rejects accelerations, because they would need two dual parts.
 
 use super::conditioned::Conditioned;
 use super::functions;
@@ -22,7 +22,7 @@ pub(super) trait EvaluationNumber: DualNum<Primitive = f64> + Copy {
         pass: &'p Pass<'_>,
         definition: usize,
     ) -> Option<&'p Cell<Option<Self>>>;
-    /// Returns integral `index` with the derivatives that are cached for all rows, if they are.
+    /// Returns integral `index` with its derivatives from the cache of all rows; `None` if they are not cached.
     fn integral(pass: &Pass<'_>, index: usize) -> Option<Self>;
     /// Returns true if the value and all its derivatives are 0.
     fn is_constant_zero(&self) -> bool;
@@ -95,7 +95,7 @@ impl EvaluationNumber for Dual<Number> {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Frame<'f> {
     Outside,
-    /// At a position of the enclosing place set.
+    /// At a node of the enclosing set of positions.
     Place {
         node: usize,
         outer: &'f Frame<'f>,
@@ -222,9 +222,9 @@ impl<'s> Pass<'s> {
         }
     }
 
-    /// Returns true if a power of a base that is 0 with all its derivatives is 0 with all its derivatives. The
-    /// chain rule gives infinity times 0 there. An exponent above 1 is enough. For another exponent the base has to
-    /// be 0 because of a switch: it is constant then, unlike x^4.
+    /// Returns true if a power of a base that is 0 with all its derivatives is 0 with all its derivatives. The chain
+    /// rule would give infinity times 0. An exponent above 1 is sufficient. For a smaller exponent, the base must be 0
+    /// on a side of a switch. Then it is constant, unlike x^4 at x = 0.
     fn has_zero_power<N: EvaluationNumber>(
         &self,
         (base, value): (&Tree, &N),
@@ -236,7 +236,7 @@ impl<'s> Pass<'s> {
             && (exponent > 1.0 || self.is_beside_switch(base, frame))
     }
 
-    /// Returns true if an expression contains a switch with the state beside its surface.
+    /// Returns true if an expression contains a switch and the state is not on its switching surface.
     fn is_beside_switch(&self, tree: &Tree, frame: &Frame<'_>) -> bool {
         let value = |tree: &Tree| self.evaluate::<Number>(tree, frame).re.value;
         let is_beside = match tree {
@@ -307,7 +307,7 @@ impl<'s> Pass<'s> {
         self.scene.coordinate(index, self.directions)
     }
 
-    /// Returns the value of a definition, one per pass because it contains no free place or index.
+    /// Returns the value of a definition. It is evaluated once per pass, because it contains no free position or index.
     fn definition<N: EvaluationNumber>(&self, index: usize) -> N {
         let kept = N::definition_cache(self, index);
         if let Some(value) = kept.and_then(Cell::get) {

@@ -1,4 +1,4 @@
-//! Constant folding with the rules of `evaluate`.
+//! Constant folding by the same rules as `evaluate`.
 
 use super::functions;
 use super::tree::Tree;

@@ -1,6 +1,6 @@
-//! Functions of the expression language for all number types of automatic differentiation. A
-//! piecewise function uses the side of the real part and the derivative on that side. The
-//! derivative of a step is 0, and sign(0) = 0.
+//! Functions of the expression language for all number types of automatic differentiation. A piecewise function is
+//! evaluated on the side of the real part, with the derivative of that side. The derivative of a step is 0, and sign(0)
+//! = 0.
 
 use super::switches::Side;
 use eomgen_model_spec::model::Function;
@@ -127,9 +127,9 @@ where
     }
 }
 
-/// Returns the hyperbolic tangent as sinh/cosh, or its limit with derivative 0 before cosh
-/// overflows. The derivative (cosh^2 - sinh^2)/cosh^2 cancels as 1 - tanh^2 does, and its magnitude
-/// includes this cancellation.
+/// Returns the hyperbolic tangent as sinh/cosh. For large arguments, at which cosh would overflow, it returns the limit
+/// with derivative 0. The derivative (cosh^2 - sinh^2)/cosh^2 cancels as 1 - tanh^2 does, and its magnitude includes
+/// this cancellation.
 fn tanh<N>(x: N) -> N
 where
     N: DualNum<Primitive = f64> + Copy,
@@ -147,7 +147,7 @@ mod tests {
     use super::*;
     use num_dual::{Dual64, HyperDual64};
 
-    /// Central differences check every function, because the oracle relies on num-dual.
+    /// The oracle relies on the derivatives of num-dual, so central differences check every function.
     #[test]
     fn derivatives_match_central_differences() {
         let smooth = [

@@ -1,11 +1,10 @@
-//! Derivatives of integrals, computed once per state for all rows. An integrand depends on the
-//! modes only through field values at its place. Its derivative by mode j is therefore its
-//! derivative by each field value times phi_j. This needs a few evaluations per node and one
-//! product with the table of shapes, not one evaluation per node and row.
+//! Derivatives of integrals, computed once per state for all rows. An integrand depends on the modes only through field
+//! values at the same position. Therefore its derivative by mode j is its derivative by each field value times phi_j.
+//! This needs a few evaluations per node and one product with the table of shapes, not one evaluation per node and row.
 //!
-//! The magnitude of an integral is that of its largest addend, with weight and shape. The magnitude
-//! of second derivatives by two modes is that of the value: cancellation by orthogonality depends
-//! on the quadrature, not on the model.
+//! The magnitude of an integral is the magnitude of its largest addend, including weight and shape. Second derivatives
+//! by two modes have the magnitude of their value, because cancellation by orthogonality depends on the quadrature, not
+//! on the model.
 
 use super::conditioned::Conditioned;
 use super::evaluate::{Frame, Number, Pass};
@@ -232,7 +231,7 @@ impl Scene<'_> {
         rows
     }
 
-    /// Adds the derivatives by `channel` at every place to the derivatives by every row.
+    /// Adds the derivatives by the field value `channel` at every node to the derivatives by every row.
     fn add_first_derivatives(
         &self,
         integral: &Integral,

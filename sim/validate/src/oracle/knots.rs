@@ -1,4 +1,4 @@
-//! Positions at which piecewise coefficients of integrals switch, found by bisection.
+//! Computes the positions at which piecewise coefficients of integrals switch, by bisection.
 
 use eomgen_model_spec::evaluate::{evaluate, evaluate_with};
 use eomgen_model_spec::ids::FieldId;
@@ -7,7 +7,7 @@ use eomgen_model_spec::model::{Expr, ExprKind, Function, Model};
 /// Number of parts of the domain with at most one sign change of an argument.
 const PARTS: usize = 64;
 
-/// Returns the relative positions inside the domain at which a function of position and parameters switches.
+/// Returns the relative positions (0 to 1) inside the domain at which a function of position and parameters switches.
 pub(super) fn switch_positions(
     model: &Model,
     of: FieldId,
@@ -20,7 +20,7 @@ pub(super) fn switch_positions(
         for part in 0..PARTS {
             let [mut low, mut high] = [part, part + 1].map(|k| k as f64 / PARTS as f64);
             let start = value(low);
-            // NaN for an argument that contains the motion.
+            // The product is NaN if the argument depends on the motion, so no switch is found.
             if start * value(high) < 0.0 {
                 while 0.5 * (low + high) > low && 0.5 * (low + high) < high {
                     let middle = 0.5 * (low + high);

@@ -1,6 +1,6 @@
-//! Gauss-Legendre rule on the unit interval, by Newton's method in double-double arithmetic. An
-//! error of half a unit in the last place of an `f64` node is a phase error of 200 times that at
-//! mode 64. The first moment of that mode (5e-5 of its amplitude) would then be wrong by 1e-11.
+//! Gauss-Legendre rule on the unit interval, by Newton's method in double-double arithmetic. Mode 64 multiplies an
+//! error of a node by 200 in the phase. With `f64` nodes, the first moment of this mode (5e-5 of its amplitude) would
+//! have a relative error of 1e-11.
 
 use crate::double_double::DoubleDouble;
 
@@ -16,8 +16,8 @@ pub(super) fn unit_rule(count: usize) -> Vec<Node> {
     (0..count).map(|index| unit_node(count, index)).collect()
 }
 
-/// Returns node `index` of `count`. Newton's method in `f64` starts from Tricomi's approximation
-/// and converges to rounding; two double-double steps square the error.
+/// Returns node `index` of `count`. Newton's method in `f64` starts from Tricomi's approximation and converges to
+/// rounding; each of two double-double steps squares the error.
 fn unit_node(count: usize, index: usize) -> Node {
     let n = count as f64;
     let angle = std::f64::consts::PI * (index as f64 + 0.75) / (n + 0.5);

@@ -1,5 +1,5 @@
-//! Conversion of the checked model's expressions to [`Tree`]. Parameters become numbers, domains
-//! become places, constants are folded, and unsupported expressions are rejected.
+//! Conversion of the checked model's expressions to [`Tree`]. Parameters are replaced by numbers and domains by sets of
+//! positions, constants are folded, and unsupported expressions are rejected.
 
 use super::OracleError;
 use super::evaluate::Pass;
@@ -138,7 +138,7 @@ impl<'m> Lowering<'m> {
         OracleError::MisplacedField(self.subject.clone())
     }
 
-    /// Converts an expression; `set` is the enclosing place set.
+    /// Converts an expression; `set` is the enclosing set of positions.
     fn lower(&mut self, expression: &Expr, set: Option<usize>) -> Result<Tree, OracleError> {
         Ok(match &expression.kind {
             ExprKind::Dot(operand) => self.lower_dot(operand, set)?,
@@ -236,7 +236,7 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    /// Returns the enclosing place set if it belongs to `field`.
+    /// Returns the enclosing set of positions if it belongs to `field`.
     fn enclosing_set(&self, field: usize, set: Option<usize>) -> Result<usize, OracleError> {
         set.filter(|set| {
             self.system
@@ -294,7 +294,8 @@ impl<'m> Lowering<'m> {
         })
     }
 
-    /// Converts derivatives by the position of a field, its rate, a shape, or such a derivative.
+    /// Converts a derivative by position. The operand is a field, a field's rate, a shape, or another derivative by
+    /// position.
     fn lower_diff(
         &mut self,
         operand: &Expr,
@@ -338,7 +339,7 @@ impl<'m> Lowering<'m> {
         Ok(self.sum_over_places(set, body, true))
     }
 
-    /// Creates a sum over places; a number, or one number per mode, if it is constant.
+    /// Creates a sum over positions. If the sum is constant, the result is a number, or one number per mode.
     fn sum_over_places(&mut self, set: usize, body: Tree, keep: bool) -> Tree {
         let dependence = self.system.dependence(&body);
         let mut tree = Tree::Places {

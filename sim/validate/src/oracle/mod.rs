@@ -4,8 +4,8 @@
 //!
 //! Modules in the order of the computation:
 //!
-//! - `lower` converts expressions to a `tree`, with `places` for fields on `legendre` nodes with
-//!   `shapes`;
+//! - `lower` converts expressions to a `tree`; `places` contains the quadrature nodes of fields (from `legendre`) with
+//!   the mode `shapes`;
 //! - `scene` contains a state and directions of differentiation;
 //! - `evaluate` evaluates any number type, with `functions`; [`Conditioned`] numbers carry a scale
 //!   of their rounding error;
@@ -21,9 +21,8 @@
 //! d/dt dT/dq_j' - dT/dq_j + dV/dq_j + dR/dq_j' - sum of value * d(on)/dq_j = 0
 //! ```
 //!
-//! minus A^T lambda of the constraints A q'' = b. Here d/dt dT/dq_j' = sum over k of M_jk q_k'' +
-//! (the derivative of dT/dq_j' along the motion with constant rates). The row of a first-order
-//! state is z' - rate = 0.
+//! With constraints A q'' = b, the term A^T lambda is subtracted. Here d/dt dT/dq_j' = sum over k of M_jk q_k'' + (the
+//! derivative of dT/dq_j' along the motion with constant rates). The row of a first-order state is z' - rate = 0.
 
 mod affine;
 mod bounds;
@@ -74,7 +73,7 @@ use system::System;
 use terms::{Lowered, LoweredForce, lower_force, lower_terms};
 use tree::Tree;
 
-/// Evaluator of the equations of motion of one variant at any state.
+/// Evaluator of the equations of motion of one variant.
 ///
 /// # Errors
 /// Methods return [`OracleError::WrongLength`] if the length of an argument does not match the model.
@@ -94,13 +93,13 @@ pub struct Oracle {
     switches: Vec<Switch>,
     observables: Vec<Option<Tree>>,
     constraints: Vec<LoweredConstraint>,
-    /// Number of constraints that depend on the others.
+    /// Number of redundant constraints: constraints that depend on the others.
     excess: usize,
     stabilisation_rate: f64,
 }
 
 impl Oracle {
-    /// Creates the oracle of `model`; parameters as in [`Model::parameter_values`].
+    /// Creates the oracle of `model`; `parameters` are ordered as in [`Model::parameter_values`].
     ///
     /// # Errors
     /// [`OracleError`] if the model is not supported.
@@ -159,7 +158,7 @@ impl Oracle {
         self.input_rates.len()
     }
 
-    /// Returns inputs with which the model has inertia; 0 for inputs other than prescribed motions.
+    /// Returns inputs at which the mass matrix is positive definite; 0 for inputs other than prescribed motions.
     pub fn typical_inputs(&self) -> &[f64] {
         &self.typical_inputs
     }

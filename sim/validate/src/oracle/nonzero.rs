@@ -1,4 +1,4 @@
-//! Expressions that are zero at no open set of states, so that a switch cannot rest there.
+//! Proof that an expression is zero on no open set of states. A switch of such an expression cannot remain at zero.
 
 use super::affine::{Affine, AffineForms, Variable};
 use super::tree::Tree;

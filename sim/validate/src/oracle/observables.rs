@@ -8,7 +8,7 @@ use super::tree::Tree;
 use super::{Oracle, OracleError};
 use eomgen_model_spec::model::Model;
 
-/// Converts every observable; `None` for an unsupported one.
+/// Converts every observable; `None` stands for an unsupported one.
 pub(super) fn lower_observables(lowering: &mut Lowering<'_>, model: &Model) -> Vec<Option<Tree>> {
     let observables = model.observables.iter();
     observables

@@ -1,11 +1,10 @@
-//! Quadrature nodes and single positions of a field, each with its mode shapes.
+//! Sets of positions of a field (quadrature nodes or a single position) with the mode shapes at these positions.
 //!
-//! Number of nodes: phi_S has the phase pi S over the domain. A product of two modes oscillates as
-//! cos(2 pi S s), a product of four (a quartic energy) as cos(4 pi S s). On [0, 1] a Gauss-Legendre
-//! rule with N nodes integrates cos(w s) to rounding if 2 N exceeds w/2 by a margin that increases
-//! as the cube root of w. A margin of 32 is enough up to S = 128. With 4 S + 40 nodes, 2 N = 8 S +
-//! 80 exceeds 2 pi S + 32 for every S. The surplus covers coefficients that vary along the field.
-//! A product of p > 4 modes gets p S + 40 nodes.
+//! Number of nodes: the phase of phi_S increases by pi S over the domain. A product of two modes oscillates as cos(2 pi
+//! S s), a product of four (a quartic energy) as cos(4 pi S s). On [0, 1] a Gauss-Legendre rule with N nodes integrates
+//! cos(w s) to rounding if 2 N exceeds w/2 by a margin that increases as the cube root of w. A margin of 32 is
+//! sufficient up to S = 128. With 4 S + 40 nodes, 2 N = 8 S + 80 exceeds 2 pi S + 32 for every S. The additional nodes
+//! allow for coefficients that vary along the field. A product of p > 4 modes gets p S + 40 nodes.
 
 use super::legendre::unit_rule;
 use super::shapes::Shape;
@@ -14,7 +13,7 @@ use crate::double_double::DoubleDouble;
 use eomgen_model_spec::model::Basis;
 use nalgebra::DMatrix;
 
-/// Smallest number of modes in a product for which the nodes are enough.
+/// Minimum number of modes in a product for which the number of nodes is chosen.
 const MIN_POWER: usize = 4;
 
 /// Number of derivative orders of a mode shape, from 0.
@@ -29,12 +28,12 @@ pub(super) struct FieldDomain {
     pub order: usize,
     /// Number of nodes of the whole domain.
     nodes: usize,
-    /// Positions of switches, between 0 and 1.
+    /// Relative positions of switches, between 0 and 1.
     knots: Vec<f64>,
     shapes: Shapes,
 }
 
-/// Mode shapes by a formula, or of a table with its quadrature rule.
+/// Mode shapes from a formula, or from a table with its quadrature rule.
 #[derive(Clone, Debug)]
 enum Shapes {
     Modes(Vec<Shape>),
@@ -87,7 +86,7 @@ impl FieldDomain {
         }
     }
 
-    /// Returns a derivative by s of shape `mode`, from 0.
+    /// Returns the derivative of order `derivative` by s of shape `mode` (counted from 0).
     fn shape(&self, mode: usize, derivative: u8, position: DoubleDouble) -> f64 {
         let value = match &self.shapes {
             Shapes::Modes(shapes) => shapes.get(mode).map(|s| s.derivative(derivative, position)),
@@ -106,7 +105,7 @@ pub(super) struct PlaceSet {
     /// Weights: dx of the rule, or 1 for a single position.
     pub weights: Vec<f64>,
     relative_positions: Vec<DoubleDouble>,
-    /// Shapes by order of the derivative, modes by positions; `None` before the first use.
+    /// For each derivative order, the matrix of shapes (modes by positions); `None` before the first use.
     shapes: [Option<DMatrix<f64>>; DERIVATIVE_ORDERS],
 }
 

@@ -1,4 +1,4 @@
-//! Number of modes that the integrands of a model multiply.
+//! Largest number of field values that an integrand of a model multiplies.
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::model::{Expr, ExprKind, Model};

@@ -1,23 +1,24 @@
-//! Constraints that depend on each other, and projection of states onto them by the method of Levenberg and Marquardt.
-//! Newton's method would drift along the constraints, to states at which more of them depend on each other.
+//! Projection of states onto dependent (redundant) constraints by the Levenberg-Marquardt method. Newton's method would
+//! drift along the constraints to states with more dependent constraints.
 //!
-//! Off the constraints, their rows are independent, and no unique accelerations exist. Therefore states of such a model
-//! are compared on the constraints.
+//! At states that violate the constraints, their rows are independent and contradict each other, so no accelerations
+//! exist. Therefore states of such a model are projected before they are compared.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::Oracle;
 
-/// Largest number of steps.
+/// Maximum number of steps.
 const MAX_STEPS: usize = 50;
 
-/// Number of corrections of the rates, which enter linearly; each multiplies their error by the damping or less.
+/// Number of corrections of the rates. The constraints are linear in the rates, so each correction multiplies the error
+/// by at most the damping.
 const RATE_CORRECTIONS: usize = 20;
 
-/// Added to the squares of the singular values of the scaled rows.
+/// Damping, added to the squares of the singular values of the scaled rows.
 const DAMPING: f64 = 1e-6;
 
-/// Largest last step, relative to the largest scaled entry of the state.
+/// Step size at convergence, relative to the largest scaled entry of the state.
 const LAST_STEP: f64 = 1e-15;
 
 /// Displacements of the initial state, relative to its entries, at which constraints are tested.
@@ -25,9 +26,9 @@ const DISPLACEMENTS: [f64; 4] = [0.0, 0.11, -0.07, 0.19];
 
 /// Values of all constraints at a state.
 struct Values {
-    /// Rows, each column divided by the square root of its inertia.
+    /// Constraint Jacobian, each column divided by the square root of its inertia.
     rows: DMatrix<f64>,
-    /// Square roots of the inertias.
+    /// Square roots of the inertias of the coordinates.
     roots: DVector<f64>,
     residuals: Vec<f64>,
     /// Rates of holonomic residuals, and residuals of the others.
@@ -45,7 +46,7 @@ impl Oracle {
         self.input_rates.iter().any(Option::is_some)
     }
 
-    /// Returns the least number of dependent constraints over several states that satisfy them.
+    /// Returns the minimum number of dependent constraints over several states that satisfy all constraints.
     pub(super) fn count_excess(&self) -> usize {
         if self.constraints.len() < 2 {
             return 0;
@@ -73,7 +74,7 @@ impl Oracle {
         least.unwrap_or(0)
     }
 
-    /// Moves a state onto the constraints; returns false if the method does not converge.
+    /// Projects a state onto the constraints; returns false if the method does not converge.
     pub fn project(&self, time: f64, state: &mut [f64], inputs: &[f64]) -> bool {
         let size = self.size();
         for _ in 0..MAX_STEPS {

@@ -1,4 +1,4 @@
-//! Ranges and scales of the variables in a specification.
+//! Ranges and scales of the state and the inputs.
 
 use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::model::{Model, Range};
@@ -10,9 +10,9 @@ pub struct Ranges {
     pub state: Vec<Option<(f64, f64)>>,
     /// Range of each input.
     pub inputs: Vec<Option<(f64, f64)>>,
-    /// Magnitudes of the parameters with the dimension of each first-order state.
+    /// For each first-order state, the magnitudes of the parameters of equal dimension.
     pub first_order_scales: Vec<Vec<f64>>,
-    /// Magnitudes of the parameters with the dimension of each input.
+    /// For each input, the magnitudes of the parameters of equal dimension.
     pub input_scales: Vec<Vec<f64>>,
 }
 

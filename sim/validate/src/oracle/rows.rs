@@ -1,4 +1,4 @@
-//! All rows of the equations of motion at a state, and some of their derivatives.
+//! Computation of all rows of the equations of motion at a state, and of some derivatives.
 
 use super::conditioned::Conditioned;
 use super::equations::{Equations, RowTermKind};

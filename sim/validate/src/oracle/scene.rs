@@ -21,7 +21,7 @@ pub(super) enum Direction {
     Input(usize),
     /// Explicit time.
     ExplicitTime,
-    /// Field value at the current place, with constant rate.
+    /// Field value at the current position; its rate is constant.
     LeafPosition(Leaf),
     LeafRate(Leaf),
 }
@@ -61,7 +61,7 @@ struct FieldValues {
     second: DVector<f64>,
 }
 
-/// State with results that all rows share.
+/// State with intermediate results that all rows share.
 #[derive(Debug)]
 pub(super) struct Scene<'s> {
     pub system: &'s System,
@@ -72,7 +72,7 @@ pub(super) struct Scene<'s> {
     pub integrals: Vec<IntegralTable>,
     /// Multipliers of the constraints, if an expression needs them.
     pub multipliers: Vec<Conditioned>,
-    /// Prescribed sides of piecewise functions, if any.
+    /// Prescribed sides of piecewise functions; `None` if the state determines the sides.
     pub prescribed_sides: Option<PrescribedSides<'s>>,
     position: &'s [f64],
     rate: &'s [f64],
@@ -155,7 +155,7 @@ impl<'s> Scene<'s> {
         }
     }
 
-    /// Returns an input with given rates in two directions.
+    /// Returns an input with given rates, with derivatives in two directions.
     pub fn prescribed_input(
         &self,
         input: usize,
@@ -164,7 +164,7 @@ impl<'s> Scene<'s> {
     ) -> Motion {
         let at = |place: usize| self.inputs.get(place).copied().unwrap_or(f64::NAN);
         let (value, rate) = (at(input), at(rate_input));
-        // No expression with this rate is differentiated by time if the next rate is missing.
+        // If the second rate is missing, no expression with this rate is differentiated by time, so 0 is never used.
         let second = second.map_or(0.0, at);
         let seeds = directions.map(|direction| match direction {
             Direction::Time => (rate, second),
@@ -186,7 +186,7 @@ impl<'s> Scene<'s> {
         Motion::new((value, 0.0), seeds)
     }
 
-    /// Returns a first-order state with the time derivative `rate` in two directions.
+    /// Returns a first-order state that has the time derivative `rate`, with derivatives in two directions.
     pub fn state(&self, index: usize, rate: f64, directions: [Direction; 2]) -> Number {
         let seeds = directions.map(|direction| match direction {
             Direction::State(row) if row == index => 1.0,
@@ -197,7 +197,7 @@ impl<'s> Scene<'s> {
         Motion::new((value, 0.0), seeds.map(|seed| (seed, 0.0))).value
     }
 
-    /// Returns a field value at place `node` of `set` in two directions.
+    /// Returns a field value at position `node` of `set` with derivatives in two directions.
     pub fn field(&self, leaf: Leaf, set: usize, node: usize, directions: [Direction; 2]) -> Motion {
         let values = self.values.get(set).and_then(|all| {
             all.iter()

@@ -6,9 +6,9 @@
 //! sin u    cos u    exp(-u)    exp(-(z - u)),    u = z s, s = x/l
 //! ```
 //!
-//! At each end two derivatives are zero. The determinant of these four equations is bisected near a
-//! multiple of pi/4 to find z; the null vector is the shape. The phase is that multiple of s plus a
-//! small part. The multiple is reduced exactly before it is multiplied by pi.
+//! At each end two derivatives are zero. The determinant of these four equations is bisected near a multiple of pi/4 to
+//! find z; the null vector is the shape. The phase z s is the multiple times s plus a small remainder. The multiple
+//! times s is reduced exactly before it is multiplied by pi.
 
 use crate::double_double::DoubleDouble;
 use eomgen_model_spec::model::{Basis, End};
@@ -30,7 +30,7 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    /// Returns mode `r`, from 1, of a `basis` with a formula.
+    /// Returns mode `r` (counted from 1) of a `basis` that has a formula.
     pub fn new(basis: &Basis, r: usize) -> Self {
         match basis {
             Basis::Beam { from, to } => Self::from_boundary_conditions(*from, *to, r),
@@ -38,8 +38,8 @@ impl Shape {
         }
     }
 
-    /// Returns mode `r` of a beam. For short waves each end adds a constant phase, which determines
-    /// the nearest quarter of pi. The roots differ from it by less than 1/2.
+    /// Returns mode `r` of a beam. For short waves, each end adds a constant phase. The sum determines a multiple of
+    /// pi/4, and the root differs from it by less than 1/2.
     fn from_boundary_conditions(from: End, to: End, r: usize) -> Self {
         let phase = |end| match end {
             End::Clamped => 0.25,
@@ -47,7 +47,7 @@ impl Shape {
             End::Free => -0.75,
             End::Guided => -0.5,
         };
-        // The sequence starts with the rigid-body motions, which are not modes here.
+        // The roots of the equation include the rigid-body motions, which are not modes of the basis.
         let rigid = f64::from(rigid_motions(from, to));
         let half_waves = r as f64 + rigid + phase(from) + phase(to);
         let determinant = |delta| conditions([from, to], half_waves, delta).determinant();
@@ -77,8 +77,8 @@ impl Shape {
         }
     }
 
-    /// Returns Eq. (18): z = (r - 1/2) pi, so cos z = 0 and sin z = (-1)^(r+1). Eq. (19) has its
-    /// printed sign, so (1 + xi)/2 tends to 1 and exp(u) remains.
+    /// Returns the shape of Eq. (18) and (19) as printed. Eq. (18) is z = (r - 1/2) pi, so cos z = 0 and sin z =
+    /// (-1)^(r+1). With the printed sign of Eq. (19), (1 + xi)/2 tends to 1 and the growing exp(u) remains.
     fn from_printed_equations(r: usize) -> Self {
         let half_waves = r as f64 - 0.5;
         let sign = if r.is_multiple_of(2) { -1.0 } else { 1.0 };
@@ -158,7 +158,7 @@ fn null_vector(matrix: Matrix4<f64>) -> Vector4<f64> {
         .map_or_else(Vector4::zeros, |rows| rows.row(least).transpose())
 }
 
-/// Returns sin and cos of z s. Full turns are exact, so the error does not increase with r.
+/// Returns sin and cos of z s. Full turns are subtracted exactly, so the error does not increase with r.
 fn sine_cosine(half_waves: f64, delta: f64, position: DoubleDouble) -> (f64, f64) {
     let half_turns = DoubleDouble::product(half_waves, position.high);
     let quarter_turns = (2.0 * half_turns.high).round();

@@ -1,4 +1,4 @@
-//! Shapes of a table by cubic splines with unknown second derivatives M_i, not slopes.
+//! Mode shapes from a table by cubic splines. The unknowns are the second derivatives M_i, not the slopes.
 //!
 //! Between two knots the second derivative is linear. The slope is continuous if
 //!
@@ -12,8 +12,8 @@ use super::legendre::unit_rule;
 use crate::double_double::DoubleDouble;
 use eomgen_model_spec::shape_table::ShapeTable;
 
-/// Minimum number of Gauss-Legendre nodes per piece. A product of two shapes has degree 6, of four
-/// degree 12. The surplus covers coefficients that vary along the field.
+/// Minimum number of Gauss-Legendre nodes per piece. A product of two shapes has degree 6, of four degree 12. The
+/// additional nodes allow for coefficients that vary along the field.
 const MIN_NODES_PER_PIECE: usize = 8;
 
 #[derive(Clone, Debug)]
@@ -58,7 +58,8 @@ impl SplineShape {
     }
 }
 
-/// Returns nodes and weights of a rule on [0, 1] that is exact for polynomials between the rows and at the switches.
+/// Returns nodes and weights of a composite rule on [0, 1]. It is exact for piecewise polynomials whose pieces end at
+/// the rows of the table and at the switches.
 pub(super) fn quadrature_rule(
     table: &ShapeTable,
     nodes: usize,
@@ -73,7 +74,7 @@ pub(super) fn quadrature_rule(
     rule_between(&knots, nodes.div_ceil(pieces).max(exact))
 }
 
-/// Returns the Gauss-Legendre rule with this number of nodes between each two neighbouring knots.
+/// Returns the composite Gauss-Legendre rule with `nodes` nodes between neighbouring knots.
 pub(super) fn rule_between(knots: &[f64], nodes: usize) -> Vec<(DoubleDouble, f64)> {
     let rule = unit_rule(nodes);
     knots

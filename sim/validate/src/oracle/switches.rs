@@ -1,5 +1,5 @@
-//! Switches of the model: arguments at which its piecewise functions change side. Functions inside
-//! sums over places or modes are excluded, because each place has another side.
+//! Switches of the model: quantities at whose zeros a piecewise function changes its branch. Functions inside integrals
+//! and sums over modes are excluded, because each position or mode has a side of its own.
 
 use super::evaluate::Pass;
 use super::scene::Direction;
@@ -7,7 +7,7 @@ use super::tree::Tree;
 use super::{Oracle, OracleError};
 use eomgen_model_spec::model::{Function, Model};
 
-/// Quantity with a switching surface at zero, or at plus and minus a half-width.
+/// Quantity with a switching surface at zero, or with two surfaces at plus and minus a half-width.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Switch {
     /// Name of the quantity in the specification, or `switch_1 ..`.
@@ -23,7 +23,7 @@ pub struct Switch {
 pub enum Side {
     /// Below minus the half-width.
     Minus,
-    /// Within the half-width; at zero, only if the quantity can be at rest there.
+    /// Within the half-width. Without half-width: equal to zero, only if the quantity can be constantly zero.
     Free,
     /// Above the half-width.
     Plus,
@@ -69,7 +69,7 @@ impl Switch {
         self.half_width.as_ref()
     }
 
-    /// Returns true if the middle side is a region in which the quantity is at rest at zero.
+    /// Returns true if the quantity can be constantly zero in a region of states (side `Free`).
     pub fn rests_at_zero(&self) -> bool {
         self.half_width.is_none() && self.rests_at_zero
     }
@@ -92,7 +92,7 @@ pub(super) struct PrescribedSides<'s> {
 }
 
 impl PrescribedSides<'_> {
-    /// Returns the prescribed side of a function with these arguments, if it is a switch.
+    /// Returns the prescribed side of a function with these arguments; `None` if it is not a switch.
     pub fn side(&self, function: Function, arguments: &[Tree]) -> Option<Side> {
         let (quantity, half_width) = switching_quantity(function, arguments)?;
         let known =
@@ -102,7 +102,7 @@ impl PrescribedSides<'_> {
     }
 }
 
-/// Returns quantity and half-width (if any) of a piecewise function; `None` for a smooth one.
+/// Returns the switching quantity and the half-width (if any) of a piecewise function; `None` for a smooth function.
 fn switching_quantity(function: Function, arguments: &[Tree]) -> Option<(Tree, Option<Tree>)> {
     match (function, arguments) {
         (Function::Abs | Function::Sign | Function::Above, [argument]) => {

@@ -1,5 +1,5 @@
-//! Data that all expressions of one variant share: layout of the state, fields with their places,
-//! definitions. `lower` creates it; `scene` and `evaluate` read it.
+//! Data that all expressions of one variant share: layout of the state, fields with their positions, definitions.
+//! `lower` creates it; `scene` and `evaluate` read it.
 
 use super::places::{FieldDomain, PlaceSet};
 use super::tree::{Dependence, Leaf, Tree};
@@ -38,7 +38,7 @@ impl System {
         tree.dependence(&self.dependences)
     }
 
-    /// Returns true if such an expression can depend on generalised coordinate `row` or its rate.
+    /// Returns true if an expression with this dependence can depend on generalised coordinate `row` or its rate.
     pub fn depends_on_row(&self, dependence: &Dependence, row: usize) -> bool {
         dependence.coordinates.contains(&row)
             || dependence

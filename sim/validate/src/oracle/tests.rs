@@ -162,7 +162,7 @@ fn cantilever_frequencies_match_formula_up_to_mode_64() {
         let equations = oracle.equations(0.0, &state, &[0.0]).unwrap();
         let found = -equations.right_side()[r] / equations.mass[(r, r)] / 1e-3;
         let beta: f64 = root / 1.25;
-        // beta^4 has eight roundings, the quadrature fewer than twenty.
+        // The tolerance allows for eight roundings of beta^4 and fewer than twenty of the quadrature.
         assert_close(&[found], &[stiffness / mass * beta.powi(4)], 1e-14);
     }
 }
@@ -176,7 +176,7 @@ fn distance(left: &Equations, right: &Equations) -> f64 {
 #[test]
 fn cached_derivatives_match_plain_sum_over_places() {
     let kept = oracle(BEAM, 5);
-    // A nested sum of value zero prevents the caching of the integral's derivatives.
+    // A nested sum with the value zero prevents the caching of the integral's derivatives.
     let nested = BEAM.replace(
         "x*dot(theta) + dot(w))^2",
         "x*dot(theta) + dot(w))^2 + 0*dot(tip)^2*rho*A",
@@ -249,7 +249,7 @@ fn order_zero_gives_rigid_beam() {
     assert_close(mass.as_slice(), &[expected], 1e-14);
 }
 
-/// A checked model excludes these expressions, but the oracle must not depend on that.
+/// The model checker rejects these expressions too, but the oracle must not depend on it.
 #[test]
 fn unsupported_expressions_are_rejected() {
     let refuse = |expression: &Expr| {
@@ -290,7 +290,7 @@ fn wrong_lengths_are_rejected() {
     }
 }
 
-/// Powers of clipped expressions are constant on the flat side, with all derivatives.
+/// Powers of clipped expressions, for example max(p, 0)^n, are zero with all derivatives on the flat side.
 #[test]
 fn powers_of_clipped_expressions_have_forces_on_both_sides() {
     // The potential, and minus its derivative by y at y = 0.25 with k = 300, b = 0.01.
@@ -320,7 +320,7 @@ fn powers_of_clipped_expressions_have_forces_on_both_sides() {
     }
 }
 
-/// Forces with clipped powers of a rate, and with an exponent that moves.
+/// Forces with clipped powers of a rate, and with an exponent that depends on the motion.
 #[test]
 fn forces_with_clipped_powers_are_numbers_on_both_sides() {
     for (force, expected) in [
@@ -346,7 +346,7 @@ fn forces_with_clipped_powers_are_numbers_on_both_sides() {
     }
 }
 
-/// A clipped power inside the integral of a field's energy.
+/// The integrand of a field's energy contains a clipped power.
 #[test]
 fn field_energy_with_clipped_power_is_finite_where_the_field_is_clipped() {
     let text = BEAM.replace(
@@ -370,7 +370,7 @@ fn field_energy_with_clipped_power_is_finite_where_the_field_is_clipped() {
     );
 }
 
-/// The ends of a range belong to it, so that a regime beyond a switching surface at an end is empty.
+/// The range is closed. A regime beyond a switching surface at its end is empty.
 #[test]
 fn regimes_beyond_a_surface_at_the_end_of_a_range_are_empty() {
     for (range, force, sides) in [

@@ -1,4 +1,4 @@
-//! Expressions of the oracle, with numbers for parameters and lists of nodes for positions.
+//! Expression tree of the oracle. Parameters are numbers, and positions are indices of nodes.
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::model::Function;
@@ -6,15 +6,15 @@ use std::collections::BTreeSet;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Tree {
-    /// Literal, parameter, or constant expression of these.
+    /// Value of a literal, a parameter or a constant expression.
     Constant(f64),
-    /// One number per mode of a field, at the index of the enclosing sum.
+    /// One number per mode of a field, selected by the index of the enclosing sum.
     PerMode {
         field: usize,
         values: Vec<f64>,
     },
     Time,
-    /// Input that is constant, or without a further given rate.
+    /// Input without a given rate, or the last given rate of an input.
     Input(usize),
     PrescribedInput {
         input: usize,
@@ -22,7 +22,7 @@ pub(super) enum Tree {
         /// Index of the input that is its second rate, if given.
         second: Option<usize>,
     },
-    /// Position in the innermost enclosing place set, in m (or the field's unit of x).
+    /// Position of the current node in the innermost enclosing set, in m (or the unit of the field's domain).
     Position {
         set: usize,
     },
@@ -31,7 +31,7 @@ pub(super) enum Tree {
     StateRate(usize),
     Multiplier(usize),
     Definition(usize),
-    /// Field, or its derivative by the position, at the current place.
+    /// Field, or its derivative by the position, at the current node.
     Field {
         leaf: Leaf,
         set: usize,
@@ -40,17 +40,17 @@ pub(super) enum Tree {
     Mode {
         field: usize,
     },
-    /// Mode shape, or its derivative, at the current place and index.
+    /// Mode shape, or its derivative, at the current node and mode index.
     Shape {
         leaf: Leaf,
         set: usize,
     },
     Dot(Box<Tree>),
-    /// Weighted sum of `body` over a place set: an integral, or a value at a point.
+    /// Weighted sum of `body` over a set of positions: an integral, or a value at a point.
     Places {
         set: usize,
         body: Box<Tree>,
-        /// Index of its cached derivatives in `integrals`, if any.
+        /// Index of the cached derivatives of this integral in `integrals`, if any.
         integral: Option<usize>,
     },
     Sum {
@@ -73,18 +73,18 @@ pub(super) struct Leaf {
 pub(super) struct Dependence {
     /// Coordinates other than modes.
     pub coordinates: BTreeSet<usize>,
-    /// Fields, through their modes or their values.
+    /// Fields whose modes or values appear in the expression.
     pub fields: BTreeSet<usize>,
     pub states: BTreeSet<usize>,
-    /// Field values at the enclosing place.
+    /// Field values at the current node of the enclosing set.
     pub leaves: BTreeSet<Leaf>,
     /// Fields with a free sum index.
     pub indices: BTreeSet<usize>,
-    /// True for the position of the enclosing place.
+    /// True if the expression contains the position of the current node.
     pub has_position: bool,
     pub has_time: bool,
     pub has_input: bool,
-    /// True for an input with a given rate, or such a rate.
+    /// True if the expression contains an input with a given rate, or a given rate.
     pub has_prescribed_input: bool,
     pub has_dot: bool,
     pub has_nested_operator: bool,
@@ -122,7 +122,7 @@ impl Tree {
         found
     }
 
-    /// Completes the dependence of the operands to that of the whole expression.
+    /// Adds the dependence of this node to the dependence of its operands.
     fn complete_dependence(&self, found: &mut Dependence, definitions: &[Dependence]) {
         match self {
             Self::PerMode { field, .. } => drop(found.indices.insert(*field)),
@@ -164,7 +164,7 @@ impl Tree {
         }
     }
 
-    /// Splits a sum into its addends; other expressions are their only addend.
+    /// Splits a sum into its addends. Any other expression is returned as a single addend.
     pub fn into_addends(self) -> Vec<Tree> {
         match self {
             Self::Binary(BinaryOperator::Add, left, right) => {

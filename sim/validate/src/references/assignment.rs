@@ -1,4 +1,4 @@
-//! Assignment of hand-written equations to models, by their equations of motion.
+//! Assignment of hand-written equations to models, by comparison of the equations of motion.
 
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::models;
@@ -15,16 +15,15 @@ use crate::certificate::Check;
 use crate::certify::{Reference, ReferenceEquations};
 use crate::checks::ROW_TOLERANCE;
 
-/// Time scale omega_n = sqrt(k_sp/M_sp), rad/s, and displacement scale b_c, m, of the paper.
+/// Scales of the paper: omega_n = sqrt(k_sp/M_sp) in rad/s for the time, and b_c in m for displacements.
 const TIME_AND_LENGTH_SCALES: (f64, f64) = (3.0885e4, 25e-6);
 
-/// Derived parameters of the arm that its hand-written equations take as given.
+/// Derived parameters of the arm whose values the hand-written equations use as given constants.
 const GIVEN_DERIVED_PARAMETERS: [&str; 3] = ["I_s", "I_p", "I_c"];
 
 /// Returns the hand-written equations for `model` at `order`, with parameter values in SI.
 ///
-/// A model is compared by its equations and not by its name, because a model of the same name may
-/// follow other conventions.
+/// The equations decide, not the name, because a model of the same name may follow other conventions.
 pub fn reference_equations(model: &Model, order: usize, values: &[f64]) -> ReferenceEquations {
     let mut reason = format!("there are no hand-written equations of {}", model.name);
     let arm = std::iter::once((&models::PLANETARY_ARM, None));
@@ -56,8 +55,8 @@ pub fn reference_equations(model: &Model, order: usize, values: &[f64]) -> Refer
     absent_reference("reference", reason)
 }
 
-/// Returns whether `model` describes the machine `known`, by its name and its coordinates. Another
-/// machine may have the same name.
+/// Returns true if `model` and `known` have the same name and the same coordinates. The name is not sufficient, because
+/// another machine may have the same name.
 fn is_version_of(model: &Model, known: &Model) -> bool {
     let coordinates = |model: &Model| -> Vec<String> {
         let coordinates = model.coordinates.iter();
@@ -142,15 +141,15 @@ fn shaft_motion(
         ]
     };
     Some(ShaftMotion {
-        // The equations do not depend on the angle of the arm. Angles of a turned arm would cost
-        // six digits of the mesh deflections, which are differences of a micrometre.
+        // The equations do not depend on the angle of the arm, so it is set to 0. Mesh deflections of micrometres are
+        // differences of angles; with large angles they would lose six digits.
         angle: shafts(state[0], state[1], 0.0),
         rate: shafts(state[3], state[4], state[5]),
         acceleration: shafts(a, b, c),
     })
 }
 
-/// Returns Eq. (22) in dimensionless form, for orders fixed at compile time.
+/// Returns Eq. (22) in dimensionless form; `None` if the order is not among the orders fixed at compile time.
 fn dimensionless_reference(parameters: &PlanetaryArmParameters, order: usize) -> Option<Reference> {
     macro_rules! at_orders {
         ($($s:literal)*) => {
@@ -203,8 +202,7 @@ fn reference(
     }
 }
 
-/// Returns the textbook equations of `known` with the values of `model`, or the reason that they do
-/// not apply.
+/// Returns the textbook equations of `known` with the values of `model`, or the reason why they do not apply.
 fn closed_form(
     form: ClosedForm,
     known: &Model,
@@ -212,7 +210,7 @@ fn closed_form(
     order: usize,
     values: &[f64],
 ) -> ReferenceEquations {
-    // A parameter of this model only is in none of the equations.
+    // A parameter that only this model has appears in none of the equations.
     let stands = |name: &str| known.parameters.iter().any(|own| own.name == name);
     let parameters: Vec<(String, f64)> = model
         .parameters

@@ -1,12 +1,12 @@
 //! Comparison of the equations of motion of two models, independent of parameter values.
 //!
-//! The comparison includes the names of coordinates, inputs and parameters, the forms of energies
-//! and forces, and the numbers in them. It ignores comments, names of terms, observables, and the
-//! division of expressions into definitions.
+//! The comparison includes the names of coordinates, inputs and parameters, the expressions of energies and forces, and
+//! the literals in these expressions. It ignores comments, names of terms, observables, and the division of expressions
+//! into definitions.
 
 use eomgen_model_spec::model::{Expr, ExprKind, Field, Force, Model, ParameterValue, Term};
 
-/// Returns the first difference between the equations of motion of `model` and `known`, or `None`.
+/// Returns the first difference between the equations of motion of `model` and `known`; `None` if they are equal.
 ///
 /// A parameter that `known` derives from others may have any value if it is among `given`. Other
 /// derived parameters must be derived in the same way.
@@ -102,8 +102,8 @@ impl ModelPair<'_> {
         None
     }
 
-    /// Compares two expressions with definitions expanded. The recursion is bounded by the size of
-    /// the known expression, even if the definitions of this model share parts.
+    /// Compares two expressions with expanded definitions. The depth of the recursion is bounded by the size of the
+    /// known expression, even if definitions of this model share subexpressions.
     fn is_same(&self, left: &Expr, right: &Expr) -> bool {
         use ExprKind as K;
         if let K::Definition(index) = left.kind {
@@ -136,7 +136,7 @@ impl ModelPair<'_> {
                         .zip(others)
                         .all(|(a, b)| self.is_same(a, b))
             }
-            // Leaves. Coordinates, inputs, states and fields were compared before.
+            // Both are leaves. The lists of coordinates, inputs, states and fields were compared before.
             (left, right) => left == right,
         }
     }
@@ -175,7 +175,7 @@ impl ModelPair<'_> {
         }
     }
 
-    /// Follows references to definitions.
+    /// Replaces a reference to a definition by its expression, repeatedly.
     fn resolve_definitions<'e>(&'e self, mut expression: &'e Expr) -> &'e Expr {
         while let ExprKind::Definition(index) = expression.kind {
             let Some(definition) = self.known.definitions.get(index.index()) else {
@@ -201,7 +201,7 @@ fn name_difference(what: &str, own: &[String], known: &[String]) -> Option<Strin
     })
 }
 
-/// Returns the first entry of one list without a partner in the other.
+/// Returns the first entry of either list that has no equal entry in the other.
 fn unmatched_entry<T>(
     section: &str,
     own: &[T],

@@ -1,4 +1,4 @@
-//! Value of a hand-written equation with the scale of its rounding.
+//! Value of a hand-written equation with the scale of its rounding error.
 //!
 //! Two evaluations of the same row agree to a few units in the last place of its largest term, not
 //! of its sum.
@@ -48,7 +48,7 @@ pub fn relative(difference: f64, scale: f64) -> f64 {
     if ratio.is_nan() { f64::INFINITY } else { ratio }
 }
 
-/// Row during summation.
+/// Sum of the terms of a row, with the largest term.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Row {
     sum: f64,

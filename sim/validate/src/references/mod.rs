@@ -1,9 +1,9 @@
 //! Hand-written equations for comparison with derived models.
 //!
-//! They come from the paper (with its errors corrected) or from textbooks, and share no code with
-//! the derivation. [`planetary_arm`] has the equations of the paper, [`closed_forms`] those of the
-//! other machines, each with the scale of its rounding ([`evaluation`]).
-//! [`reference_equations`] assigns them to models by an [`equation_comparison`]:
+//! Their sources are the paper (with its errors corrected) and textbooks. They share no code with the derivation.
+//! [`planetary_arm`] contains the equations of the paper, and [`closed_forms`] the equations of the other machines.
+//! Each row has a scale of its rounding error ([`evaluation`]). [`reference_equations`] assigns them to models by an
+//! [`equation_comparison`]:
 //!
 //! ```
 //! use eomgen_validate::references::reference_equations;

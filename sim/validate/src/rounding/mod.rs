@@ -1,4 +1,4 @@
-//! Bounds of the rounding errors of a variant for a certificate, and the ranges for which they hold.
+//! Bounds of the rounding errors of a variant for a certificate, and the ranges in which the bounds are valid.
 
 pub mod samples;
 
@@ -12,11 +12,11 @@ use serde::Serialize;
 use crate::oracle::{Oracle, OracleError};
 use crate::sizes::{input_sizes, state_sizes};
 
-/// Bounds of rounding errors, as written into a certificate.
+/// Bounds of rounding errors, as a certificate lists them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Bounds {
-    /// Ranges of time, states, inputs and parameters for which the bounds hold. Other parameters have the values of the
-    /// certificate.
+    /// Ranges of time, states, inputs and parameters in which the bounds are valid. Other parameters have the values of
+    /// the certificate.
     pub ranges: Vec<NamedRange>,
     /// Bound of each quantity in each precision.
     pub quantities: Vec<QuantityBound>,
@@ -40,7 +40,7 @@ pub struct QuantityBound {
     pub name: String,
     /// `f64` or `f32`.
     pub precision: &'static str,
-    /// Largest error; `None` if it is not bounded.
+    /// Bound of the error; `None` if no bound was found.
     pub bound: Option<f64>,
     /// SI unit, if it is known.
     pub unit: Option<String>,
@@ -80,8 +80,7 @@ impl VariableRanges {
 
     /// Sets the range of a variable, in SI.
     ///
-    /// # Errors
-    /// An unknown name, an end that is not finite, and a lower end above the upper one.
+    /// # Errors An unknown name, an end that is not finite, or a lower end above the upper end.
     pub fn set(&mut self, name: &str, low: f64, high: f64) -> Result<(), String> {
         let Some(place) = self.names.iter().position(|known| known == name) else {
             let known = self.names.join(", ");
@@ -103,7 +102,7 @@ impl VariableRanges {
         Ok(())
     }
 
-    /// Sets all variables but the parameters to one point.
+    /// Sets the ranges of time, states and inputs to a single point.
     pub fn set_point(&mut self, t: f64, state: &[f64], inputs: &[f64]) {
         let numbers = std::iter::once(&t).chain(state).chain(inputs);
         for (range, number) in self.ranges.iter_mut().zip(numbers) {
@@ -114,7 +113,7 @@ impl VariableRanges {
         }
     }
 
-    /// Gives each state and input without a range that of its random states, and the time its first second.
+    /// Sets missing ranges: for a state or input, the range of random states; for the time, 0 to 1 s.
     ///
     /// # Errors
     /// A model that the oracle cannot evaluate.

@@ -1,4 +1,4 @@
-//! Errors of the computed quantities of a program at random points, against double-double arithmetic.
+//! Rounding errors of the quantities of a program at random points, compared with double-double arithmetic.
 
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, Number, Point};
@@ -9,23 +9,24 @@ use eomgen_model_spec::interval::Interval;
 use crate::double_double::DoubleDouble;
 use crate::random::Random;
 
-/// Sampler of the errors of one program in one format.
+/// Sampler of the rounding errors of one program in one number format.
 pub struct ErrorSampler {
     program: Program,
     format: Format,
     ranges: Vec<Interval>,
     evaluator: Evaluator,
     scalars: Scalars,
-    /// Quantities with their numbers in `scalars`.
+    /// Quantities with their indices in `scalars`.
     quantities: Vec<(Quantity, usize)>,
-    /// Operations that jump, and the comparisons of selections.
+    /// Discontinuous operations, and the comparisons of selections.
     jumps: Vec<ScalarOp>,
     known: Vec<DoubleDouble>,
     largest: Vec<f64>,
-    /// Last point, and the errors there; none if it was not compared.
+    /// Last point; the errors at this point are empty if it was not compared.
     point: Vec<f64>,
     errors: Vec<f64>,
-    /// Numbers of points, and of those at which the computed and the exact value are on different sides of a jump.
+    /// Number of drawn points, and number of points at which the computed and the exact value are on different sides of
+    /// a jump.
     counts: [usize; 2],
 }
 
@@ -70,10 +71,10 @@ impl ErrorSampler {
         }
     }
 
-    /// Draws a point and compares all quantities there. Each component is an end of its range with probability 1/2.
+    /// Draws a point and compares all quantities at this point. Each component is an end of its range with probability
+    /// 1/2.
     ///
-    /// # Errors
-    /// A quantity whose recorded operations give other bits than the evaluator.
+    /// # Errors A quantity whose recorded operations are not bit-identical to the evaluator.
     pub fn draw(&mut self, random: &mut Random) -> Result<(), String> {
         let first_parameter = self.ranges.len() - self.program.parameters.len();
         self.point.clear();
@@ -84,7 +85,7 @@ impl ErrorSampler {
                 _ => range.low + random.unit() * (range.high - range.low),
             };
             let number = number.clamp(range.low, range.high);
-            // Parameters are double in both formats.
+            // Parameters have double precision in both formats.
             self.point.push(match place < first_parameter {
                 true => round_inside(self.format, number, *range),
                 false => number,
@@ -142,7 +143,7 @@ impl ErrorSampler {
         }
     }
 
-    /// Computes all quantities by the evaluator.
+    /// Computes all quantities with the evaluator.
     fn compute(&mut self) {
         let (states, inputs) = (self.program.states(), self.program.inputs.len());
         let degrees = self.program.degrees_of_freedom();
@@ -164,8 +165,8 @@ impl ErrorSampler {
             .mass_matrix(point, &mut scratch[..degrees * degrees]);
     }
 
-    /// Returns the last point, and the error of each quantity there; none if the computed and the exact value are on
-    /// different sides of a jump.
+    /// Returns the last point, and the error of each quantity at this point. There are no errors if the computed and
+    /// the exact value are on different sides of a jump.
     pub fn last(&self) -> (&[f64], &[f64]) {
         (&self.point, &self.errors)
     }

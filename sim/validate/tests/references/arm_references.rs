@@ -1,5 +1,5 @@
-//! Hand-written equations of the arm against each other and against a dense solve of the balance of
-//! every inertia.
+//! Comparison of the hand-written equations of the arm with each other and with a dense linear solve of the force
+//! balance of every inertia.
 
 use approx::assert_abs_diff_eq;
 use eomgen_validate::references::evaluation::Evaluation;
@@ -12,7 +12,7 @@ use eomgen_validate::references::planetary_arm::parameters::PlanetaryArmParamete
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 
-/// Rounding of some tens of operations, relative to the largest term of a row.
+/// Bound of the rounding error of some tens of operations, relative to the largest term of a row.
 const TOLERANCE: f64 = 1e-12;
 
 /// Meshes open, or closed on either flank.
@@ -87,8 +87,8 @@ fn dense(parameters: &PlanetaryArmParameters, order: usize, t: f64, state: &[f64
     mass[(2, 2)] = parameters.I_tot();
     force[2] = 3.0 * r_c * (f_sp + f_pr);
     for i in 0..order {
-        // Closed forms on both sides: they have separate tests, and a quadrature of x phi loses the
-        // digits of z^2.
+        // Both sides use the closed forms of the integrals. These have separate tests, and a quadrature of x phi would
+        // lose digits as z^2.
         let integrals = ModeShape::clamped_free(i + 1).integrals();
         let line_mass = parameters.rho * parameters.A;
         mass[(2, 3 + i)] = line_mass * parameters.l.powi(2) * integrals.s_phi;
@@ -109,7 +109,7 @@ fn numbers() -> impl Strategy<Value = Vec<f64>> {
     proptest::collection::vec(-1.0..1.0_f64, 40..60)
 }
 
-/// Asserts that every acceleration is equal up to the rounding of its row.
+/// Asserts that every acceleration is equal to within the rounding error of its row.
 fn assert_rows_eq(expected: &Evaluation, found: &[f64]) {
     assert_eq!(expected.accelerations.len(), found.len());
     let rows = expected.accelerations.iter().zip(&expected.scales);
@@ -163,8 +163,8 @@ proptest! {
             let rigid = equation_12::corrected_accelerations(&parameters, t, &state);
             let motion = shafts(&parameters, &state, &rigid.accelerations);
             let balance = equation_10::corrected_residuals(&parameters, t, &motion);
-            // Angles of order 10 rad give mesh deflections a rounding of r_s 10 eps, which the mesh
-            // stiffness converts to a force.
+            // At angles of about 10 rad, mesh deflections have a rounding error of r_s 10 eps. The mesh stiffness
+            // multiplies it to an error of the force.
             let rounding = 100.0 * f64::EPSILON * parameters.k_sp * parameters.r_c();
             for row in 0..3 {
                 let allowed = TOLERANCE * balance.scale[row] + rounding * parameters.r_c();
@@ -182,8 +182,8 @@ proptest! {
     }
 }
 
-/// Compares the prepared right-hand side at (1, 1) and at the scales of the paper with the
-/// coefficients by name.
+/// Compares the prepared right-hand side with the named coefficients, with the scales (1, 1) and with the scales of the
+/// paper.
 fn scales_do_not_matter<const S: usize>(numbers: &[f64], t: f64) -> Result<(), TestCaseError> {
     let parameters = PlanetaryArmParameters::default();
     for (omega_n, b_c) in [(1.0, 1.0), (3.0885e4, 25e-6)] {

@@ -1,4 +1,4 @@
-//! Closed forms of the other machines: energy, textbook limits, errors.
+//! Tests of the closed forms of the other machines: conservation of energy, textbook limits, errors.
 
 use eomgen_validate::references::closed_forms::{CLOSED_FORMS, NotApplicable, StateAndParameters};
 use eomgen_validate::references::evaluation::Evaluation;
@@ -100,7 +100,7 @@ fn energies(model: &str, values: Values, order: usize, state: &[f64]) -> Vec<f64
             cart.into_iter().chain(arms.into_iter().flatten()).collect()
         }
         "furuta_pendulum" => {
-            // Along the arm, across it, and up.
+            // Components along the arm, perpendicular to it, and upward.
             let velocity = [
                 -p("l") * q[1].sin() * v[0],
                 p("L") * v[0] + p("l") * q[1].cos() * v[1],
@@ -127,7 +127,7 @@ fn beam_energy(p: &dyn Fn(&str) -> f64, order: usize, q: &[f64], v: &[f64]) -> f
             .map(|(shape, q)| shape.derivative(derivative, s) * q)
             .sum()
     };
-    // Simpson's rule, fine enough for four modes.
+    // Simpson's rule with panels that resolve four modes.
     let panels = 400;
     let mut sum = 0.0;
     for node in 0..=2 * panels {
@@ -154,7 +154,7 @@ fn square(vector: &[f64]) -> f64 {
     vector.iter().map(|component| component * component).sum()
 }
 
-/// Computes d(energy)/dt along the accelerations by central differences, and its scale.
+/// Computes d(energy)/dt along the motion by central differences, and its scale.
 fn power(model: &str, values: Values, order: usize, state: &[f64]) -> (f64, f64) {
     let accelerations = evaluate(model, values, order, state)
         .expect("a value")
@@ -175,7 +175,7 @@ fn power(model: &str, values: Values, order: usize, state: &[f64]) -> (f64, f64)
     };
     let (ahead, behind) = (at(1.0), at(-1.0));
     let total = |terms: &[f64]| terms.iter().sum::<f64>();
-    // The terms may cancel, but not their rounding.
+    // The terms may cancel, but their rounding errors do not.
     let magnitude = |terms: &[f64]| terms.iter().map(|term| term.abs()).sum::<f64>();
     (
         (total(&ahead) - total(&behind)) / (2.0 * step),
@@ -198,10 +198,10 @@ proptest! {
         ];
         for (model, values, order, entries) in cases {
             let mut state = numbers[..entries].to_vec();
-            // Deflections of millimetres.
+            // Deflections are scaled to millimetres.
             state[1..=order].iter_mut().enumerate().for_each(|(i, q)| *q *= 1e-2 / (i + 1).pow(4) as f64);
             let (power, scale) = power(model, values, order, &state);
-            // Rounding of the energies, about a hundred operations each, in a difference quotient.
+            // Rounding error of the difference quotient: about a hundred operations for each energy.
             prop_assert!(power.abs() < 4e-13 * scale, "{model}: {power:e} of {scale:e}");
         }
     }
@@ -214,7 +214,7 @@ fn pendulum_swings_down_with_damping() {
         .expect("a value")
         .accelerations;
     let expected = (-2.0 * 9.81 * 0.5 * 0.3_f64.sin() - 0.1 * 2.0) / 0.6;
-    // The argument of the sine of pi + 0.3 is rounded: half a unit in the last place of 3.4.
+    // The tolerance allows for the rounding of the argument pi + 0.3 of the sine, half a unit in the last place of 3.4.
     assert!((found[0] - expected).abs() < 1e-14 * expected.abs());
 }
 

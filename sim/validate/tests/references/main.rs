@@ -1,5 +1,4 @@
-//! Hand-written equations: against each other, against closed forms and energies, and as a system
-//! for the solvers.
+//! Tests of the hand-written equations: comparison with each other, with closed forms and energies, and simulation.
 
 mod arm_references;
 mod closed_forms;

@@ -1,4 +1,4 @@
-//! Mode shapes against values of high precision.
+//! Comparison of mode shapes with values of high precision.
 
 use eomgen_validate::references::planetary_arm::mode_shapes::ModeShape;
 use serde_json::Value;
@@ -35,8 +35,8 @@ fn modes_1_to_128_agree_with_high_precision() {
                 "mode {r}, {name}: {value}, deviates by {deviation:e}"
             );
         }
-        // A node may be close to the middle, so the tolerance is absolute: the rounding of the
-        // phase, z eps.
+        // A node of the mode may be close to the middle, so the tolerance is absolute: the rounding of the phase, z
+        // eps.
         let middle = (shape.value(0.5) - number(mode, "phi_mid")).abs();
         assert!(
             middle < 1e-15 + f64::EPSILON * shape.beta_l,

@@ -1,5 +1,5 @@
-//! Assignment of hand-written equations to models with the same equations, whatever their numbers,
-//! names of terms, comments and observables.
+//! Tests of the assignment of hand-written equations to models. Models match if their equations are equal. Parameter
+//! values, names of terms, comments and observables may differ.
 
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::models;
@@ -22,7 +22,7 @@ fn with(text: &str, from: &str, to: &str) -> String {
     text.replace(from, to)
 }
 
-/// Returns the names of the references, and names and reasons of the absent ones.
+/// Returns the names of the references that apply, and the names and reasons of the others.
 fn of(text: &str, order: usize) -> (Vec<String>, Vec<(String, String)>) {
     let model = model(text);
     let values = model.parameter_values().expect("values");

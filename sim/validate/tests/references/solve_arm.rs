@@ -1,4 +1,4 @@
-//! Solver with Eq. (22) against a trajectory in quadruple precision.
+//! Comparison of simulations of Eq. (22) with a trajectory in quadruple precision.
 
 mod arm;
 
@@ -79,7 +79,7 @@ fn adams_matches_runge_kutta_on_the_arm() {
     assert_eq!(guards(&with_adams), guards(&with_runge_kutta));
     let times = with_adams.events.iter().zip(&with_runge_kutta.events);
     for (one, other) in times {
-        // Deflections agree to 1e-9 m, and surfaces are crossed at about 0.01 m/s.
+        // Deflections agree to 1e-9 m, and the switching surfaces are crossed at about 0.01 m/s.
         assert!((one.t - other.t).abs() < 1e-7, "{one:?} {other:?}");
     }
     let deflections = with_adams

@@ -1,5 +1,6 @@
-//! Derivatives of the rates by time, and second derivatives of the weighted rates, against differences of the rates and
-//! of the Jacobians. Other checks compare the Jacobians with the oracle.
+//! Comparison of derivatives with finite differences: the time derivatives of the rates with differences of the rates,
+//! the second derivatives of the weighted rates with differences of the Jacobians. Other checks compare the Jacobians
+//! with the oracle.
 
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
@@ -10,11 +11,11 @@ use super::expected::rate_jacobians;
 use crate::differences::{Slope, one_sided_slopes, slopes};
 use crate::sampler::Sample;
 
-/// Tolerance of differences, relative to the largest addend for a change of the variable by its size. The rates contain a
-/// solve, whose rounding errors exceed those of the addends.
+/// Tolerance of finite differences, relative to the largest addend for a change of the variable by its size. The rates
+/// contain a linear solve. Its rounding errors exceed the rounding errors of the addends.
 pub const DERIVATIVE_TOLERANCE: f64 = 1e-6;
-/// Step sizes, relative to the variable: long for smooth functions, short for those with large higher derivatives and for
-/// a variable that is zero, such as an inertia, whose size is unknown.
+/// Step sizes of the finite differences, relative to the variable. Long steps suit smooth functions. Short steps suit
+/// functions with large higher derivatives, and variables of unknown size because their value is zero.
 const STEPS: [f64; 5] = [
     1.0 / 64.0,
     1.0 / 1024.0,
@@ -23,10 +24,11 @@ const STEPS: [f64; 5] = [
     1.0 / 4_194_304.0,
 ];
 
-/// Smallest addend to compare with, as a fraction of the largest: the others may be rounding errors of the largest.
+/// Smallest scale of a comparison, as a fraction of the largest addend. Smaller addends may be rounding errors of the
+/// largest.
 const SMALLEST_ADDEND: f64 = 1e-6;
 
-/// Rates with the weights of the harness.
+/// Rates, multiplied by the weights that the harness uses.
 pub struct Weighted {
     evaluator: Evaluator,
     weights: Vec<f64>,
@@ -40,8 +42,8 @@ impl Weighted {
         }
     }
 
-    /// Returns the largest deviation of the derivatives by time from differences of the rates; `None` close to a
-    /// switching surface.
+    /// Returns the largest deviation of the time derivatives from differences of the rates; `None` close to a switching
+    /// surface.
     pub fn time_deviation(&mut self, parameters: &[f64], sample: &Sample) -> Option<f64> {
         self.evaluator.prepare(parameters);
         let [by_time, ..] = rate_jacobians(&mut self.evaluator, sample);
@@ -60,8 +62,8 @@ impl Weighted {
     }
 
     /// Returns the largest deviation of the second derivatives from differences of the gradient; `None` close to a
-    /// switching surface. A piecewise function of parameters alone has no surface, so at its kink, such as the half-width
-    /// 0 of a dead zone, an entry is the derivative of one side.
+    /// switching surface. A piecewise function of parameters only has no switching surface. At its kink, for example at
+    /// the half-width 0 of a dead zone, an entry is a one-sided derivative.
     pub fn deviation(
         &mut self,
         parameters: &[f64],
@@ -145,7 +147,7 @@ impl Weighted {
     }
 }
 
-/// Returns the sample and the parameters in a vector of time, state, inputs and parameters.
+/// Splits a vector of time, state, inputs and parameters into the sample and the parameters.
 fn split(whole: &[f64], (states, inputs): (usize, usize)) -> (Sample, &[f64]) {
     let (state, rest) = whole[1..].split_at(states);
     let (inputs, parameters) = rest.split_at(inputs);
@@ -161,7 +163,7 @@ fn size(value: f64) -> f64 {
     if value == 0.0 { 1.0 } else { value.abs() }
 }
 
-/// Returns the deviations of derivatives by a variable with this size. `least` are the smallest scales.
+/// Returns the deviations of the derivatives by a variable of typical size `size`. `least` are the smallest scales.
 fn deviations(derivatives: &[f64], size: f64, changes: &[Slope], least: &[f64]) -> Vec<f64> {
     let pairs = derivatives.iter().zip(changes).enumerate();
     pairs
@@ -179,7 +181,7 @@ fn deviations(derivatives: &[f64], size: f64, changes: &[Slope], least: &[f64]) 
         .collect()
 }
 
-/// Returns the deviations, each with its best step; `None` without a step.
+/// Returns the smallest deviation of each derivative over all step sizes; `None` without a step.
 fn best(found: impl Iterator<Item = Vec<f64>>) -> Option<Vec<f64>> {
     let mut smallest: Option<Vec<f64>> = None;
     for found in found {
@@ -199,7 +201,7 @@ fn best(found: impl Iterator<Item = Vec<f64>>) -> Option<Vec<f64>> {
     smallest
 }
 
-/// Returns the largest deviation, infinite if one is unknown.
+/// Returns the largest deviation; infinity if one is NaN.
 fn worst_deviation(deviations: &[f64]) -> f64 {
     let is_known = deviations.iter().all(|deviation| !deviation.is_nan());
     let largest = deviations.iter().copied().fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! Results that the functions for CasADi must have.
+//! Expected results of the functions for CasADi.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
@@ -16,11 +16,11 @@ const JACOBIANS: [&str; 4] = [
     "rates_by_parameters",
 ];
 
-/// Result of a function.
+/// Expected result of a function.
 pub enum Expected {
-    /// These numbers.
+    /// Values to reproduce bit for bit.
     Exact(DMatrix<f64>),
-    /// Second derivatives, with row and column of their first among all.
+    /// Second derivatives: row and column of this block in the matrix of all second derivatives.
     Second(usize, usize),
 }
 
@@ -43,7 +43,7 @@ pub fn rate_jacobians(evaluator: &mut Evaluator, sample: &Sample) -> [DMatrix<f6
     })
 }
 
-/// Returns the results of the function `name` with the prepared parameters of the evaluator.
+/// Returns the expected results of the function `name` for the parameters that the evaluator was prepared with.
 pub fn expected_results(name: &str, evaluator: &mut Evaluator, sample: &Sample) -> Vec<Expected> {
     match name {
         "rates" => {

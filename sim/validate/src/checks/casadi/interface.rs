@@ -1,4 +1,5 @@
-//! Functions of CasADi's interface as this version documents them, and sparsities in compressed columns.
+//! Functions of CasADi's C interface, as the documentation of the tested version describes them, and sparsity patterns
+//! in compressed column storage.
 
 use eomgen_codegen::program::Program;
 use nalgebra::DMatrix;
@@ -9,9 +10,9 @@ pub const ARGUMENTS: [&str; 4] = ["t", "x", "u", "p"];
 /// Names of a function, its arguments and its results.
 pub struct Function {
     pub name: &'static str,
-    /// Arguments: columns with these lengths.
+    /// Names and lengths of the arguments, which are column vectors.
     pub given: Vec<(String, usize)>,
-    /// Results with their numbers of rows and columns.
+    /// Names of the results with their numbers of rows and columns.
     pub results: Vec<(String, (usize, usize))>,
 }
 
@@ -25,7 +26,7 @@ pub fn lengths(program: &Program) -> [usize; 4] {
     ]
 }
 
-/// Returns the functions of a file.
+/// Returns the functions that the emitted file must contain.
 pub fn functions(program: &Program) -> Vec<Function> {
     let states = program.states();
     let arguments = ARGUMENTS.into_iter().zip(lengths(program));
@@ -83,18 +84,18 @@ pub fn functions(program: &Program) -> Vec<Function> {
     all
 }
 
-/// Structural nonzeros in compressed columns.
+/// Sparsity pattern in compressed column storage.
 pub struct Sparsity {
     pub rows: usize,
     pub columns: usize,
-    /// Index of the first nonzero of each column, then their number.
+    /// Index of the first nonzero of each column, then the number of nonzeros.
     starts: Vec<usize>,
     /// Row of each nonzero.
     nonzeros: Vec<usize>,
 }
 
 impl Sparsity {
-    /// Returns a full column.
+    /// Returns the pattern of a dense column vector.
     pub fn column(rows: usize) -> Self {
         Self {
             rows,
@@ -104,14 +105,14 @@ impl Sparsity {
         }
     }
 
-    /// Returns the numbers of the harness, each after a space.
+    /// Returns the pattern in the format that the harness prints, each number after a space.
     pub fn text(&self) -> String {
         let sizes = [self.rows, self.columns];
         let all = sizes.iter().chain(&self.starts).chain(&self.nonzeros);
         all.map(|number| format!(" {number}")).collect()
     }
 
-    /// Reads the line of a result; `None` if it has another name or the sparsity is invalid.
+    /// Reads the printed line of a result; `None` if the name differs or the sparsity pattern is invalid.
     pub fn parse(line: &str, name: &str) -> Option<Self> {
         let mut words = line.split(' ');
         if words.next() != Some(name) {
@@ -140,7 +141,7 @@ impl Sparsity {
         })
     }
 
-    /// Returns the matrix with the nonzeros of a line of bits; `None` for another number of them.
+    /// Returns the matrix with the nonzeros of a line of bits; `None` if their number differs from the pattern.
     pub fn dense(&self, line: &str) -> Option<DMatrix<f64>> {
         let words = line.split(' ').filter(|word| !word.is_empty());
         let numbers = words.map(|word| u64::from_str_radix(word, 16).ok().map(f64::from_bits));

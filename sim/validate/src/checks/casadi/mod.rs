@@ -1,9 +1,10 @@
-//! Emitted functions for CasADi: the compiled file compared with the program that it was emitted from. The functions of
-//! the C in it are compared bit for bit, as in [`emitted_c`](super::emitted_c). Those for CasADi are called through
-//! CasADi's C interface, without CasADi: names, sparsities, work arrays and results, all at once and each alone.
+//! Comparison of the compiled functions for CasADi with the program that they were emitted from. The plain C functions
+//! of the file are compared bit for bit, as in [`emitted_c`](super::emitted_c). The functions for CasADi are called
+//! through CasADi's C interface, without CasADi. Names, sparsity patterns, work arrays and results are compared, with
+//! all results requested at once and with single results.
 //!
-//! `interface` describes functions and sparsities, `expected` computes their results, and `derivatives` compares the
-//! derivatives that no other check covers with differences.
+//! `interface` describes functions and sparsity patterns, and `expected` computes the results. `derivatives` compares
+//! the derivatives that no other check covers with finite differences.
 
 mod derivatives;
 mod expected;
@@ -29,9 +30,9 @@ use expected::{Expected, expected_results};
 use interface::{Function, Sparsity, functions};
 
 const NAME: &str = "emitted_casadi";
-/// Check of the second derivatives.
+/// Name of the check of the second derivatives.
 const HESSIANS: &str = "hessians";
-/// Check of the derivatives of the rates by time.
+/// Name of the check of the time derivatives of the rates.
 const BY_TIME: &str = "rates_by_time";
 
 /// Emitted functions for CasADi with the command that compiles them.
@@ -41,7 +42,7 @@ pub struct CasadiSource {
     pub name: String,
     /// Text of the file.
     pub source: String,
-    /// Requested outputs in addition to those of every such file.
+    /// Requested outputs in addition to the default outputs of such a file.
     pub with: Vec<Output>,
     /// Compiler.
     pub compiler: CCompiler,
@@ -122,8 +123,8 @@ fn skipped(program: &Program, reason: &str) -> Vec<Check> {
     checks
 }
 
-/// Returns the lines with the interface of the C, and those of the functions for CasADi. One program prints both,
-/// because the compilation takes most of the time.
+/// Returns the printed lines of the C interface, and the printed lines of the functions for CasADi. One program prints
+/// both, because compilation takes most of the time.
 fn run_harness(
     folder: &Path,
     emitted: &CasadiSource,
@@ -157,9 +158,9 @@ fn run_harness(
     Ok([print("interface")?, print("functions")?])
 }
 
-/// Comparison of the printed functions.
+/// Result of the comparison of the printed functions.
 struct Called {
-    /// Number of differences, with the first one.
+    /// Number of differing results, with the first one.
     differing: Worst,
     /// Second derivatives of the weighted rates by time, state, inputs and parameters, for each call.
     hessians: Vec<DMatrix<f64>>,

@@ -25,31 +25,31 @@ impl<const N: usize, const M: usize> Print for [[f64; N]; M] {
     }
 }
 
-/// Number with a bound of its error in single precision, by running error analysis to all orders
-/// (N. J. Higham, Accuracy and Stability of Numerical Algorithms, section 3.3).
+/// Number with a bound of its single-precision rounding error, by running error analysis to all orders (N. J. Higham,
+/// Accuracy and Stability of Numerical Algorithms, section 3.3).
 #[derive(Clone, Copy, Debug)]
 struct Rounded {
     number: f64,
     error: f64,
 }
 
-/// Half a unit in the last place of 1 in single precision, and half the smallest subnormal number.
+/// Unit roundoff of single precision, and half the smallest subnormal number.
 const UNIT: f64 = 1.0 / (1_u64 << 24) as f64;
 const SMALLEST: f64 = 1.0 / ((1_u128 << 100) as f64 * (1_u64 << 50) as f64);
 
 impl Rounded {
-    /// Adds the error of an elementary function, at most two units in the last place, to that from its operands.
+    /// Adds the rounding error of an elementary function, at most two units in the last place, to the propagated error.
     fn of_function(number: f64, error: f64) -> Self {
         Self::result(number, error + 3.0 * (UNIT * number.abs() + SMALLEST))
     }
-    /// Bound of the error of an argument. An angle above 1e5 counts as inexact by its last place, and angles
-    /// above 2^22 have no bound.
+    /// Returns a bound of the error of an angle. An angle above 1e5 has an error of at least one unit in the last
+    /// place; an angle above 2^22 has no bound.
     fn argument_error(self) -> f64 {
         let size = self.number.abs() + self.error;
         let last_place = if size > 1e5 { 2.0 * UNIT * size } else { 0.0 };
         if size >= 4_194_304.0 { f64::INFINITY } else { self.error + last_place }
     }
-    /// Adds the rounding of the result to the error from its operands.
+    /// Adds the rounding error of the result to the propagated error.
     fn result(number: f64, error: f64) -> Self {
         let error = error + UNIT * number.abs() + SMALLEST;
         let beyond = number.abs() + error > f64::from(f32::MAX) || error.is_nan();
@@ -161,7 +161,7 @@ impl Single {
     fn compare(&mut self, found: &[f32], expected: &[Rounded]) {
         for (found, expected) in found.iter().zip(expected) {
             if !expected.number.is_finite() || !expected.error.is_finite() {
-                // Without a bound the result may be inexact, but not beyond the range of its true value.
+                // A result without an error bound must still be finite if the true value is within single precision.
                 let fits = expected.number.abs() < f64::from(f32::MAX);
                 if fits && !found.is_finite() {
                     self.worst = f64::INFINITY;

@@ -16,9 +16,9 @@ use nalgebra::{DMatrix, DVector};
 pub(super) struct OutputValues {
     mass: DMatrix<f64>,
     jacobians: Vec<(&'static str, DMatrix<f64>)>,
-    /// Multipliers mu, one per row of the equations.
+    /// Random multipliers mu, one per row of the equations.
     multipliers: DVector<f64>,
-    /// Weights of the rates that correspond to the multipliers.
+    /// Weights M mu of the rates.
     weights: Vec<f64>,
     weighted_by_state_and_inputs: Option<(Vec<f64>, Vec<f64>)>,
     weighted_by_parameters: Option<Vec<f64>>,
@@ -36,7 +36,7 @@ impl OutputValues {
     ) -> Self {
         let mass = equations.mass.clone();
         let scales = equations.residuals(&[]);
-        // With weights M mu of the accelerations, the weighted rates equal mu times the rows.
+        // If the accelerations have the weights M mu, the weighted rates equal mu times the rows.
         let multipliers = DVector::from_iterator(
             scales.len(),
             scales.iter().map(|row| {
@@ -77,7 +77,7 @@ pub(super) fn parameter_indices(model: &Model, names: &[String]) -> Vec<usize> {
     names.iter().filter_map(place).collect()
 }
 
-/// Compares all values along one direction. Of several step sizes the smallest deviation counts.
+/// Compares all values along one direction. The smallest deviation of several step sizes counts.
 pub(super) fn compare_along(
     rows: &mut OutputFindings,
     surroundings: &DifferencePoint<'_>,
@@ -187,7 +187,7 @@ impl OutputValues {
         places.map(|place| direction.parameters[*place]).collect()
     }
 
-    /// Returns the deviations of the rates: accelerations and rows must change equally.
+    /// Returns the deviations of the rates: M times the change of the accelerations must cancel the change of the rows.
     fn rate_deviations(&self, change: &[f64], direction: &Direction, slopes: &[Slope]) -> Vec<f64> {
         let size = self.mass.nrows();
         let count = size + self.multipliers.len();

@@ -11,10 +11,11 @@ use eomgen_model_spec::model::ParameterValue;
 
 /// Maximum number of directions at a state. With more variables, random directions are used.
 const DIRECTIONS: usize = 40;
-/// Maximum number of coordinates to vary each variable, and of directions for larger models.
+/// Maximum number of coordinates up to which every variable has its own direction, and number of directions of larger
+/// models.
 const SMALL_MODEL_LIMITS: (usize, usize) = (12, 8);
 
-/// Step of the differences of projected states, in sizes of the states.
+/// Step of the differences of projected states, relative to the sizes of the states.
 const TANGENT_STEP: f64 = 1.0 / 128.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,8 +25,9 @@ pub(super) enum VariableKind {
     Parameters,
 }
 
-/// Returns directions in one kind of variable each: every variable, or some and sums of all. With dependent constraints,
-/// states move along them, and variables that move the constraints are omitted.
+/// Returns directions that change one kind of variable each: every single variable, or some single variables and random
+/// combinations. With dependent constraints, state directions are tangential to the constraints, and variables that
+/// change the constraints are omitted.
 pub(super) fn directions(
     judged: &CheckContext<'_>,
     sample: &Sample,
@@ -72,7 +74,7 @@ pub(super) fn directions(
     Ok(found)
 }
 
-/// Returns the directions that do not move the constraints, those of states made tangential to the constraints.
+/// Returns the directions that do not change the constraints; state directions are projected to be tangential.
 fn move_along_constraints(
     oracle: &Oracle,
     sample: &Sample,
@@ -107,7 +109,7 @@ fn tangent(oracle: &Oracle, sample: &Sample, direction: &[f64]) -> Option<Vec<f6
     Some(along.iter().map(|slope| slope.value).collect())
 }
 
-/// Returns the sizes of independent parameters; 0 for derived parameters and for zeros.
+/// Returns the magnitudes of independent parameters; 0 for derived parameters and for parameters with the value 0.
 pub(super) fn independent_sizes(judged: &CheckContext<'_>) -> Vec<f64> {
     let parameters = judged.model.parameters.iter().zip(judged.parameters);
     parameters
@@ -118,7 +120,7 @@ pub(super) fn independent_sizes(judged: &CheckContext<'_>) -> Vec<f64> {
         .collect()
 }
 
-/// Returns vectors of these sizes, with one nonzero entry each if there are few entries.
+/// Draws vectors with entries of these sizes; with one nonzero entry each if `small` or few entries.
 pub(super) fn draw_directions(sizes: &[f64], small: bool, random: &mut Random) -> Vec<Vec<f64>> {
     let alone = |index: usize| {
         let entries = sizes.iter().enumerate();

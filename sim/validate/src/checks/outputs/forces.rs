@@ -27,7 +27,8 @@ pub(super) fn check_forces(
     };
     let still = vec![0.0; equations.size()];
     compare("bias_forces", &still, outputs.bias_forces(sample));
-    // Accelerations similar to those of the motion, so that inertia does not dominate any row.
+    // Accelerations of the same magnitude as in the motion keep the inertia terms comparable with the other terms of
+    // each row.
     let accelerations: Vec<f64> = match equations.accelerations() {
         Some(own) => own.iter().map(|a| a * random.away_from_zero()).collect(),
         None => still.iter().map(|_| random.away_from_zero()).collect(),

@@ -36,7 +36,7 @@ pub(super) fn check_guard_rates(
         .iter()
         .zip(&sizes)
         .map(|(rate, size)| (rate / size).abs());
-    // Time in which no entry of the state changes by more than its size.
+    // Time interval in which no entry of the state changes by more than its size.
     let time = fastest.fold(1.0, f64::max).recip();
     let mut best = vec![f64::INFINITY; found.len()];
     for step in STEPS {

@@ -1,8 +1,8 @@
 //! Comparison of the requested outputs with the oracle:
 //!
-//! - inverse dynamics and bias forces: by its mass matrix and forces;
-//! - Jacobians and their products: by directional differences of its rows;
-//! - guard rates: by differences of the guards along its motion.
+//! - inverse dynamics and bias forces: with the oracle's mass matrix and forces;
+//! - Jacobians and their products: with directional differences of the oracle's rows;
+//! - guard rates: with differences of the guards along the oracle's motion.
 
 mod check_context;
 mod derivatives;
@@ -27,7 +27,7 @@ use guard_rates::check_guard_rates;
 pub use rows::DIFFERENCE_TOLERANCE;
 use rows::OutputFindings;
 
-/// Maximum and minimum number of states, each in another regime if there are enough.
+/// Maximum and minimum number of states, each in a different regime if the model has enough regimes.
 const STATES: (usize, usize) = (9, 4);
 const SEED: u64 = 0x4e0b_1a75;
 

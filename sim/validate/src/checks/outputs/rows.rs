@@ -4,11 +4,11 @@ use super::check_context::CheckContext;
 use crate::certificate::{Check, SkipKind, Worst};
 use crate::outputs::requested_jacobians;
 
-/// Tolerance of differences, relative to the largest term of the row, for a change of the variable
-/// by its size. The rows are accurate to 1e-14 of that. The division by the step size increases
-/// this error, by a factor of 16 for the longest step and 65536 for the shortest.
+/// Tolerance of finite differences, relative to the largest term of the row, for a change of the variable by its size.
+/// The rows are accurate to 1e-14 of their largest term. Division by the step size increases this error by a factor of
+/// 16 for the longest step and 65536 for the shortest.
 pub const DIFFERENCE_TOLERANCE: f64 = 1e-9;
-/// Step sizes: long for smooth rows, short for rows with large higher derivatives.
+/// Step sizes of the finite differences: long for smooth rows, short for rows with large higher derivatives.
 pub(super) const STEPS: [f64; 5] = [
     1.0 / 16.0,
     1.0 / 128.0,
@@ -17,7 +17,7 @@ pub(super) const STEPS: [f64; 5] = [
     1.0 / 65536.0,
 ];
 
-/// Returns |difference|/scale; 0 for no difference, infinity for NaN.
+/// Returns |difference|/scale; 0 for equal values, infinity for NaN.
 pub(super) fn relative_deviation(difference: f64, scale: f64) -> f64 {
     let ratio = (difference / scale).abs();
     if difference == 0.0 {

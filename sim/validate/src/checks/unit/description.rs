@@ -1,4 +1,4 @@
-//! `modelDescription.xml` of a unit.
+//! Parser of the file `modelDescription.xml` of a functional mock-up unit.
 
 use std::collections::BTreeMap;
 
@@ -7,10 +7,10 @@ use quick_xml::{Reader, XmlVersion};
 
 type Attributes = BTreeMap<String, String>;
 
-/// Content of a description.
+/// Content of a model description.
 #[derive(Default)]
 pub struct Description {
-    /// Attributes of the root.
+    /// Attributes of the root element.
     pub root: Attributes,
     /// `modelIdentifier` by kind of instances: `ModelExchange`, `CoSimulation`.
     pub identifiers: BTreeMap<String, String>,
@@ -23,17 +23,16 @@ pub struct Description {
 /// Unit of measurement.
 #[derive(Default)]
 pub struct Measure {
-    /// Exponents of base units, and factor and offset, if stated.
+    /// Exponents of the base units with factor and offset; `None` if the element `BaseUnit` is missing.
     pub base: Option<Attributes>,
-    /// Factors of display units by name.
+    /// Factors of the display units by name.
     pub shown: BTreeMap<String, String>,
 }
 
 impl Description {
-    /// Reads a description.
+    /// Parses a model description.
     ///
-    /// # Errors
-    /// Text that is no XML.
+    /// # Errors Invalid XML.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut found = Self::default();
         let mut reader = Reader::from_str(text);
@@ -80,7 +79,7 @@ impl Description {
         }
     }
 
-    /// Returns the major version of the standard, 2 or 3.
+    /// Returns the major version of FMI, 2 or 3.
     pub fn version(&self) -> Option<u8> {
         match self.root.get("fmiVersion").map(String::as_str) {
             Some("2.0") => Some(2),
@@ -89,7 +88,7 @@ impl Description {
         }
     }
 
-    /// Returns the token that links the description to its library.
+    /// Returns the token (GUID) that links the description to its library.
     pub fn token(&self) -> Option<&str> {
         let token = self
             .root

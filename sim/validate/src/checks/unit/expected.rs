@@ -1,4 +1,4 @@
-//! Description that a unit must have, from the specification and the program.
+//! Model description that a unit must have, from the specification and the program.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,21 +12,21 @@ use super::description::{Description, Measure};
 /// Names of the base units, in the order of the exponents of a dimension.
 const BASE: [&str; 7] = ["kg", "m", "s", "A", "K", "mol", "cd"];
 
-/// Variable of a description.
+/// Variable of a model description.
 pub struct Variable {
     pub name: String,
     causality: &'static str,
     variability: &'static str,
-    /// Initial value, minimum and maximum by attribute, in SI.
+    /// Initial value, minimum and maximum by attribute name, in SI.
     numbers: BTreeMap<&'static str, f64>,
     dimension: Option<Dimension>,
-    /// Declared unit, if it is not the coherent one.
+    /// Declared unit, if it is not a coherent SI unit.
     shown: Option<Unit>,
-    /// Variable of which it is the derivative.
+    /// Name of the variable whose time derivative this variable is.
     derivative_of: Option<String>,
 }
 
-/// Variables by group.
+/// Expected variables of a unit, by causality and kind.
 pub struct Variables {
     pub states: Vec<Variable>,
     pub rates: Vec<Variable>,
@@ -36,7 +36,7 @@ pub struct Variables {
     others: Vec<Variable>,
 }
 
-/// Names in use: a name in use gets its group and a point as prefix.
+/// Names in use. If a name is already in use, the prefix `GROUP.` is added to the new one.
 struct Names(BTreeSet<String>);
 
 impl Names {
@@ -165,7 +165,7 @@ impl Variables {
         groups.into_iter().flatten()
     }
 
-    /// Returns the number of compared items and the differences.
+    /// Compares with `description` and returns the number of compared items and the differences.
     pub fn compare(&self, description: &Description) -> (usize, Vec<String>) {
         let mut compared = 0;
         let mut differences = Vec::new();
@@ -260,7 +260,7 @@ impl Variable {
             return false;
         };
         let has_base = match &measure.base {
-            // The standard states whole exponents only.
+            // FMI supports integer exponents only.
             None => !dimension.exponents().iter().all(|known| known.is_integer()),
             Some(base) => {
                 let same = BASE.iter().zip(dimension.exponents()).all(|(name, known)| {
@@ -287,7 +287,8 @@ impl Variable {
         has_base && is_shown
     }
 
-    /// Compares the reference of a derivative: a value reference in version 3, an index from 1 in version 2.
+    /// Returns true if the attribute `derivative` refers to the state: by value reference in FMI 3, by index from 1 in
+    /// FMI 2.
     fn has_state(&self, stated: Option<&String>, description: &Description) -> bool {
         let stated = stated.map(|text| text.parse::<usize>().ok());
         let Some(state) = &self.derivative_of else {

@@ -1,9 +1,9 @@
-//! Functional mock-up units: the description compared with the specification (names, causalities, initial values, ranges,
-//! units of measurement, derivatives), and the library in the unit compared with the program. A program that the check
-//! compiles loads the library in a separate process, sets time, state, inputs and parameters by the names of the
+//! Comparison of a functional mock-up unit with its model. The description is compared with the specification: names,
+//! causalities, initial values, ranges, units of measurement and derivatives. The library in the unit is compared with
+//! the program. A separate process loads the library, sets time, state, inputs and parameters by the names in the
 //! description, and reads rates and observables.
 //!
-//! `description` reads the description, `expected` compares it.
+//! `description` parses the description, `expected` compares it.
 
 mod description;
 mod expected;
@@ -30,8 +30,8 @@ use expected::{Variable, Variables};
 
 const DESCRIPTION: &str = "unit_description";
 const LIBRARY: &str = "unit_library";
-/// Tolerance of numbers of the library, relative to the largest of the same kind: the library evaluates the equations with
-/// sides of the surfaces, in another order of operations.
+/// Tolerance of results of the library, relative to the largest result of the same kind. The library evaluates the
+/// equations on prescribed sides of the switching surfaces, in another order of operations.
 const LIBRARY_TOLERANCE: f64 = 1e-9;
 /// Number of states for each set of parameters.
 const STATES: usize = 20;
@@ -39,10 +39,10 @@ const STATES: usize = 20;
 const CHANGE: f64 = 0.01;
 const SEED: u64 = 0x0f3d_21e4;
 
-/// Functional mock-up unit with the compiler of the program that loads it.
+/// Functional mock-up unit, and the compiler for the program that loads it.
 #[derive(Clone, Debug)]
 pub struct UnitSource {
-    /// Name: the file is `NAME.fmu`.
+    /// Name of the unit: the file is `NAME.fmu`.
     pub name: String,
     /// SHA-256 of the file.
     pub sha256: String,
@@ -52,7 +52,7 @@ pub struct UnitSource {
     pub compiler: CCompiler,
 }
 
-/// Compares a unit with the model and the program, which has no further outputs.
+/// Compares a unit with the model and with the program, which must be without requested outputs.
 pub fn check(
     oracle: &Oracle,
     (model, program, default_inputs): (&Model, &Result<Program, String>, &[f64]),
@@ -109,7 +109,7 @@ pub fn check(
     Ok(checks)
 }
 
-/// Reason for missing numbers of the library.
+/// Reason why the library returned no numbers.
 enum Obstacle {
     NotRun(String),
     Failed(String),
@@ -146,7 +146,7 @@ impl UnitSource {
         Ok(())
     }
 
-    /// Returns the library for this computer.
+    /// Returns the path of the library for this platform.
     fn library(&self, version: u8, identifier: &str) -> Option<PathBuf> {
         let system = match OS {
             "macos" => "darwin",
@@ -163,7 +163,7 @@ impl UnitSource {
     }
 }
 
-/// Returns the default parameters, and others close to them within their ranges.
+/// Returns the default parameters, and parameter sets close to them within the ranges.
 fn parameter_sets(model: &Model, program: &Program) -> Vec<Vec<f64>> {
     let mut random = Random::new(SEED);
     let defaults = program.default_parameters();

@@ -1,5 +1,5 @@
-//! Cart of mass M on a straight track with two arms hinged to it next to each other: point masses
-//! on massless rods, both angles from the vertical, hanging at 0.
+//! Cart of mass M on a straight track with two arms hinged to it next to each other: point masses on massless rods,
+//! both angles are from the downward vertical.
 
 use super::linear_system::LinearSystem;
 use super::{NotApplicable, StateAndParameters};

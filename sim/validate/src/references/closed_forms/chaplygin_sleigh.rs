@@ -1,8 +1,8 @@
-//! Chaplygin's sleigh. The force lambda across the edge, a behind the centre of mass, gives m x'' =
-//! -lambda sin(theta), m y'' = lambda cos(theta), J theta'' = -a lambda. It keeps the speed across
-//! the edge, y' cos(theta) - x' sin(theta) - a theta', constant: lambda (1/m + a^2/J) = theta' (x'
-//! cos(theta) + y' sin(theta)) (Neimark and Fufaev, *Dynamics of Nonholonomic Systems*, 1972). A
-//! stabilisation rate w reduces the right side by 2 w times that speed.
+//! Chaplygin's sleigh. The edge is at the distance a behind the centre of mass. The force lambda perpendicular to the
+//! edge gives m x'' = -lambda sin(theta), m y'' = lambda cos(theta), J theta'' = -a lambda. The constraint keeps the
+//! velocity perpendicular to the edge, y' cos(theta) - x' sin(theta) - a theta', constant: lambda (1/m + a^2/J) =
+//! theta' (x' cos(theta) + y' sin(theta)) (Neimark and Fufaev, *Dynamics of Nonholonomic Systems*, 1972). A
+//! stabilisation rate w reduces the right side by 2 w times the perpendicular velocity.
 
 use super::{NotApplicable, StateAndParameters};
 use crate::references::evaluation::{Evaluation, Row};

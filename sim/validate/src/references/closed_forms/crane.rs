@@ -1,5 +1,5 @@
-//! Load on a rope of changing length below a moving trolley, from the balance of forces across the
-//! rope: m (l theta'' + 2 l' theta' + s'' cos theta + g sin theta) = the drag across it.
+//! Load on a rope of changing length below a moving trolley. The balance of forces perpendicular to the rope is m (l
+//! theta'' + 2 l' theta' + s'' cos theta + g sin theta) = drag perpendicular to the rope.
 
 use super::{NotApplicable, StateAndParameters};
 use crate::references::evaluation::{Evaluation, Row};
@@ -13,7 +13,7 @@ pub fn accelerations(at: &StateAndParameters<'_>) -> Result<Evaluation, NotAppli
     row.add(-2.0 * l_dot * rate / l);
     row.add(-at.input("s_ddot") * theta.cos() / l);
     row.add(-g * theta.sin() / l);
-    // Velocity of the load across the rope.
+    // Velocity of the load perpendicular to the rope.
     row.add(-c * rate / m);
     row.add(-c * at.input("s_dot") * theta.cos() / (m * l));
     Ok(Evaluation::from_rows([row]))

@@ -1,5 +1,5 @@
-//! Double pendulum: two point masses on massless rods, both angles from the vertical, hanging at 0
-//! (Landau and Lifshitz, "Mechanics", section 5, problem 1).
+//! Double pendulum: two point masses on massless rods; both angles are from the downward vertical (Landau and Lifshitz,
+//! "Mechanics", section 5, problem 1).
 
 use super::linear_system::LinearSystem;
 use super::{NotApplicable, StateAndParameters};

@@ -1,9 +1,9 @@
 //! Furuta's rotary pendulum (Cazzolato and Prime, "On the dynamics of the Furuta pendulum", 2011,
 //! with slender links).
 //!
-//! An arm of inertia J_a and length L turns by phi about the vertical. At its end, a pendulum of
-//! mass m, with its centre l from the hinge and inertia J about the centre, swings by theta in the
-//! plane across the arm, hanging at 0.
+//! An arm of inertia J_a and length L turns by phi about the vertical. At its end, a pendulum of mass m, with its
+//! centre l from the hinge and inertia J about the centre, swings by theta in the plane perpendicular to the arm; theta
+//! = 0 if it hangs down.
 
 use super::linear_system::LinearSystem;
 use super::{NotApplicable, StateAndParameters};

@@ -1,4 +1,4 @@
-//! Solution of M(q) q'' = f for the accelerations, with a bound of its rounding.
+//! Solution of M(q) q'' = f for the accelerations, with a bound of the rounding error.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -35,9 +35,9 @@ impl LinearSystem {
         }
     }
 
-    /// Solves for the accelerations q''. The scale of row i is that of |M^-1| (largest term of f +
-    /// |M| |q''|), the componentwise bound of the rounding of a solve (Higham, "Accuracy and Stability of
-    /// Numerical Algorithms", chapter 7).
+    /// Solves for the accelerations q''. The scale of row i is entry i of |M^-1| (largest term of f + |M| |q''|), the
+    /// componentwise bound of the rounding error of a linear solve (Higham, "Accuracy and Stability of Numerical
+    /// Algorithms", chapter 7).
     pub fn solve(self) -> Result<Evaluation, NotApplicable> {
         let force = DVector::from_iterator(self.force.len(), self.force.iter().map(Row::sum));
         let inverse = self.mass.clone().try_inverse().ok_or(NotApplicable::Mass)?;

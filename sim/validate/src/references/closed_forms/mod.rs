@@ -1,7 +1,7 @@
-//! Closed forms of other machines from textbooks, one file per machine: mass matrix and forces, in
+//! Textbook equations of the other machines, one file per machine. Each file contains the mass matrix and forces with
 //! the coordinates and parameter names of the specification of the same name.
 //!
-//! An optional parameter (a damping, an inertia) that is missing counts as 0.
+//! A missing optional parameter (damping or inertia) counts as 0.
 
 mod cart_two_arms;
 mod chaplygin_sleigh;
@@ -31,8 +31,7 @@ pub struct StateAndParameters<'a> {
     pub input: &'a dyn Fn(&str) -> Option<f64>,
     /// Truncation order of the flexible field, 0 without a field.
     pub order: usize,
-    /// Coordinates in the order of the specification, the modes, the rates of all, then first-order
-    /// states.
+    /// Coordinates in the order of the specification, modes, rates of coordinates and modes, then first-order states.
     pub state: &'a [f64],
 }
 
@@ -40,7 +39,7 @@ pub struct StateAndParameters<'a> {
 /// with row scales.
 pub type ClosedForm = fn(&StateAndParameters<'_>) -> Result<Evaluation, NotApplicable>;
 
-/// Reason that a closed form does not apply.
+/// Reason why a closed form does not apply.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NotApplicable {
     /// A required parameter is missing.

@@ -1,4 +1,4 @@
-//! Physical pendulum with theta from upright: hanging at pi.
+//! Physical pendulum; theta = 0 is upright and theta = pi hangs down.
 //!
 //! (m a^2 + I) theta'' = m g a sin theta - k theta' (any textbook).
 

@@ -1,8 +1,7 @@
-//! PUMA 560 by the recursion of Newton and Euler (Luh, Walker and Paul, "On-line computational
-//! scheme for mechanical manipulators", 1980): accelerations outward, forces and moments inward, in
-//! numbers, along the axes of the links. Each column of the mass matrix is the torques of one unit
-//! acceleration at rest without gravity (Walker and Orin, 1982, method 1). Moments of inertia:
-//! Armstrong, Khatib and Burdick (1986).
+//! PUMA 560 by the recursion of Newton and Euler (Luh, Walker and Paul, "On-line computational scheme for mechanical
+//! manipulators", 1980): accelerations outward, forces and moments inward, numerically, in the frames of the links.
+//! Each column of the mass matrix contains the torques for a unit acceleration of one joint at rest without gravity
+//! (Walker and Orin, 1982, method 1). Moments of inertia: Armstrong, Khatib and Burdick (1986).
 
 use super::linear_system::LinearSystem;
 use super::{NotApplicable, StateAndParameters};
@@ -10,8 +9,8 @@ use crate::references::evaluation::Evaluation;
 
 type Vector = [f64; 3];
 
-/// Link. The joint turns it by q about the z axis of the previous link, at `origin`. Its axes are
-/// tilted about x by a quarter turn with sine `tilt`, or not tilted.
+/// Link. The joint at `origin` turns the link by q about the z axis of the previous link. If `tilt` is 1 or -1, the
+/// link's axes are also turned about x by a quarter turn in this direction.
 struct Link {
     origin: Vector,
     tilt: f64,
@@ -87,7 +86,7 @@ fn torques(
     accelerations: &[f64; 6],
     g: f64,
 ) -> [f64; 6] {
-    // The base accelerates upward by g.
+    // Gravity is an upward acceleration g of the base.
     let (mut omega, mut alpha, mut a) = ([0.0; 3], [0.0; 3], [0.0, 0.0, g]);
     let mut loads = [([0.0; 3], [0.0; 3]); 6];
     for (i, link) in links.iter().enumerate() {

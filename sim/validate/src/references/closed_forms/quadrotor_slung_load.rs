@@ -1,7 +1,7 @@
-//! Quadrotor with a load on a rope: Newton's equations of two points with the rope force, and
-//! Euler's equations along the axes of the rotors (Sreenath, Lee and Kumar, *Proc. 52nd IEEE Conf.
-//! Decision and Control*, 2013, with air drag on the load). With d = s - r, v = d' and a
-//! stabilisation rate w, the constraint g = d.d - l^2 follows g'' + 2 w g' + w^2 g = 0.
+//! Quadrotor with a load on a rope: Newton's equations of two points with the rope force, and Euler's equations in the
+//! body frame of the quadrotor (Sreenath, Lee and Kumar, *Proc. 52nd IEEE Conf. Decision and Control*, 2013, with air
+//! drag on the load). With d = s - r, v = d' and a stabilisation rate w, the constraint g = d.d - l^2 follows g'' + 2 w
+//! g' + w^2 g = 0.
 
 use super::{NotApplicable, StateAndParameters};
 use crate::references::evaluation::{Evaluation, Row};
@@ -22,7 +22,7 @@ pub fn accelerations(at: &StateAndParameters<'_>) -> Result<Evaluation, NotAppli
     Ok(Evaluation::from_rows(rows))
 }
 
-/// Returns the third axis of the rotors.
+/// Returns the direction of the thrust: the third body axis.
 fn thrust_direction(position: &[f64; 9]) -> Vector {
     let [(sy, cy), (sp, cp), (sr, cr)] = [position[3], position[4], position[5]].map(f64::sin_cos);
     [cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr]
@@ -87,7 +87,7 @@ fn rotation(
         pitch * cr + yaw * cp * sr,
         yaw * cp * cr - pitch * sr,
     ];
-    // Along the axes: torques, then gyroscopic terms.
+    // Euler's equations in the body frame: torques, then gyroscopic terms.
     let rates = [0, 1, 2].map(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         let gyroscopic = (inertia[j] - inertia[k]) * omega[j] * omega[k];

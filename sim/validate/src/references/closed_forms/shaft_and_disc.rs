@@ -1,8 +1,8 @@
-//! Disc of inertia J_d at the end of a uniform circular shaft, turned by a rotor of inertia J_m, in
-//! the modes sin((r - 1/2) pi x/l) of the shaft held at the rotor.
+//! Disc of inertia J_d at the end of a uniform circular shaft, turned by a rotor of inertia J_m. The modes sin((r -
+//! 1/2) pi x/l) are those of a shaft clamped at the rotor.
 //!
-//! A section x of the shaft turns by theta + w(x, t) and the disc by theta + w(l, t). w(l, t) is
-//! the sum of (-1)^(r+1) q_r (Rao, "Mechanical Vibrations", 8.3, with a moving base).
+//! The section at x turns by theta + w(x, t) and the disc by theta + w(l, t), where w(l, t) is the sum of (-1)^(r+1)
+//! q_r (Rao, "Mechanical Vibrations", 8.3, with a moving base).
 
 use std::f64::consts::PI;
 

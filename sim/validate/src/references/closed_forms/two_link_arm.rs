@@ -1,7 +1,6 @@
-//! Planar arm of two rigid links with a mass at its end: the first angle from the horizontal, the
-//! second from the first link (Spong, Hutchinson and Vidyasagar, "Robot Modeling and Control",
-//! section 6.4, with the rotor of the elbow on the second link). Flexible links have no closed form
-//! here.
+//! Planar arm of two rigid links with a mass at its end. The first angle is from the horizontal, the second from the
+//! first link (Spong, Hutchinson and Vidyasagar, "Robot Modeling and Control", section 6.4, with the rotor of the elbow
+//! on the second link). Flexible links have no closed form here.
 
 use super::linear_system::LinearSystem;
 use super::{NotApplicable, StateAndParameters};
@@ -16,7 +15,7 @@ pub fn accelerations(at: &StateAndParameters<'_>) -> Result<Evaluation, NotAppli
     let (c_1, c_2) = (at.optional("c_1"), at.optional("c_2"));
     let ([theta_1, theta_2], [rate_1, rate_2]) = at.motion()?;
 
-    // Mass beyond the elbow, and its first and second moment about it.
+    // Mass outward of the elbow, and its first and second moments about the elbow.
     let carried = link_2 + tip;
     let moment = link_2 * l_2 / 2.0 + tip * l_2;
     let inertia = rotor_2 + link_2 * l_2 * l_2 / 3.0 + tip * l_2 * l_2;

@@ -28,15 +28,15 @@ pub struct Equation22<const S: usize> {
     half_width: [f64; 2],
     /// a_12/omega_n and a_13/omega_n.
     motor: [f64; 2],
-    /// Rows of X_sp, X_pr and X_c on the mesh terms.
+    /// Coefficients of the mesh terms in the rows of X_sp, X_pr and X_c.
     mesh: [MeshColumns; 3],
-    /// a_18 .. over omega_n^2, on qbar in rows 1 and 2.
+    /// a_18 .. divided by omega_n^2: coefficients of qbar in rows 1 and 2.
     a_18: [f64; S],
-    /// a_31 .. over a_30 omega_n^2, on qbar in row 3.
+    /// a_31 .. divided by a_30 omega_n^2: coefficients of qbar in row 3.
     a_3: [f64; S],
-    /// Rows of the modes on qbar, stored by column, so that the rows vectorise.
+    /// Coefficients of qbar in the rows of the modes, stored by column for vectorisation over the rows.
     modes: [[f64; S]; S],
-    /// Rows of the modes on the mesh terms, each an array over the rows.
+    /// Coefficients of the mesh terms in the rows of the modes, one array over the rows for each mesh term.
     modes_mesh: [[f64; S]; 4],
 }
 
@@ -109,7 +109,7 @@ impl<const S: usize> Equation22<S> {
         acceleration[3..].copy_from_slice(&self.mode_rows(&q, &mesh));
     }
 
-    /// Computes the rows a_40 .., each divided by its inertia.
+    /// Computes the rows of the modes (a_40 ..), each divided by its inertia.
     #[inline]
     fn mode_rows(&self, q: &[f64; S], mesh: &[f64; 4]) -> [f64; S] {
         let mut rows = [0.0; S];
@@ -137,7 +137,7 @@ impl MeshColumns {
     }
 }
 
-/// Computes the sum of products in four partial sums, which avoids one chain of additions.
+/// Computes the dot product in four partial sums, which avoids a single dependent chain of additions.
 #[inline]
 fn dot<const S: usize>(a: &[f64; S], b: &[f64; S]) -> f64 {
     let mut partial = [0.0; 4];

@@ -1,7 +1,7 @@
 //! Rigid arm in the angles of its shafts: Eq. (10) with Eq. (6), (9) and (11).
 //!
-//! Equations are residuals (left side minus right side, N m). Angles lose digits if the meshes are
-//! nearly closed; use [`super::equation_12`] for simulation.
+//! Equations are residuals (left side minus right side, N m). Mesh deflections computed from angles lose digits; use
+//! [`super::equation_12`] for simulation.
 
 use super::mesh::{f_c, f_k};
 use super::parameters::PlanetaryArmParameters;
@@ -36,8 +36,8 @@ impl Residuals {
     }
 }
 
-/// Evaluates the corrected Eq. (10): only its mesh loads the sun, the sum of both meshes loads the
-/// carrier, and the third row has the acceleration of the carrier.
+/// Evaluates the corrected Eq. (10): the sun is loaded only by its own mesh, the carrier by the sum of both meshes, and
+/// the third row contains the acceleration of the carrier.
 pub fn corrected_residuals(
     parameters: &PlanetaryArmParameters,
     t: f64,

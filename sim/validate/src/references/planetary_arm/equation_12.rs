@@ -6,7 +6,7 @@ use super::mesh::{f_c, f_k};
 use super::parameters::PlanetaryArmParameters;
 use crate::references::evaluation::{Evaluation, Row};
 
-/// Equivalent masses and factors listed below Eq. (12).
+/// Equivalent masses and factors that the paper lists below Eq. (12).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(non_snake_case, reason = "names as in the paper")]
 pub struct EquivalentMasses {

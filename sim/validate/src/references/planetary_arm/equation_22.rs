@@ -1,9 +1,8 @@
 //! Coefficients of Eq. (22) with the names of the paper, for any truncation order S, corrected
 //! where the printed ones contradict the mechanics of the paper.
 //!
-//! The paper numbers columns for S = 4: a_31 .. a_34 are for modes and a_35 .. a_38 for meshes.
-//! Here the columns of the modes are an array of S entries, and those of the meshes keep their
-//! names at S = 4.
+//! The paper numbers columns for S = 4: a_31 .. a_34 are for modes and a_35 .. a_38 for meshes. Here the columns of the
+//! modes are an array of S entries. The columns of the meshes keep the names that they have at S = 4.
 
 use super::mesh::{f_c, f_k};
 use super::mode_shapes::ModeShape;

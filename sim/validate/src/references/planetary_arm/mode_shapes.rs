@@ -1,8 +1,8 @@
 //! Mode shapes of the clamped-free beam in the normalisation of the paper, Eq. (17), and their
 //! integrals.
 //!
-//! All quantities are dimensionless: s = x/l runs from 0 to 1, z = beta l, and derivatives are by
-//! s. The growing exponential is stored as exp(-z (1 - s)), so that high modes lose no digits.
+//! All quantities are dimensionless: s = x/l runs from 0 to 1, z = beta l, and derivatives are by s. The growing
+//! exponential is stored as exp(-z (1 - s)) to keep the accuracy of high modes.
 //!
 //! Source: Blevins, "Formulas for natural frequency and mode shape", clamped-free beam.
 
@@ -46,8 +46,8 @@ impl ModeShape {
         }
     }
 
-    /// Creates the shape of Eq. (17) with any `beta_l` and `xi`. A shape with values that do not
-    /// satisfy the boundary conditions grows like exp(beta l).
+    /// Creates the shape of Eq. (17) with any `beta_l` and `xi`. If the values do not satisfy the boundary conditions,
+    /// the shape grows like exp(beta l).
     pub fn with_values(beta_l: f64, xi: f64) -> Self {
         Self {
             beta_l,
@@ -162,7 +162,7 @@ mod tests {
     fn roots_match_published_values() {
         for (r, root) in (1..).zip(ROOTS) {
             let own = ModeShape::clamped_free(r).beta_l;
-            // One unit in the last given place.
+            // The tolerance is one unit in the last published digit.
             assert!(
                 (own - root).abs() <= 1e-15 * root,
                 "mode {r}: {own} and {root}"
@@ -191,7 +191,7 @@ mod tests {
         for r in [1, 2, 3, 7, 20, 64, 128] {
             let shape = ModeShape::clamped_free(r);
             let (exact, sum) = (shape.integrals(), integrals_by_quadrature(&shape));
-            // Rounding of the phase, z eps, and of about a thousand summands.
+            // The tolerance allows for the rounding of the phase, z eps, and of about a thousand summands.
             let tolerance = 1e-13 + 4.0 * f64::EPSILON * shape.beta_l;
             assert!((exact.phi_squared - sum.phi_squared).abs() <= tolerance * exact.phi_squared);
             // s phi oscillates, so its sum is compared with the size of its summands.
@@ -211,7 +211,7 @@ mod tests {
                     - shape.derivative(derivative, s - step))
                     / (2.0 * step);
                 let exact = shape.derivative(derivative + 1, s);
-                // Truncation of the central difference: (z step)^2/6 of the derivative.
+                // Truncation error of the central difference: (z step)^2/6 of the derivative.
                 let scale = shape.beta_l.powi(derivative as i32 + 1);
                 assert!((difference - exact).abs() <= 1e-6 * scale);
             }

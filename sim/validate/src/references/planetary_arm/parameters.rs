@@ -1,6 +1,6 @@
-//! Parameters of the arm with the names of the paper's nomenclature, and the radii that follow.
+//! Parameters of the arm with the names of the paper's nomenclature, and radii computed from them.
 //!
-//! The values are those of Table I, or assumed values, marked as such, if the paper gives none.
+//! The values are from Table I. If the paper gives no value, the value is marked "assumed".
 
 use std::f64::consts::PI;
 
@@ -60,7 +60,7 @@ pub struct PlanetaryArmParameters {
     pub omega: f64,
 }
 
-/// Defines conversions from and to names; a field that is not listed does not compile.
+/// Defines conversions between names and fields. Compilation fails if a field is not listed.
 macro_rules! named_fields {
     ($($field:ident)*) => {
         impl PlanetaryArmParameters {
@@ -165,7 +165,7 @@ impl PlanetaryArmParameters {
 mod tests {
     use super::*;
 
-    /// Rounding of a few products.
+    /// Bound of the relative rounding error of a few products.
     const ROUNDING: f64 = 1e-15;
 
     #[test]
