@@ -13,19 +13,19 @@ use crate::mechanics::translate::DeriveError;
 use crate::mechanics::unsolved::Unsolved;
 use crate::symbolic::graph::NodeId;
 
-/// Result of an examination, and the size of its work.
+/// Result of an examination, with the numbers of processed nodes and entries.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Examination {
     /// Number of graph nodes.
     pub nodes: usize,
-    /// Number of updated Hessian entries.
+    /// Number of updated entries in the Hessian of the kinetic energy.
     pub updates: usize,
     /// Constraints that depend on each other.
     pub redundancy: Redundancy,
 }
 
-/// Checks a model. Returns None if the model has fields, or if its kinetic energy contains functions of
-/// velocities: only the derived equations show the errors of such a model.
+/// Checks a model. Returns `None` if the model has fields, or if its kinetic energy contains functions of velocities;
+/// such a model can only be checked by its derived equations.
 ///
 /// # Errors
 /// Expressions that cannot be derived, constraints that contradict each other or that no state satisfies, and

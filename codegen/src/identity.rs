@@ -4,10 +4,10 @@ use eomgen_model_spec::source::sha256;
 
 use crate::program::Program;
 
-/// First word of an identity.
+/// First word of every identity text.
 const MARK: &str = "eomgen-identity";
 
-/// Stands for the hash of the source until the source is complete.
+/// Placeholder for the source hash, replaced when the source is complete.
 const PLACEHOLDER: &str = "0000000000000000000000000000000000000000000000000000000000000000";
 
 /// Largest length of an identity, in bytes.
@@ -20,13 +20,13 @@ pub struct Identity {
     pub name: String,
     /// SHA-256 of the specification.
     pub specification: String,
-    /// SHA-256 of the source without the line of its identity, see [`source_hash`].
+    /// SHA-256 of the source without its identity line, see [`source_hash`].
     pub source: String,
     /// Version of the generator.
     pub generator: String,
 }
 
-/// Returns the text of an identity whose source is not complete.
+/// Returns the identity text with the placeholder in place of the source hash.
 pub(crate) fn unsealed(program: &Program) -> String {
     let (name, specification) = (&program.name, &program.spec_hash);
     let generator = env!("CARGO_PKG_VERSION");
@@ -35,7 +35,7 @@ pub(crate) fn unsealed(program: &Program) -> String {
     )
 }
 
-/// Enters the hash of a complete source into its identity.
+/// Replaces the placeholder in a complete source by the source hash.
 pub(crate) fn seal(source: &str) -> String {
     let hash = format!("source={}", source_hash(source));
     source.replacen(&format!("source={PLACEHOLDER}"), &hash, 1)
@@ -48,7 +48,7 @@ pub fn source_hash(source: &str) -> String {
     sha256(text)
 }
 
-/// Returns the identities in a source, an object file, a library or an image, in order, each once.
+/// Finds the identities in a source file, object file, library or firmware image, in their order, without repetition.
 pub fn find(bytes: &[u8]) -> Vec<Identity> {
     let mark = format!("{MARK} ");
     let mark = mark.as_bytes();

@@ -27,7 +27,7 @@
 //! "#;
 //! let model = eomgen_model_spec::check(Source::new("pendulum.toml", text))?.model;
 //!
-// One order for each field of the model; a pendulum has no fields.
+// The second argument lists the order of each field; a pendulum has no fields.
 //! let variant = Variant::derive(&model, &[])?;
 //!
 //! // The rates of the state (theta, theta_dot), in rad/s and rad/s^2.
@@ -37,7 +37,7 @@
 //! assert_eq!(rates[0], 0.0);
 //! assert!((rates[1] + 9.81 / 0.3 * 0.5_f64.sin()).abs() < 1e-12);
 //!
-// The same equations as a source file without dependencies.
+// Emits the equations as a source file without dependencies.
 //! let file = emit(&variant.program, Packaging::Crate)?;
 //! assert!(file.contains("pub fn rates<T: Scalar>("));
 //! # Ok(())
@@ -55,13 +55,13 @@
 //! 5. [`rust`] and [`c`] (emitted source), [`wasm`] (a module for browsers) and [`report`] (equations as text
 //!    and LaTeX).
 //!
-//! `trace` finds the terms of the specification from which each value comes, for comments in emitted source.
-//! [`vectors`] computes test vectors, which the backends write next to the source.
+//! `trace` lists, for each value of a program, the terms of the specification that contribute to it; emitted source
+//! prints them in comments. [`vectors`] computes test vectors, which the backends write next to the source.
 //!
-//! [`rounding`] bounds the rounding errors of a program over ranges of its variables.
-//! [`variant`] derives the program of a model in one call and finds dependent constraints
-//! ([`independence`]). [`examination`] finds most errors of a model without its equations. [`singular_terms`]
-//! finds terms without a derivative at a point.
+//! [`rounding`] bounds the rounding errors of a program over ranges of its variables. [`variant`] derives the program
+//! of a model in one call and finds dependent constraints ([`independence`]). [`examination`] checks a model without
+//! deriving its equations and finds most errors. [`singular_terms`] finds terms that are not differentiable at a
+//! point.
 
 #[cfg(feature = "derive")]
 pub mod c;

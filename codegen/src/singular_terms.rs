@@ -1,5 +1,5 @@
-//! Terms of a model without a derivative at a point, such as `v/norm(v)` at rest. Each term is differentiated
-//! along all variables at once, energies twice, because their first derivatives are forces.
+//! Terms of a model that are not differentiable at a point, such as `v/norm(v)` at rest. Each term is differentiated
+//! along all variables at once. Energies are differentiated twice, because their first derivatives are forces.
 
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
@@ -18,11 +18,11 @@ pub struct SingularTerm {
     pub span: Span,
     /// Kind and name, such as "force `drag`".
     pub name: String,
-    /// False if the term itself is infinite or no number.
+    /// False if the value of the term is infinite or NaN.
     pub has_value: bool,
-    /// Variables by which a derivative is infinite or no number.
+    /// Variables with an infinite or NaN derivative of the term.
     pub by: Vec<Variable>,
-    /// Variables that the term depends on.
+    /// All variables that the term depends on.
     pub of: Vec<Variable>,
 }
 
@@ -116,7 +116,7 @@ struct Term {
     node: NodeId,
     span: Span,
     name: String,
-    /// Number of derivatives of the term in a Jacobian.
+    /// Number of differentiations up to the Jacobian: 2 for energies, else 1.
     derivatives: usize,
 }
 
@@ -169,7 +169,7 @@ fn variables(graph: &Graph, node: NodeId) -> Vec<Variable> {
         .collect()
 }
 
-/// Differentiates with a tangent of 1 for one variable, or for all modes of a field.
+/// Returns the derivative of a node by one variable; for a field, the sum of the derivatives by all its modes.
 fn along(graph: &mut Graph, variable: Variable, node: NodeId) -> NodeId {
     let variable = graph.variable(variable);
     let tangent = |graph: &mut Graph, leaf: NodeId| match leaf == variable {
@@ -179,7 +179,7 @@ fn along(graph: &mut Graph, variable: Variable, node: NodeId) -> NodeId {
     Direction::new(&tangent).derivative(graph, node)
 }
 
-/// Differentiates with a tangent of 1 for every variable.
+/// Returns the sum of the derivatives of a node by all variables.
 fn along_everything(graph: &mut Graph, node: NodeId) -> NodeId {
     let tangent = |graph: &mut Graph, leaf: NodeId| {
         let variables = [

@@ -1,16 +1,16 @@
 //! Hash of bytes with the same value on every computer and in every version.
 
-/// Hash by G. Fowler, L. Noll and P. Vo, 64 bits, version 1a.
+/// 64-bit FNV-1a hash (G. Fowler, L. Noll and P. Vo).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StableHash(u64);
 
 impl StableHash {
-    /// Returns the hash of no bytes.
+    /// Returns the hash of an empty sequence of bytes.
     pub const fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)
     }
 
-    /// Returns the hash of the bytes so far and these.
+    /// Returns the hash of the previous bytes followed by these bytes.
     #[must_use]
     pub fn include(self, bytes: &[u8]) -> Self {
         Self(bytes.iter().fold(self.0, |hash, byte| {
@@ -34,7 +34,7 @@ impl Default for StableHash {
 mod tests {
     use super::StableHash;
 
-    /// Values published by the authors.
+    /// Test values published by the authors.
     #[test]
     fn hashes_have_published_values() {
         for (text, hash) in [

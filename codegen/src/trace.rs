@@ -1,8 +1,9 @@
-//! Terms of the specification from which each value of a program comes.
+//! Terms of the specification that contribute to each value of a program.
 //!
-//! The contribution of each term to the equations is derived again, alone, on the graph of the equations. A node that is a
-//! part of the contribution comes from the term. A value without such a node, such as a sum of terms or a step of the
-//! solution, comes from the terms of its operands; without any, from those of the values that use it.
+//! The contribution of each term to the equations is derived again, alone, on the graph of the equations. Each node
+//! of this contribution is attributed to the term. A value without an attributed node, such as a sum of terms or a
+//! step of the solution, gets the terms of its operands. If the operands have no terms, it gets the terms of the
+//! values that use it.
 
 use eomgen_model_spec::model::Model;
 
@@ -14,7 +15,7 @@ use crate::program::units::{ValueUnit, infer_units};
 use crate::program::{Op, Program, Trace, TraceTerm, ValueId, ValueTrace};
 use crate::symbolic::graph::NodeId;
 
-/// Set of terms by their indices.
+/// Set of term indices, one bit for each term.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Terms(Vec<u64>);
 
@@ -113,8 +114,9 @@ fn term_of(part: Contribution) -> TraceTerm {
     }
 }
 
-/// Gives values without terms those of their operands, else those of their users. Of products of parameters, which several
-/// terms can contain, a product has the terms that all of them have, if there are any.
+/// Assigns terms to the values that have none: the terms of their operands, else the terms of the values that use
+/// them. Several terms can share a parameter or a product of parameters. Therefore a product of such factors gets
+/// only the terms that all its factors have in common, if there are any.
 fn spread_terms(program: &Program, mut found: Vec<Terms>) -> Vec<Terms> {
     // True for values of the solution, which depend on all terms of their operands.
     let mut is_combined = vec![false; found.len()];
@@ -126,7 +128,7 @@ fn spread_terms(program: &Program, mut found: Vec<Terms>) -> Vec<Terms> {
         let is_sum = matches!(value.op, Op::Add(..) | Op::Subtract(..) | Op::Negate(_));
         let of_kind = |is_parameter: bool| -> Vec<ValueId> {
             let is_wanted = |id: &ValueId| match &program.value(*id).op {
-                // A summand can be a force.
+                // A leaf as a summand can be a force.
                 Op::Parameter(_) | Op::Input(_) | Op::State(_) if is_sum => true,
                 Op::Parameter(_) => is_parameter,
                 op => !is_parameter && !op.operands().is_empty(),
@@ -173,12 +175,12 @@ fn spread_terms(program: &Program, mut found: Vec<Terms>) -> Vec<Terms> {
     found
 }
 
-/// Line of an emitted file that defines a value, or a field of the coefficients.
+/// Line of an emitted file that defines a value or a field of `Coefficients`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TracedLine {
     /// Number of the line, from 1.
     pub line: usize,
-    /// Function, or `coefficients` for a field.
+    /// Name of the function that contains the line, or `coefficients` for a field.
     pub function: String,
     /// Name of the value.
     pub name: String,
@@ -188,7 +190,7 @@ pub struct TracedLine {
     pub terms: Vec<String>,
 }
 
-/// Finds the lines of an emitted file, Rust or C, with the origin of a value in the comment before them.
+/// Finds the lines of an emitted Rust or C file that are preceded by a comment with the terms of a value.
 pub fn traced_lines(source: &str, trace: &Trace) -> Vec<TracedLine> {
     let mut found = Vec::new();
     let mut function = String::new();
@@ -208,7 +210,7 @@ pub fn traced_lines(source: &str, trace: &Trace) -> Vec<TracedLine> {
         if let (Some(comment), Some(name)) = (note.take(), defined_name(text))
             && let Some((unit, terms)) = read_note(comment, trace)
         {
-            // Only the coefficients have formulas; parameters and inputs have units without one.
+            // Comments of coefficients have a formula; comments of parameters and inputs have only a unit.
             let is_coefficient = comment.starts_with('`');
             if function.is_empty() && !is_coefficient {
                 continue;
@@ -271,7 +273,7 @@ fn defined_name(line: &str) -> Option<&str> {
     (!name.is_empty() && is_words(name) && words.contains(' ')).then_some(name)
 }
 
-/// Reads unit and terms at the end of a comment.
+/// Reads the unit and the terms at the end of a comment.
 fn read_note(comment: &str, trace: &Trace) -> Option<(Option<String>, Vec<String>)> {
     // The formula of a coefficient precedes its note.
     let note = comment.rsplit("` ").next()?;

@@ -39,9 +39,9 @@ impl Variant {
     /// Derives `model`; `orders` has one truncation order for each field.
     ///
     /// # Errors
-    /// Inadmissible parameter values, expressions that cannot be derived, constraints that contradict each
-    /// other or that no state satisfies, and coordinates without inertia at the initial state, each with its
-    /// place in the specification.
+    /// Inadmissible parameter values, expressions that cannot be derived, constraints that contradict each other or
+    /// that no state satisfies, and coordinates without inertia at the initial state, each with its location in the
+    /// specification.
     pub fn derive(model: &Model, orders: &[usize]) -> Result<Self, Diagnostics> {
         Self::derive_with(model, orders, &[])
     }
@@ -84,7 +84,8 @@ impl Variant {
         })
     }
 
-    /// Derives `model` with outputs, with the origin of all values for the comments of emitted files.
+    /// Derives `model` with outputs and with the terms that contribute to each value, for the comments of emitted
+    /// files.
     ///
     /// # Errors
     /// The errors of [`Variant::derive_with`].
@@ -98,8 +99,8 @@ impl Variant {
         Ok(variant)
     }
 
-    /// Finds the terms of `model`, from which this variant was derived, for each value of the program. Emitted source
-    /// then has them in comments.
+    /// Finds, for each value of the program, the terms of the specification that contribute to it. Emitted source
+    /// then lists them in comments. `model` must be the model of this variant.
     pub fn add_trace(&mut self, model: &Model) {
         let values = self.values.iter().copied();
         self.program.trace = trace_program(model, &self.equations, &self.program, values);
@@ -146,8 +147,8 @@ pub fn examine(model: &Model, orders: &[usize]) -> Result<Redundancy, Diagnostic
     }
 }
 
-/// Checks the model by its equations of motion, without impacts: the rate changes by impacts grow with the
-/// square of their number and cause no error.
+/// Checks the model by its equations of motion, without impacts. The number of derived rate changes by impacts grows
+/// with the square of the number of impacts, and they cause no error.
 fn examine_by_equations(model: &Model, orders: &[usize]) -> Result<Redundancy, Diagnostics> {
     let translated = translate_impacts(&mut Translator::new(model, orders));
     let found =
@@ -221,7 +222,7 @@ pub fn lower_for_gradients(model: &Model, equations: &Equations) -> Result<Progr
     lower_separated(model, &equations, sides, outputs)
 }
 
-/// Returns the equations with the sides of all surfaces as inputs.
+/// Returns the equations with the sides of all switching surfaces as inputs.
 fn separate_sides(equations: &Equations) -> (Equations, SideInputs) {
     let with_sides = |may_hold: bool| {
         let mut equations = equations.clone();
@@ -254,7 +255,7 @@ fn lower_separated(
     Ok(program)
 }
 
-/// Derives outputs, with the place of a term that cannot be differentiated.
+/// Derives outputs. An error contains the location of the term that cannot be differentiated.
 fn differentiate(
     model: &Model,
     equations: &mut Equations,
@@ -273,9 +274,9 @@ fn differentiate(
     })
 }
 
-/// Lowers the momenta and the energy of `equations` at corners of the motion. The sides of the surfaces are
-/// additional inputs, after those of the model; see [`corners`](crate::mechanics::corners). Returns None if no
-/// momenta can jump.
+/// Lowers `equations` to a program that computes the momenta and the energy at corners of the motion. The sides of
+/// the surfaces are additional inputs, after those of the model; see [`corners`](crate::mechanics::corners). Returns
+/// None if no momenta can jump.
 ///
 /// # Errors
 /// Parameter values that are not admissible.
@@ -302,7 +303,7 @@ pub fn lower_corners(
     Ok(Some(program))
 }
 
-/// Returns the values of all parameters, SI.
+/// Returns the values of all parameters in SI units.
 fn parameter_values(model: &Model) -> Result<Vec<f64>, Diagnostics> {
     model
         .parameter_values()

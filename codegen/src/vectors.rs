@@ -1,5 +1,5 @@
-//! Test vectors of a program: states with the bits of all outputs, and the coefficients of the default parameters.
-//! The backends write them next to the emitted source, with a function that compares a target with them.
+//! Test vectors of a program: states with all outputs as bit patterns, and the coefficients of the default
+//! parameters. The backends write them next to the emitted source, with a function that compares a target with them.
 
 use crate::program::evaluator::{Evaluator, Point};
 use crate::program::{Extent, Program, ValueId};
@@ -32,7 +32,7 @@ impl Given {
     }
 }
 
-/// Call with its results.
+/// Arguments of a call and the expected results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestVector {
     /// Arguments.
@@ -48,7 +48,7 @@ impl TestVector {
     }
 }
 
-/// Test vectors in both precisions. The numbers of single precision are exact in `f32`.
+/// Test vectors in both precisions. All single-precision numbers are exactly representable in `f32`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TestVectors {
     /// Double precision.
@@ -58,7 +58,7 @@ pub struct TestVectors {
 }
 
 impl TestVectors {
-    /// Computes all outputs of `program` at each of the calls. Calls with results that are not finite are left out.
+    /// Computes all outputs of `program` for each call. Calls with a result that is not finite are left out.
     pub fn new(program: &Program, calls: &[Given]) -> Self {
         let vectors = |evaluator: &mut Evaluator, calls: Vec<Given>| {
             let calls = calls.into_iter();
@@ -105,9 +105,9 @@ fn results(evaluator: &mut Evaluator, given: &Given) -> Vec<f64> {
     .concat()
 }
 
-/// Coefficients of the default parameters as literals.
+/// Coefficients of the default parameters, as literals of the target language.
 pub(crate) struct DefaultCoefficients {
-    /// Names of the fields with their literals, in the order of the file.
+    /// Names of the fields with their literals, in the order of the emitted file.
     pub fields: Vec<(String, String)>,
     /// True if the mass matrix is positive definite.
     pub is_definite: bool,

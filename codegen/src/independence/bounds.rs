@@ -6,8 +6,8 @@ use eomgen_model_spec::model::{Constraint, Model};
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
-/// Rejects a constraint whose expression has one sign at all states, times and inputs. `residuals` are the
-/// expressions; `parameters` are all parameters of the model in SI units.
+/// Rejects constraints whose expression has the same sign at all states, times and inputs. `residuals` are the
+/// expressions; `parameters` are the values of all parameters in SI units.
 ///
 /// # Errors
 /// The first such constraint, with the bound of its expression.

@@ -1,6 +1,6 @@
-//! Constraints that depend on each other at every state that satisfies them. The accelerations of such a model are
-//! determined, its multipliers are not. Several states are tested, because at a singular position more constraints
-//! depend on each other. Constraints that contradict each other or have no effect are rejected.
+//! Constraints that depend on each other at every state that satisfies them. Such a model has unique accelerations,
+//! but its multipliers are not unique. Several states are tested, because additional constraints depend on each other
+//! at a singular position. Constraints that contradict each other or have no effect are rejected.
 
 use std::collections::BTreeSet;
 
@@ -15,11 +15,11 @@ use super::rows::positive_or_one;
 use super::vectors::norm;
 use crate::mechanics::redundancy::{DependentGroup, Redundancy};
 
-/// Largest remainder of a dependent row, relative to the row's largest length. The projection reaches a state
-/// to about 1e-6.
+/// Largest remainder of a dependent row, relative to the row's largest length. The projection onto the constraints is
+/// accurate to about 1e-6.
 const MAX_DEPENDENT_REMAINDER: f64 = 1e-5;
 
-/// Smallest change of the scaled rows from the initial state to the start of another projection.
+/// Smallest change of the scaled rows between the initial state and the start of another projection.
 const MIN_ROW_CHANGE: f64 = 0.1;
 
 /// Smallest relative change of a coordinate; smaller ones are hidden by rounding.
@@ -28,7 +28,8 @@ const MIN_RELATIVE_MOVE: f64 = 1e-2;
 /// Number of states tested in addition to the initial one.
 const OTHER_STATES: u64 = 4;
 
-/// First distance from the initial state, in the metric of the inertias; each next one is four times larger.
+/// First distance from the initial state, in the metric of the inertias; each following distance is four times
+/// larger.
 const FIRST_MOVE: f64 = 1e-12;
 const MOVE_COUNT: i32 = 40;
 
@@ -48,7 +49,7 @@ const MAX_ROUNDING_RESIDUAL: f64 = 1e-6;
 ///
 /// # Errors
 /// Constraints without effect, constraints that contradict each other, and constraints on rates that depend on
-/// constraints on coordinates, with the places of the others; initial values that are not finite.
+/// constraints on coordinates, with the locations of the other constraints; initial values that are not finite.
 pub(crate) fn find_redundancy(
     model: &Model,
     orders: &[usize],
@@ -95,9 +96,9 @@ struct Search<'s> {
     rows: &'s mut dyn ConstraintGeometry,
     inputs: &'s [f64],
     holonomic: Vec<usize>,
-    /// Largest length of each row so far.
+    /// Largest length of each row at the states tested so far.
     scales: Vec<f64>,
-    /// Largest initial residual of each constraint so far.
+    /// Largest residual of each constraint at the starts of the projections so far.
     largest: Vec<f64>,
 }
 
@@ -110,13 +111,13 @@ struct Dependence {
 
 #[derive(Clone)]
 struct Combination {
-    /// Factors of the scaled rows.
+    /// Factor of each scaled row.
     parts: Vec<f64>,
     factors: Vec<f64>,
 }
 
 impl Search<'_> {
-    /// Returns the dependent combinations of constraints near `from`.
+    /// Finds the dependent combinations of constraints at the projection of `from`.
     fn dependence(&mut self, from: &[f64]) -> Dependence {
         let inputs = self.inputs;
         let at = |state| Place { state, inputs };
@@ -144,7 +145,7 @@ impl Search<'_> {
         }
     }
 
-    /// Returns the norm of the remaining residuals, divided by the largest lengths of the rows so far.
+    /// Returns the norm of the residuals after the projection, each divided by the largest length of its row so far.
     fn size(&self, found: &Dependence) -> f64 {
         let scaled = found.residuals.iter().zip(&self.scales);
         let scaled: Vec<f64> = scaled
@@ -193,7 +194,7 @@ impl Search<'_> {
     }
 }
 
-/// Returns a pseudorandom number between -1 and 1 (splitmix64).
+/// Returns element `index` of a pseudorandom sequence between -1 and 1 (splitmix64).
 fn symmetric(seed: u64, place: u64) -> f64 {
     let mut bits = (seed << 32 | place)
         .wrapping_add(1)
@@ -212,7 +213,7 @@ impl Dependence {
         all.into_iter().collect()
     }
 
-    /// Returns the groups of dependent constraints. `began` are the largest initial residuals.
+    /// Returns the groups of dependent constraints. `initial_residuals` are the largest initial residuals.
     fn find_groups(&self, model: &Model, began: &[f64]) -> Result<Vec<DependentGroup>, Diagnostic> {
         let mut groups: Vec<DependentGroup> = Vec::new();
         for combination in &self.combinations {
@@ -243,7 +244,7 @@ impl Dependence {
         Ok(groups)
     }
 
-    /// Returns the error of a combination of these constraints, if they are no redundant ones.
+    /// Returns the error for a dependent combination of constraints; `None` if the constraints are redundant.
     fn error(
         &self,
         model: &Model,
@@ -277,8 +278,9 @@ impl Dependence {
         }))
     }
 
-    /// Returns the residual of a combination in the unit of its last constraint if the constraints contradict each
-    /// other, that is, if the residual is no sum of vanishing residuals.
+    /// Returns the residual of a combination, in the unit of its last constraint, if the constraints contradict each
+    /// other. They contradict each other if the residual of the combination exceeds rounding and the fraction
+    /// [`MIN_RELATIVE_RESIDUAL`] of its largest contribution.
     fn combined_residual(
         &self,
         combination: &Combination,

@@ -9,8 +9,8 @@ use crate::program::Program;
 use crate::program::lowering::lower_with_outputs;
 use crate::symbolic::graph::{NodeId, Space};
 
-/// Returns the program whose Jacobian holds the constraint derivatives, or `None` for a model without
-/// constraints. `parameters` are those of the specification, in SI units.
+/// Returns the program whose Jacobian holds the constraint derivatives, or `None` for a model without constraints.
+/// `parameters` are the values of the specification in SI units.
 pub fn constraint_program(
     model: &Model,
     equations: &Equations,

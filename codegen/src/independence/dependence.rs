@@ -19,26 +19,28 @@ impl Remainder {
     }
 }
 
-/// Returns the factors of a combination of `rows` no longer than `tolerance`, or `None` if the rows are
-/// independent. Rows must have lengths of about 1; one row of the combination has a factor of about 1.
+/// Returns the factors of a linear combination of `rows` with a norm of at most `tolerance`; `None` if the rows are
+/// independent. Rows must have norms of about 1; one row of the combination has a factor of about 1.
 pub fn dependent_combination(rows: &[Vec<f64>], tolerance: f64) -> Option<Vec<f64>> {
     dependent_combinations(rows, tolerance).pop()
 }
 
-/// Returns the factors of all independent combinations of `rows` no longer than `tolerance`, by the last row of each.
-/// Rows must have lengths of about 1; one row of each combination has a factor of about 1, and no other contains it.
+/// Returns the factors of all independent combinations of `rows` with a norm of at most `tolerance`, ordered by their
+/// last rows. Rows must have norms of about 1. Each combination has one row that no other combination contains; its
+/// factor is about 1.
 pub fn dependent_combinations(rows: &[Vec<f64>], tolerance: f64) -> Vec<Vec<f64>> {
     let found = remainders(rows, tolerance).into_iter();
     found.map(|(_, rest)| rest.parts).collect()
 }
 
-/// Returns the indices of rows that depend on the others, ascending; the others are independent.
+/// Returns the indices of the rows that depend linearly on the remaining rows, ascending; the remaining rows are
+/// independent.
 pub fn dependent_rows(rows: &[Vec<f64>], tolerance: f64) -> Vec<usize> {
     let found = remainders(rows, tolerance).into_iter();
     found.map(|(place, _)| place).collect()
 }
 
-/// Returns the rows whose remainders are no longer than `tolerance`, with their places, ascending.
+/// Returns the remainders with a norm of at most `tolerance`, each with the index of its row, ascending.
 fn remainders(rows: &[Vec<f64>], tolerance: f64) -> Vec<(usize, Remainder)> {
     let unit = |place: usize| {
         (0..rows.len())
@@ -76,7 +78,7 @@ fn remainders(rows: &[Vec<f64>], tolerance: f64) -> Vec<(usize, Remainder)> {
         for _ in 0..2 {
             for (_, rest) in &mut rests {
                 let along = dot(&rest.vector, &chosen.vector);
-                // Constraints of different bodies share no coordinate.
+                // Rows of constraints on different bodies are orthogonal, because they share no coordinate.
                 if along != 0.0 {
                     rest.subtract(along, &chosen);
                 }

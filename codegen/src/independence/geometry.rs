@@ -1,4 +1,4 @@
-//! Geometry of constraints at a state, by a program or by graph nodes.
+//! Constraint derivatives, inertias and residuals at a state, computed by a program or from graph nodes.
 
 use crate::independence::rows::ConstraintRows;
 use crate::program::evaluator::Point;

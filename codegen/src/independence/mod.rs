@@ -1,8 +1,10 @@
-//! Constraints that depend on each other, and rejection of those that have no effect or that no state satisfies.
+//! Search for constraints that depend on each other, and rejection of constraints that have no effect or that no
+//! state satisfies.
 //!
-//! `rows` evaluates the constraint derivatives with the program of `constraint_program`, `nodes` with graph nodes, both scaled to one
-//! unit and with the interface of `geometry`. `dependence` finds dependent rows, `projection` finds states that satisfy the constraints, `check`
-//! finds dependent constraints, and `bounds` rejects constraints that are never zero.
+//! `rows` evaluates the constraint derivatives with the program of `constraint_program`, `nodes` from graph nodes.
+//! Both scale all entries of a row to one unit and implement the trait of `geometry`. `dependence` finds dependent
+//! rows, `projection` finds states that satisfy the constraints, `check` finds dependent constraints, and `bounds`
+//! rejects constraints that are never zero.
 
 #[cfg(feature = "derive")]
 pub(crate) mod bounds;

@@ -13,14 +13,14 @@ pub(crate) struct NodeGeometry<'u> {
     model: &'u Unsolved,
     parameters: Vec<f64>,
     coordinates: usize,
-    /// Derivatives and residuals, operands first.
+    /// Nodes of the derivatives and residuals, operands first.
     constraints: Vec<NodeId>,
-    /// Kinetic energy, operands first.
+    /// Nodes of the kinetic energy, operands first.
     energy: Vec<NodeId>,
 }
 
 impl<'u> NodeGeometry<'u> {
-    /// `coordinates` is the number of coordinates; `parameters` are in SI units.
+    /// Prepares the evaluation; `coordinates` is the number of coordinates, and `parameters` are in SI units.
     pub(crate) fn new(model: &'u Unsolved, coordinates: usize, parameters: Vec<f64>) -> Self {
         let all = model.constraints.iter();
         let roots: Vec<NodeId> = all
@@ -36,7 +36,7 @@ impl<'u> NodeGeometry<'u> {
         }
     }
 
-    /// Returns the values of `nodes`, indexed by node; all NaN if a value is missing.
+    /// Returns the values of `nodes`, indexed by node; all are NaN if one cannot be computed.
     fn values(&self, nodes: &[NodeId], point: Point<'_>) -> Vec<f64> {
         let at = NodePoint {
             parameters: &self.parameters,

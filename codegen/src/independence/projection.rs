@@ -1,5 +1,5 @@
-//! Projection of a state onto the holonomic constraints by least squares, in the metric of the coordinates'
-//! inertias. Damping suppresses the directions in which constraints depend on each other.
+//! Projection of a state onto the holonomic constraints by least squares, in the metric of the coordinates' inertias.
+//! Damping suppresses steps in directions in which constraints depend on each other.
 
 use super::geometry::ConstraintGeometry;
 use super::vectors::{dot, norm};
@@ -8,25 +8,26 @@ use crate::program::evaluator::Point;
 /// Largest number of Newton steps. If rows depend on each other, a step only halves the residuals.
 const MAX_NEWTON_STEPS: usize = 60;
 
-/// Largest number of steps to a minimum of the residuals.
+/// Largest number of damped steps towards a minimum of the residuals.
 const MAX_STEPS: usize = 200;
 
-/// Residuals below this fraction of the initial ones are zero; Newton's method halves them in each step if rows
-/// depend on each other.
+/// Residuals below this fraction of the initial residuals count as zero. If rows depend on each other, each Newton
+/// step only halves the residuals.
 const MAX_SOLVED_RESIDUAL: f64 = 1e-6;
 
-/// Least damping, added to the diagonal of R R^T: directions with scaled rows shorter than its square root do not move.
+/// Smallest damping, added to the diagonal of R R^T. It suppresses steps along directions in which the scaled rows
+/// are shorter than its square root.
 const MIN_DAMPING: f64 = 1e-12;
 
-/// Factor on the damping after a poor step, and its inverse after a good one.
+/// Factor by which the damping grows after a poor step and falls after a good step.
 const DAMPING_FACTOR: f64 = 10.0;
 
-/// Reductions of the squared residuals, relative to the expected ones, above which a step is good and below which it
-/// is poor.
+/// A step is good if the squared residuals fall by more than this fraction of the expected reduction, and poor below
+/// [`POOR_REDUCTION`].
 const GOOD_REDUCTION: f64 = 0.75;
 const POOR_REDUCTION: f64 = 0.25;
 
-/// Damping at which a step has no effect.
+/// Damping above which a step has no effect.
 const MAX_DAMPING: f64 = 1e12;
 
 /// State and inputs at which constraints are evaluated.
@@ -46,9 +47,9 @@ impl<'p> Place<'p> {
     }
 }
 
-/// Returns the state near `place` with the smallest residuals of the constraints at `holonomic`; `scales` are
-/// the lengths of their rows. Newton's method finds farther solutions than steps that must reduce the residuals, but
-/// no minimum that is not zero.
+/// Returns the state near `start` with the smallest residuals of the constraints with indices `holonomic`; `scales`
+/// are the lengths of their rows. Newton's method reaches more distant solutions than damped steps, but it finds no
+/// minimum with nonzero residuals.
 pub(super) fn project(
     rows: &mut dyn ConstraintGeometry,
     place: Place<'_>,
@@ -87,7 +88,7 @@ struct Directions {
 }
 
 impl Projection<'_> {
-    /// Newton's method, for dependent rows with the least damping.
+    /// Applies Newton's method; the smallest damping makes dependent rows solvable.
     fn solve(&mut self, from: &[f64]) -> Vec<f64> {
         let mut state = from.to_vec();
         for _ in 0..MAX_NEWTON_STEPS {
@@ -105,7 +106,8 @@ impl Projection<'_> {
         state
     }
 
-    /// The damping follows the ratio of the reduction of the squared residuals to that of their linearisation.
+    /// Minimises the residuals by damped steps (Levenberg-Marquardt). The damping depends on the ratio of the
+    /// reduction of the squared residuals to the reduction predicted by the linearised constraints.
     ///
     /// D. W. Marquardt, "An algorithm for least-squares estimation of nonlinear parameters", J. Soc. Ind. Appl.
     /// Math. 11 (1963) 431-441.
@@ -123,7 +125,7 @@ impl Projection<'_> {
                 let after = self.residuals(&moved);
                 if norm(&after) < norm(&residuals) {
                     let reduction = norm(&residuals).powi(2) - norm(&after).powi(2);
-                    // The linearised residuals after the step are the damping times the factors.
+                    // The linearised residuals after the step equal the damping times the factors.
                     let expected = norm(&residuals).powi(2) - (damping * norm(&factors)).powi(2);
                     if reduction > GOOD_REDUCTION * expected {
                         damping = MIN_DAMPING.max(damping / DAMPING_FACTOR);
@@ -197,7 +199,7 @@ fn solve(rows: &[Vec<f64>], mut right: Vec<f64>, damping: f64) -> Option<Vec<f64
                 return None;
             }
             lower[row][column] = match row == column {
-                // Rounding can make the pivot smaller than the damping.
+                // Exact pivots are at least the damping; rounding can make them smaller.
                 true => rest.max(damping).sqrt(),
                 false => rest / lower[column][column],
             };

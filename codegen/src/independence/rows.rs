@@ -28,7 +28,7 @@ impl ConstraintRows {
         self.evaluator.prepare(parameters);
     }
 
-    /// Returns the number of coordinates and modes: the columns of A.
+    /// Returns the number of coordinates and modes, which is the number of columns of A.
     pub fn degrees_of_freedom(&self) -> usize {
         self.evaluator.program().degrees_of_freedom()
     }
@@ -62,7 +62,7 @@ impl ConstraintRows {
         rows
     }
 
-    /// Returns the sum of |A_kj| s_j of each row k for sizes s of the coordinates, SI.
+    /// Returns the sum over j of |A_kj| s_j for each row k, with the magnitudes s_j of the coordinates, in SI units.
     pub fn weighted_lengths(&mut self, point: Point<'_>, sizes: &[f64]) -> Vec<f64> {
         let weighted = |row: Vec<f64>| {
             let entries = row.iter().zip(sizes);
@@ -71,7 +71,7 @@ impl ConstraintRows {
         self.derivatives(point).into_iter().map(weighted).collect()
     }
 
-    /// Returns the mass matrix, row by row, SI.
+    /// Returns the mass matrix row by row, in SI units.
     pub fn mass_matrix(&mut self, point: Point<'_>) -> Vec<f64> {
         let degrees = self.degrees_of_freedom();
         let mut mass = vec![0.0; degrees * degrees];

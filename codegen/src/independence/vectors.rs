@@ -10,7 +10,7 @@ pub fn norm(vector: &[f64]) -> f64 {
     dot(vector, vector).sqrt()
 }
 
-/// Returns the largest magnitude; 0 without entries.
+/// Returns the largest magnitude of the entries, or 0 if there are none.
 pub fn max_magnitude<'e>(entries: impl IntoIterator<Item = &'e f64>) -> f64 {
     let magnitudes = entries.into_iter().map(|entry| entry.abs());
     magnitudes.fold(0.0, f64::max)

@@ -1,6 +1,6 @@
-//! Named coefficients of a specification, for example a_01 to a_78 of Eq. (22): the factors of given
-//! quantities in the accelerations. They are derivatives of the derived accelerations and therefore agree
-//! with them.
+//! Named coefficients of a specification, for example a_01 to a_78 of Eq. (22): the factors of given quantities in
+//! the accelerations. They are computed as derivatives of the derived accelerations, and are therefore consistent
+//! with these.
 
 use std::collections::HashMap;
 
@@ -22,18 +22,18 @@ pub struct NamedCoefficient {
     pub name: String,
     /// Value: a scalar, or a vector over the modes.
     pub value: NodeId,
-    /// Place in the equations, for a factor.
+    /// Position in the equations of motion, if the coefficient is a factor.
     pub factor: Option<Factor>,
 }
 
-/// Place of a named factor: `times` the acceleration of `row` contains the factor times `by`.
+/// Position of a named factor: the product of `times` and the acceleration of `row` contains the factor times `by`.
 #[derive(Clone, Copy, Debug)]
 pub struct Factor {
     /// Row of the equations.
     pub row: EquationRow,
     /// Quantity that the factor multiplies.
     pub by: NodeId,
-    /// Multiplier of the row, if there is one.
+    /// Quantity that multiplies the row, if there is one.
     pub times: Option<NodeId>,
 }
 
@@ -134,8 +134,8 @@ fn scale_factor(graph: &mut Graph, times: NodeId, factor: NodeId) -> NodeId {
     }
 }
 
-/// Returns the factor of `by` in a row: its derivative by every factor of `by`, with the motion and all other
-/// switching functions at 0. For `by` = 1, returns the row under these conditions.
+/// Returns the factor of `by` in a row: the derivative of the row by all factors of `by`, with coordinates, rates and
+/// all other piecewise functions set to 0. If `by` is 1, returns the row with these zeros.
 fn factor_of(graph: &mut Graph, row: NodeId, by: NodeId) -> NodeId {
     if let Operation::ModeCoordinates(_) | Operation::ModeRates(_) = graph.operation(by) {
         let at_rest = evaluate_at_rest_except(graph, row, &[by]);
@@ -167,7 +167,7 @@ fn derive_by_modes(graph: &mut Graph, row: NodeId, variable: NodeId) -> NodeId {
     }
 }
 
-/// Sets every coordinate, rate and switching function to 0, except those in `kept`.
+/// Sets every coordinate, rate and piecewise function to 0, except the nodes in `kept`.
 fn evaluate_at_rest_except(graph: &mut Graph, id: NodeId, kept: &[NodeId]) -> NodeId {
     let replacement = |graph: &mut Graph, node: NodeId| {
         if kept.contains(&node) || graph.dependence(node).is_parameter_only() {

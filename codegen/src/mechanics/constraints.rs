@@ -1,5 +1,5 @@
-//! Constraints, differentiated until accelerations appear. With the multipliers lambda the constraint forces
-//! are A^T lambda, and the accelerations satisfy
+//! Constraints, differentiated by time until accelerations appear. The constraint forces are A^T lambda with the
+//! multipliers lambda, and the accelerations satisfy
 //!
 //! ```text
 //! M a + c = f + A^T lambda,    A a = b
@@ -10,9 +10,9 @@
 //! Nonholonomic, h(q, q', t) = 0 and linear in the rates: A = dh/dq', b = -(h' without accelerations) - 2 w
 //! h.
 //!
-//! The terms with w vanish with the residuals; nonzero residuals decay at the rate w (J. Baumgarte,
-//! Stabilization of constraints and integrals of motion in dynamical systems, Comp. Meth. Appl. Mech. Eng. 1,
-//! 1972), the parameter `stabilisation_rate`. `solve` solves the system; see [`Redundancy`] for dependent rows of A.
+//! The terms with w are zero if the constraints are satisfied; nonzero residuals decay at the rate w (J. Baumgarte,
+//! Stabilization of constraints and integrals of motion in dynamical systems, Comp. Meth. Appl. Mech. Eng. 1, 1972),
+//! the parameter `stabilisation_rate`. `solve` solves the system; see [`Redundancy`] for dependent rows of A.
 
 use eomgen_model_spec::ids::{ConstraintId, ParameterId};
 use eomgen_model_spec::model::{Constraint, STABILISATION_RATE};
@@ -32,7 +32,7 @@ pub(crate) struct Constraints {
     pub right: Vec<NodeId>,
     /// Residuals.
     pub residuals: Vec<NodeId>,
-    /// Dependent rows.
+    /// Constraints whose rows depend on each other.
     pub redundancy: Redundancy,
 }
 

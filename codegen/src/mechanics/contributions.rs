@@ -6,10 +6,10 @@ use crate::mechanics::equations::Equations;
 use crate::mechanics::lagrange::{GradientBy, Variables};
 use crate::symbolic::graph::{Graph, NodeId};
 
-/// Largest number of coordinates of a model without fields for which the mass matrix of each term is derived.
+/// Largest number of coordinates for which the mass matrix of each term is derived (models without fields).
 const MAX_COORDINATES: usize = 12;
 
-/// Term with the nodes of its contribution.
+/// Contribution of one term of the specification.
 pub(crate) struct Contribution {
     /// Section of the specification, or `guards`.
     pub(crate) section: &'static str,
@@ -68,7 +68,7 @@ pub(crate) fn derive_contributions(
     found
 }
 
-/// Returns the nodes of momenta, mass matrix and velocity terms of one kinetic energy.
+/// Derives the momenta, mass matrix and velocity terms of one kinetic energy and returns their nodes.
 fn kinetic_nodes(graph: &mut Graph, variables: &Variables, kinetic: NodeId) -> Vec<NodeId> {
     let momenta = variables.gradient(graph, kinetic, GradientBy::Rates);
     let mut nodes = momenta.nodes();
@@ -83,7 +83,7 @@ fn kinetic_nodes(graph: &mut Graph, variables: &Variables, kinetic: NodeId) -> V
     nodes
 }
 
-/// Returns the nodes of the observables.
+/// Returns the contribution of each observable.
 pub(crate) fn observable_contributions<'e>(
     model: &'e Model,
     equations: &'e Equations,

@@ -1,7 +1,7 @@
-//! Corners of a motion, where the Lagrangian L = T - V jumps across a surface g(q, t) = 0: equations with the
-//! sides of such surfaces as inputs.
+//! Corners of a motion: the motion crosses a surface g(q, t) = 0 at which the Lagrangian L = T - V jumps. The sides
+//! of such surfaces become inputs of the equations.
 //!
-//! Position and time are continuous there. The corner conditions of Weierstrass and Erdmann give the rates
+//! The coordinates are continuous at a corner. The Weierstrass-Erdmann corner conditions determine the rates after it
 //! (G. Erdmann, Ueber unstetige Loesungen in der Variationsrechnung, J. reine angew. Math. 82, 1877):
 //!
 //! ```text
@@ -26,7 +26,7 @@ use crate::mechanics::translate::along_motion;
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape};
 use crate::symbolic::substitute::substitute;
 
-/// Returns true if momenta or rates of constraints can jump: at a surface, or with an input.
+/// Returns true if momenta or the rates of constraints can jump, at a surface or because an input jumps.
 pub fn has_jumping_momenta(equations: &Equations) -> bool {
     let graph = &equations.graph;
     let depends = |node: &NodeId| graph.dependence(*node).has(Dependence::INPUT);
@@ -36,8 +36,9 @@ pub fn has_jumping_momenta(equations: &Equations) -> bool {
     !equations.corners.is_empty() || is_quadratic && energies.any(depends)
 }
 
-/// Makes the sides of the surfaces of corners inputs, after those of the model, in the order of
-/// [`Equations::corners`], and returns the quantities at corners. Mass matrix and energies take the sides.
+/// Adds the sides of the corner surfaces as inputs after the inputs of the model, in the order of
+/// [`Equations::corners`]. Mass matrix and energies then depend on these sides. Returns the quantities that determine
+/// the rates after a corner.
 pub(crate) fn add_corner_sides(
     model: &Model,
     orders: &[usize],
@@ -100,7 +101,7 @@ fn replace(graph: &mut Graph, node: NodeId, known: &mut HashMap<NodeId, NodeId>)
     substitute(graph, node, &|_, _| None, known)
 }
 
-/// Returns the index of each guard among all guard values.
+/// Returns, for each guard, the index of its first element among all guard values.
 fn guard_places(equations: &Equations) -> Vec<usize> {
     let graph = &equations.graph;
     let mut next = 0;

@@ -1,8 +1,8 @@
 //! Unit vectors v/norm(v) of sliding velocities, as in vector Coulomb friction.
 //!
-//! At v = 0 the unit vector is set-valued: any vector s with |s| <= 1 (J. J. Moreau). A disc is a vector v of
-//! functions of the rates whose norm divides components of v. The components of s replace v/norm(v) in the
-//! equations, as sides replace signs.
+//! At v = 0 the unit vector is set-valued: it is the disc of all vectors s with |s| <= 1 (J. J. Moreau). A [`Disc`]
+//! is a vector v of functions of the rates whose components are divided by norm(v) in the equations. The components
+//! of s replace v/norm(v) in the equations; the sides of switching surfaces replace signs in the same way.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -14,13 +14,13 @@ use crate::symbolic::substitute::substitute;
 
 /// Vector v whose unit vector occurs in the equations.
 pub(crate) struct Disc {
-    /// Node norm(v).
+    /// Node of norm(v).
     norm: NodeId,
     /// Components of v.
     pub components: Vec<NodeId>,
 }
 
-/// Returns true if a product in the nodes that `roots` use has the reciprocal of a root that depends on speeds.
+/// Returns true if an expression in `roots` divides by a square root that depends on rates.
 pub(crate) fn divides_by_speed(graph: &Graph, roots: &[NodeId]) -> bool {
     let moves = Dependence::RATE.join(Dependence::STATE);
     graph.reachable(roots).into_iter().any(|id| {
@@ -34,7 +34,7 @@ pub(crate) fn divides_by_speed(graph: &Graph, roots: &[NodeId]) -> bool {
     })
 }
 
-/// Returns the discs of the nodes that `roots` use.
+/// Finds the discs in the expressions of `roots`.
 pub(crate) fn find_discs(graph: &mut Graph, roots: &[NodeId]) -> Vec<Disc> {
     let mut found: Vec<Disc> = Vec::new();
     for id in graph.reachable(roots) {
@@ -50,7 +50,7 @@ pub(crate) fn find_discs(graph: &mut Graph, roots: &[NodeId]) -> Vec<Disc> {
     found
 }
 
-/// Returns the disc of a square root of a sum of squares of speeds.
+/// Returns the disc of a norm: the square root of a sum of squares of velocities.
 fn disc_of_norm(graph: &mut Graph, norm: NodeId) -> Option<Disc> {
     let Operation::Call(Function::Sqrt, Arguments::One([sum])) = *graph.operation(norm) else {
         return None;
@@ -79,8 +79,8 @@ fn disc_of_norm(graph: &mut Graph, norm: NodeId) -> Option<Disc> {
 }
 
 impl Disc {
-    /// Replaces the unit vector by these components in the nodes that `roots` use; adds the replacements to
-    /// `known`. Returns false if the norm divides anything but components of v in the nodes that `rates` use.
+    /// Replaces the unit vector by these components in the expressions of `roots` and adds the replacements to
+    /// `known`. Returns false if an expression in `rates` divides something other than components of v by the norm.
     pub fn replace_unit_vector(
         &self,
         graph: &mut Graph,
@@ -117,8 +117,8 @@ impl Disc {
         })
     }
 
-    /// Returns the number of divisions of a product by norm(v), and its other factors; `None` without divisions. In
-    /// derivatives the reciprocal of the norm can have a guard at v = 0.
+    /// Returns how often a product is divided by norm(v), and its other factors; `None` if it is not divided by
+    /// norm(v). In derivatives the reciprocal of the norm can be a selection that avoids the division at v = 0.
     fn split_divisions(
         &self,
         graph: &Graph,
@@ -136,7 +136,7 @@ impl Disc {
         (divisions > 0).then_some((divisions, rest))
     }
 
-    /// Returns a node that has a component of v in each of its terms, divided by norm(v).
+    /// Returns a node divided by norm(v), if each of its terms has a component of v as a factor.
     fn divide_by_norm(&self, graph: &mut Graph, unit: &[NodeId], id: NodeId) -> Option<NodeId> {
         if let Operation::Sum(terms) = graph.operation(id).clone() {
             let mut divided = Vec::with_capacity(terms.len());
@@ -201,7 +201,7 @@ fn powers(graph: &Graph, id: NodeId) -> BTreeMap<NodeId, i32> {
     }
 }
 
-/// Returns the number and the powers of a product with a number in front.
+/// Returns the numerical factor and the powers of a product.
 fn scaled_powers(graph: &Graph, id: NodeId) -> (f64, BTreeMap<NodeId, i32>) {
     match graph.operation(id) {
         Operation::Sum(terms) if terms.len() == 1 => {

@@ -33,7 +33,7 @@ pub struct Equations {
     pub graph: Graph,
     /// Names of the parameters.
     pub parameter_names: Vec<String>,
-    /// Expression of each parameter that depends on others.
+    /// Expression of each derived parameter; `None` for independent parameters.
     pub derived_parameters: Vec<Option<NodeId>>,
     /// Kinetic energy T in J.
     pub kinetic: NodeId,
@@ -43,12 +43,12 @@ pub struct Equations {
     pub mass: MassMatrix,
     /// Velocity terms c of M q'' + c = f.
     pub velocity_terms: RowNodes,
-    /// Momenta from a sweep over the velocities, for models without fields.
+    /// Momenta from a backward sweep over the velocities, for models without fields.
     pub(crate) sweep: Option<Momenta>,
     pub(crate) rigid_bodies: Option<RigidBodies>,
     /// Generalised forces f: -dV/dq - dR/dq' + Q.
     pub forces: RowNodes,
-    /// Accelerations and the report on their solution.
+    /// Accelerations, with the pivots and the operation counts of their solution.
     pub accelerations: Accelerations,
     /// Multipliers lambda of M q'' + c = f + A^T lambda.
     pub multipliers: Vec<NodeId>,
@@ -74,7 +74,7 @@ pub struct Equations {
     pub coefficients: Vec<NamedCoefficient>,
     /// Terms in the order of the specification: kinetic, potential, dissipation, forces.
     pub terms: Vec<NodeId>,
-    /// Nodes of the definitions with a use.
+    /// Node of each definition that is used.
     pub definitions: Vec<Option<NodeId>>,
     /// Number of inputs.
     pub inputs: usize,
@@ -82,12 +82,12 @@ pub struct Equations {
     pub modal_blocks: Vec<ModalMassBlock>,
 }
 
-/// Switching surface at which an energy jumps.
+/// Switching surface at which an energy jumps, see [`corners`](crate::mechanics::corners).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Corner {
     /// Index among the switching surfaces.
     pub guard: usize,
-    /// True if rates of the coordinates jump, false if only an energy does, at an instant.
+    /// True if rates of the coordinates jump there; false if only an energy jumps, at a given time.
     pub moves_rates: bool,
 }
 
@@ -190,7 +190,7 @@ pub fn derive_with_redundancy(
     )?;
     let modal_blocks = mass.assembled_blocks(&mut translator.graph);
     let definitions = translator.definition_nodes();
-    // Last, so that no other equation shares its nodes.
+    // This comes last because other equations must not share its nodes.
     let rigid_bodies = RigidBodies::find(&mut translator, &variables, &applied)?;
     Ok(Equations {
         name: model.name.clone(),
@@ -288,7 +288,7 @@ pub(crate) fn derived_parameters(translator: &mut Translator) -> Derived<Vec<Opt
         .collect()
 }
 
-/// Returns the sum of terms; each term is named after `symbol` and itself.
+/// Returns the sum of terms; each term gets a name of `symbol` and its own name.
 pub(crate) fn sum_terms(
     translator: &mut Translator,
     terms: &[Term],

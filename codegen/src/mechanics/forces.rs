@@ -1,4 +1,4 @@
-//! Forces from the dissipation and by virtual work, their power, and the surfaces at which they switch.
+//! Forces from the dissipation and by virtual work, their power, and the switching surfaces of the model.
 
 use eomgen_model_spec::model::{Force, Function};
 
@@ -40,7 +40,7 @@ pub(crate) fn translate_force(
     force: &Force,
 ) -> Derived<(NodeId, NodeId)> {
     let value = translator.node(&force.value)?;
-    // The name of a force can have another meaning in a formula.
+    // The name of a force can be reserved in formulas.
     if eomgen_model_spec::reservation_reason(&force.name).is_none() {
         translator.graph.suggest_name(value, &force.name);
     }
@@ -55,8 +55,8 @@ pub(crate) fn translate_force(
     Ok((value, on))
 }
 
-/// Returns d(T + V)/dt due to forces and explicit times: Q q' + dV/dt - dT/dt (partial derivatives by time),
-/// plus d(2 T - p q')/dt if T is no quadratic form of the rates.
+/// Returns d(T + V)/dt due to forces and explicit time dependence: Q q' + dV/dt - dT/dt with partial derivatives by
+/// time. If T is not a quadratic form of the rates, d(2 T - p q')/dt is added.
 pub(crate) fn power(
     graph: &mut Graph,
     variables: &Variables,
@@ -85,8 +85,7 @@ pub(crate) fn power(
     graph.combine(&terms)
 }
 
-/// Returns the distinct switching surfaces of everything that the motion depends on, in the order of the
-/// graph.
+/// Returns the distinct switching surfaces in the expressions of `roots`, in the order of the graph.
 pub(crate) fn guards(graph: &mut Graph, roots: &[NodeId]) -> Vec<Guard> {
     let mut found: Vec<Guard> = Vec::new();
     for id in graph.reachable(roots) {
@@ -95,7 +94,8 @@ pub(crate) fn guards(graph: &mut Graph, roots: &[NodeId]) -> Vec<Guard> {
         }
         let (function, arguments) = match graph.operation(id).clone() {
             Operation::Call(function, arguments) => (function, arguments.to_vec()),
-            // Derivative of min or max. That of min has the opposite sign.
+            // Derivatives of min and max are selections by a > b; for min, the switching function has the opposite
+            // sign.
             Operation::Select {
                 a,
                 b,
@@ -123,17 +123,17 @@ pub(crate) fn guards(graph: &mut Graph, roots: &[NodeId]) -> Vec<Guard> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Surfaces {
     None,
-    /// Surface p = 0, positive for p > 0.
+    /// Surface p = 0; the switching function p is positive for p > 0.
     Single(NodeId),
-    /// Surface p = 0 as the node -p, positive for p < 0.
+    /// Surface p = 0; the switching function -p is positive for p < 0.
     Negated(NodeId),
-    /// Surfaces p = b and p = -b, positive above each.
+    /// Surfaces p = b and p = -b; the switching functions p - b and p + b are positive above their surfaces.
     TwoSided {
         above: NodeId,
         beyond: NodeId,
     },
-    /// Surfaces at the ends of -b <= p <= b, within which p can remain for a whole regime. Each is positive
-    /// on one outer side.
+    /// Surfaces at the ends of the interval -b <= p <= b, in which p can stay for a whole regime. Each switching
+    /// function is positive outside its end.
     OuterSides {
         above: NodeId,
         below: NodeId,
@@ -152,8 +152,8 @@ impl Surfaces {
     }
 }
 
-/// Returns the surfaces of a piecewise function. If the function jumps and p can be zero for a whole regime,
-/// each side has its own surface, because the function has a separate value there.
+/// Returns the surfaces of a piecewise function. If a sign or contact can be zero for a whole regime, each end of the
+/// interval -b <= p <= b (p = 0 for a sign) has its own surface, because the function has a third value there.
 pub(crate) fn surfaces(graph: &mut Graph, function: Function, arguments: &[NodeId]) -> Surfaces {
     match (function, arguments) {
         (Function::Contact, &[p, b]) if can_be_constant(graph, p) => {
@@ -194,7 +194,7 @@ fn begins_with_minus(graph: &Graph, id: NodeId) -> bool {
         .is_some_and(|(factor, _)| factor.value() < 0.0)
 }
 
-/// Returns true if a switching function depends on the state or the time.
+/// Returns true if a node depends on the state or the time.
 pub(crate) fn depends_on_motion(graph: &Graph, id: NodeId) -> bool {
     let moves = Dependence::COORDINATE
         .join(Dependence::RATE)
@@ -203,9 +203,9 @@ pub(crate) fn depends_on_motion(graph: &Graph, id: NodeId) -> bool {
     graph.dependence(id).has(moves)
 }
 
-/// Returns true if a switching function can be constant in a whole regime: if it contains a piecewise
-/// function, or depends only on inputs, which can be constant. A continuous term without the state, such as the speed of
-/// a belt, does not count if there are terms with it.
+/// Returns true if a switching function can be constant throughout a regime: it contains a piecewise function, or it
+/// depends only on inputs, which can be constant. If some terms depend on the state, continuous terms without the
+/// state (such as a belt speed) are ignored.
 pub(crate) fn can_be_constant(graph: &Graph, id: NodeId) -> bool {
     if !depends_on_motion(graph, id) {
         return true;
@@ -219,7 +219,7 @@ pub(crate) fn can_be_constant(graph: &Graph, id: NodeId) -> bool {
     }
 }
 
-/// Returns true if a term of a switching function can jump with time, and not with the state.
+/// Returns true if a term of a switching function jumps at a time that does not depend on the state.
 pub(crate) fn jumps_with_time(graph: &Graph, id: NodeId) -> bool {
     let (_, others) = split_by_state(graph, id);
     (others.iter()).any(|term| has_discontinuity(graph, *term))
@@ -239,7 +239,7 @@ fn has_piecewise(graph: &Graph, id: NodeId) -> bool {
     })
 }
 
-/// Returns true if a node contains a function that jumps, or a quotient, whose jump depends on its operands.
+/// Returns true if a node contains a function that jumps, or a quotient or selection that can jump.
 fn can_jump(graph: &Graph, id: NodeId) -> bool {
     let varies = |part: NodeId| !graph.dependence(part).is_parameter_only();
     has_discontinuity(graph, id)
@@ -265,7 +265,8 @@ fn has_discontinuity(graph: &Graph, id: NodeId) -> bool {
     })
 }
 
-/// Returns the terms of nested sums that depend on the state, and the others. A factor of parameters is left out.
+/// Splits nested sums into the terms that depend on the state and the other terms. Factors that depend only on
+/// parameters are dropped.
 fn split_by_state(graph: &Graph, id: NodeId) -> (Vec<NodeId>, Vec<NodeId>) {
     let state = Dependence::COORDINATE
         .join(Dependence::RATE)

@@ -1,4 +1,5 @@
-//! Rates of functions along the motion, and their changes by reactions.
+//! Rates of functions along the motion, and the changes of these rates by reactions (forces or impulses of frictions
+//! and contacts).
 
 use crate::mechanics::equations::Equations;
 use crate::mechanics::rows::RowNodes;
@@ -6,7 +7,7 @@ use crate::mechanics::translate::along_motion;
 use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
-/// Change of the rates by a unit of a reaction.
+/// Change of the rates of coordinates, modes and first-order states per unit of a reaction.
 pub(crate) type Column = (RowNodes, Vec<NodeId>);
 
 /// Returns the rate of a function of the motion, with constant inputs.
@@ -16,7 +17,7 @@ pub(crate) fn guard_rate(equations: &mut Equations, value: NodeId) -> NodeId {
     derive_with(&mut equations.graph, value, rates, along_motion)
 }
 
-/// Returns the derivative of a function by a reaction with this column.
+/// Returns the change of a function per unit of the reaction with this column.
 pub(crate) fn derive_along(graph: &mut Graph, function: NodeId, column: &Column) -> NodeId {
     let (rates, first_order) = column;
     derive_with(graph, function, (rates, first_order), |graph, _| {
@@ -24,7 +25,8 @@ pub(crate) fn derive_along(graph: &mut Graph, function: NodeId, column: &Column)
     })
 }
 
-/// Returns the derivative of a function, given those of the rates, of the first-order states and of the other leaves.
+/// Returns the derivative of a function from the derivatives of the rates, of the first-order states and of the other
+/// leaves.
 fn derive_with(
     graph: &mut Graph,
     function: NodeId,

@@ -1,4 +1,4 @@
-//! Switching surface: a node and the function that switches at its zero.
+//! Switching surface: its switching function and the piecewise function that switches there.
 
 use eomgen_model_spec::model::Function;
 
@@ -7,8 +7,8 @@ use crate::symbolic::graph::NodeId;
 /// Switching surface.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Guard {
-    /// Function that changes sign at the surface.
+    /// Switching function, whose zeros are the surface.
     pub value: NodeId,
-    /// Function that switches.
+    /// Piecewise function that switches at the surface.
     pub function: Function,
 }

@@ -1,4 +1,4 @@
-//! Quantities of an impact; `impacts` derives them.
+//! Quantities of an impact, which `impacts` derives.
 
 /// Impact, with nodes or values `N` and rows `R` of them.
 #[derive(Clone, Debug)]
@@ -7,18 +7,19 @@ pub struct Impact<N, R> {
     pub distance: N,
     /// Rate g'.
     pub rate: N,
-    /// Rate w at which a contact does no work: a force F there has the power F (g' - w) on T + V.
+    /// Rate w of the distance at which the contact force does no work: a contact force F changes T + V with the power
+    /// F (g' - w).
     pub workless_rate: N,
-    /// Second rate g'' if no contact is closed.
+    /// Second rate g'' without contact forces.
     pub acceleration: N,
     /// Coefficient of restitution.
     pub restitution: N,
-    /// Gradient A of the distance by the coordinates.
+    /// Gradient A of the distance with respect to the coordinates.
     pub row: R,
-    /// Column D: change of the rates by a unit impulse.
+    /// Column D: change of the rates per unit impulse.
     pub column: R,
-    /// A D of all impacts: changes of g' by a unit impulse at each of them, then by a unit tangential impulse
-    /// at each with friction.
+    /// Row of the Delassus matrix A D: changes of g' per unit normal impulse at each impact, then per unit tangential
+    /// impulse at each impact with friction.
     pub delassus: Vec<N>,
     /// Friction, if the contact has any.
     pub friction: Option<Friction<N, R>>,
@@ -27,16 +28,16 @@ pub struct Impact<N, R> {
 /// Friction of a contact, with nodes or values `N` and rows `R` of them.
 #[derive(Clone, Debug)]
 pub struct Friction<N, R> {
-    /// Coefficient.
+    /// Coefficient of friction.
     pub coefficient: N,
     /// Tangential velocity of the contact.
     pub slip: N,
-    /// Slip at which friction does no work on T + V.
+    /// Slip at which the friction force does not change T + V.
     pub workless_slip: N,
-    /// Rate of the slip if no contact is closed.
+    /// Rate of the slip without contact forces.
     pub acceleration: N,
-    /// Change of the rates by a unit tangential impulse.
+    /// Change of the rates per unit tangential impulse.
     pub column: R,
-    /// Changes of the slip by a unit impulse at each impact, normal, then tangential.
+    /// Changes of the slip per unit impulse at each impact: normal impulses, then tangential impulses.
     pub delassus: Vec<N>,
 }

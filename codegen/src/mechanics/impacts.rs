@@ -1,13 +1,12 @@
 //! Impacts: rates of distances, and the effect of impulses on the rates.
 //!
-//! An impulse P at the distance g(q, t) changes the rates by D P with D = M^-1 A^T and A = dg/dq, and the
-//! rate of a distance g_i by A_i D_j P_j; A_i D_j is Delassus' matrix (B. Brogliato, *Nonsmooth Mechanics*,
-//! chapter 5). A force at a closed contact acts alike: a = a_0 + D lambda. The columns D are solved for like
-//! the accelerations, so that a field costs O(S); with constraints an impulse acts along them. The simulator
-//! finds the times and the results of impacts.
+//! An impulse P at the distance g(q, t) changes the rates by D P with D = M^-1 A^T and A = dg/dq, and the rate of a
+//! distance g_i by A_i D_j P_j; A_i D_j is Delassus' matrix (B. Brogliato, *Nonsmooth Mechanics*, chapter 5). A force
+//! lambda at a closed contact changes the accelerations by the same column: a = a_0 + D lambda. The columns D are
+//! solved for like the accelerations; a field costs O(S) operations. In a model with constraints, impulses do not
+//! violate the constraints. The simulator finds the times and the results of impacts.
 //!
-//! A tangential impulse of a contact with the slip s(q, q', t), linear in the rates, acts alike with A =
-//! ds/dq'.
+//! For a tangential impulse of a contact with the slip s(q, q', t), which is linear in the rates, A is ds/dq'.
 
 use eomgen_model_spec::model::{self, Model};
 
@@ -50,7 +49,7 @@ pub(crate) fn impacts(
         let restitution = translator.node(&impact.restitution)?;
         let graph = &mut translator.graph;
         let gradient = variables.gradient(graph, distance, GradientBy::Coordinates);
-        // At order 0 the distance of a field depends on no mode.
+        // At order 0, a distance of a field depends on no mode.
         let is_rigid = model.fields.is_empty();
         if is_rigid && gradient.nodes().iter().all(|entry| graph.is_zero(*entry)) {
             return Err(immovable_distance_error(impact));
@@ -135,7 +134,7 @@ pub(crate) fn nonlinear_slip_error(
     }
 }
 
-/// Returns the error for a distance that no coordinate changes.
+/// Returns the error for a distance that depends on no coordinate.
 pub(crate) fn immovable_distance_error(impact: &model::Impact) -> DeriveError {
     DeriveError {
         span: impact.when.span,

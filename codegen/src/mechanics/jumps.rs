@@ -1,7 +1,8 @@
-//! Surfaces g = 0 across which the Lagrangian L = T - V jumps. Constraints are smooth.
+//! Surfaces g = 0 across which the Lagrangian L = T - V jumps. Constraints do not jump.
 //!
-//! The motion has a corner there; see [`corners`](crate::mechanics::corners). A function with a kink, such as
-//! max(x, 0), does not jump, but its rate does. If neither jumps, only the accelerations do.
+//! The motion has a corner at such a surface; see [`corners`](crate::mechanics::corners). If the Lagrangian is
+//! continuous, only the accelerations jump. A position with a kink, such as max(x, 0), is continuous, but its rate
+//! jumps and can make a kinetic energy jump.
 
 use std::collections::HashMap;
 
@@ -19,31 +20,31 @@ use crate::symbolic::expand::{MAX_EXPANSIONS, expand_once};
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape};
 use crate::symbolic::substitute::substitute;
 
-/// A constant below this magnitude is a rounded zero, such as cos(pi/2).
+/// Constants below this magnitude count as zero, such as the rounded value of cos(pi/2).
 const CONSTANT_ROUNDING: f64 = 1e-12;
 
 /// Surface at which an energy jumps.
 pub(crate) struct Jump {
     pub guard: Guard,
-    /// True if rates of the coordinates jump, false if only an energy does, at an instant.
+    /// True if rates of the coordinates jump; false if only an energy jumps, at a given time.
     pub moves_rates: bool,
 }
 
-/// Energies of a model, and the positions whose rates they contain.
+/// Energies of a model, and the expressions whose rates they contain.
 pub(crate) struct Energies {
     /// Kinetic energy T in J.
     pub kinetic: NodeId,
     /// Potential energy V in J.
     pub potential: NodeId,
-    /// Arguments of dot() in the energies, with their places.
+    /// Arguments of dot() in the energies, with their locations.
     pub positions: Vec<(Span, NodeId)>,
 }
 
 /// Returns the surfaces at which energies jump.
 ///
 /// # Errors
-/// A position that jumps although its rate enters an energy, and a jump of the Lagrangian or the momenta
-/// where a rate changes its sign or along a field.
+/// A position that jumps although an energy contains its rate. A Lagrangian or momenta that jump where a rate changes
+/// its sign, or along a field.
 pub(crate) fn find_jumps(translator: &mut Translator, energies: &Energies) -> Derived<Vec<Jump>> {
     check_positions(translator, energies)?;
     let roots = [energies.kinetic, energies.potential];
@@ -55,7 +56,7 @@ pub(crate) fn find_jumps(translator: &mut Translator, energies: &Energies) -> De
         let kinetic = steps.jump(graph, energies.kinetic, place);
         let potential = steps.jump(graph, energies.potential, place);
         let difference = graph.subtract(kinetic, potential);
-        // At an instant only the momenta can jump.
+        // A jump at a given time changes the rates only if the momenta jump.
         let is_felt = graph.dependence(value).has(Dependence::COORDINATE)
             || graph.dependence(difference).has(Dependence::RATE);
         let has_energy_jump = !vanishes_on(graph, difference, value);
@@ -73,7 +74,7 @@ pub(crate) fn find_jumps(translator: &mut Translator, energies: &Energies) -> De
     Ok(steps.chosen(&found))
 }
 
-/// Rejects positions that jump although their rates enter an energy.
+/// Rejects positions that jump although an energy contains their rates.
 fn check_positions(translator: &mut Translator, energies: &Energies) -> Derived<()> {
     let nodes: Vec<NodeId> = energies.positions.iter().map(|(_, node)| *node).collect();
     if !contains_steps(&translator.graph, &nodes) {
@@ -92,7 +93,7 @@ fn check_positions(translator: &mut Translator, energies: &Energies) -> Derived<
     Ok(())
 }
 
-/// Rejects momenta that jump where a rate changes its sign, such as that of abs(dot(x)).
+/// Rejects momenta that jump where a rate changes its sign, such as the momentum of the energy abs(dot(x)).
 fn check_momenta(translator: &mut Translator, energies: &Energies) -> Derived<()> {
     let graph = &translator.graph;
     let switches = graph.reachable(&[energies.kinetic]).into_iter().any(|id| {
@@ -132,10 +133,10 @@ fn check_momenta(translator: &mut Translator, energies: &Energies) -> Derived<()
     Ok(())
 }
 
-/// Functions of some nodes that jump, and the surfaces at which they do.
+/// Functions that jump in some expressions, and their switching surfaces.
 struct Steps {
     guards: Vec<Guard>,
-    /// Surfaces of each function.
+    /// Indices of the surfaces of each function.
     calls: Vec<Vec<usize>>,
     /// Replacements of the functions by polynomials in the sides.
     known: HashMap<NodeId, NodeId>,
@@ -204,7 +205,7 @@ impl Steps {
         graph.combine_flat(&[(1.0, above), (-1.0, below)])
     }
 
-    /// Returns the surfaces that were found, each with its jump, and the others of the same functions.
+    /// Returns the surfaces with a jump, and the other surfaces of the same functions.
     fn chosen(self, found: &[Option<bool>]) -> Vec<Jump> {
         let mut taken = found.to_vec();
         for call in &self.calls {
@@ -224,7 +225,7 @@ impl Steps {
     }
 }
 
-/// Returns true for a function that jumps.
+/// Returns true if a node is a function that jumps.
 fn is_step(graph: &Graph, id: NodeId) -> bool {
     let jumps = match graph.operation(id) {
         Operation::Select { is_switch, .. } => *is_switch && graph.guarded_power(id).is_none(),
@@ -241,7 +242,7 @@ fn contains_steps(graph: &Graph, nodes: &[NodeId]) -> bool {
         .any(|id| is_step(graph, id))
 }
 
-/// Returns true if formulas show that a node is zero where `value` is.
+/// Returns true if symbolic substitution shows that a node is zero wherever `value` is zero.
 fn vanishes_on(graph: &mut Graph, node: NodeId, value: NodeId) -> bool {
     if is_zero(graph, node) {
         return true;
@@ -267,13 +268,13 @@ fn is_zero(graph: &Graph, node: NodeId) -> bool {
     graph.is_zero(node) || graph.as_constant(node).is_some_and(is_rounding)
 }
 
-/// Returns true if a coordinate, a rate, a state or the time follows from `value` = 0, so that
-/// [`vanishes_on`] sees all points of the surface.
+/// Returns true if `value` = 0 can be solved for a coordinate, a rate, a state or the time. Then [`vanishes_on`]
+/// covers all points of the surface.
 fn is_solvable(graph: &mut Graph, value: NodeId) -> bool {
     !solve_for_parts(graph, value).is_empty()
 }
 
-/// Solves `value` = 0 for each leaf in which it is linear: the leaf and its solution.
+/// Solves `value` = 0 for each leaf in which it is linear, and returns pairs of leaf and solution.
 fn solve_for_parts(graph: &mut Graph, value: NodeId) -> Vec<(NodeId, NodeId)> {
     let leaves = graph.reachable(&[value]).into_iter().filter(|leaf| {
         let operation = graph.operation(*leaf);
@@ -299,7 +300,7 @@ fn solve_for_parts(graph: &mut Graph, value: NodeId) -> Vec<(NodeId, NodeId)> {
     found
 }
 
-/// Returns the place of the term that contains a function with this surface.
+/// Returns the location of the term that contains a function with this surface.
 fn term_of(translator: &mut Translator, surface: NodeId) -> Span {
     let model = translator.model;
     let terms = model.kinetic.iter().chain(&model.potential);

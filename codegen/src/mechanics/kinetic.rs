@@ -17,16 +17,16 @@ pub(crate) struct KineticRows {
     /// dT/dq'.
     pub(crate) momenta: RowNodes,
     pub(crate) mass: MassMatrix,
-    /// d/dt(dT/dq') without accelerations, minus dT/dq.
+    /// d/dt(dT/dq') - dT/dq at zero accelerations.
     pub(crate) velocity_terms: RowNodes,
     pub(crate) sweep: Option<Momenta>,
 }
 
 impl KineticRows {
-    /// Returns the form with the fewest operations, counted together with the gradient of the potential.
-    /// Models with fields have one form. Others also have the form of a sweep, and both forms of the
-    /// quadratic form with sums of angles. In a long chain the other form grows faster than that of the sweep.
-    /// Its derivation ends when it cannot be the cheapest.
+    /// Derives the form with the fewest operations, counted together with the gradient of the potential. Models with
+    /// fields are derived by differentiation. Other models are also derived by a sweep. Both derivations are repeated
+    /// for the quadratic form with sums of angles. In a long chain, differentiation gives more operations than the
+    /// sweep; it is stopped when it cannot be the cheapest.
     pub(crate) fn derive_cheapest(
         graph: &mut Graph,
         variables: &Variables,
@@ -130,7 +130,7 @@ impl KineticRows {
         })
     }
 
-    /// Counts the operations, including those of `beside`, with shared nodes once.
+    /// Counts the operations of these rows and of the nodes `other`; shared nodes count once.
     fn operations(&self, graph: &Graph, beside: &[NodeId]) -> usize {
         let mut nodes = self.velocity_terms.nodes();
         nodes.extend(beside);
@@ -141,17 +141,17 @@ impl KineticRows {
     }
 }
 
-/// Largest number of coordinates for which both forms are derived completely.
+/// Largest number of coordinates for which differentiation is never stopped.
 const MAX_COMPARED_COORDINATES: usize = 12;
 
-/// Operations of a mass matrix, relative to those of the whole form of a sweep, at which its derivation by
-/// differentiation ends.
+/// Differentiation stops if the mass matrix takes more operations than this multiple of all operations by the sweep.
 const MAX_RELATIVE_OPERATIONS: usize = 2;
 
 /// Largest number of coordinates for which the quadratic form is expanded.
 const MAX_COORDINATES: usize = 4;
 
-/// Returns 1/2 q' M q' with sums of angles in the entries of M; `None` for too many coordinates or too long entries.
+/// Returns 1/2 q' M q', in which products of sines and cosines in M are written with sums of angles. Returns `None`
+/// for too many coordinates or too long entries.
 fn quadratic_form(graph: &mut Graph, mass: &[Vec<NodeId>]) -> Option<NodeId> {
     if mass.len() > MAX_COORDINATES {
         return None;

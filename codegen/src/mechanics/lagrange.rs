@@ -90,7 +90,7 @@ impl Variables {
         self.with_modes(graph, momenta, scalars)
     }
 
-    /// Returns the mass matrix; `None` if its rows of coordinates take more operations than `most`.
+    /// Returns the mass matrix; `None` if the rows of the coordinates take more operations than `most`.
     pub(crate) fn mass_matrix_below(
         &self,
         graph: &mut Graph,
@@ -102,13 +102,13 @@ impl Variables {
         is_whole.then(|| self.with_modes(graph, momenta, scalars))
     }
 
-    /// Returns the rows of the mass matrix for the coordinates, without the modes. Ends after the row with which
-    /// they take more operations than `most`, unless it is the last.
+    /// Returns the rows of the mass matrix for the coordinates, without the modes. If the rows take more operations
+    /// than `most`, the remaining rows are missing.
     fn mass_rows(&self, graph: &mut Graph, momenta: &RowNodes, most: usize) -> Vec<Vec<NodeId>> {
         let rates: Vec<NodeId> = CoordinateId::first(self.coordinates)
             .map(|index| graph.intern(Operation::Rate(index)))
             .collect();
-        // By symmetry, an entry is a derivative of the momentum with the smaller index.
+        // The matrix is symmetric: each entry is computed from the momentum with the smaller index.
         let mut scalars: Vec<Vec<NodeId>> = Vec::with_capacity(self.coordinates);
         let mut moving: Vec<NodeId> = Vec::new();
         for row in 0..self.coordinates {
@@ -157,7 +157,7 @@ impl Variables {
         }
     }
 
-    /// Returns the rate of the momenta along the motion without accelerations, minus dT/dq.
+    /// Returns d/dt(dT/dq') - dT/dq at zero accelerations.
     pub(crate) fn velocity_terms(
         &self,
         graph: &mut Graph,
@@ -220,7 +220,7 @@ impl Variables {
         RowNodes { scalars, modal }
     }
 
-    /// Returns the sum over all rows of a row times its rate.
+    /// Returns the scalar product of the rows with the rates.
     pub(crate) fn dot_rates(&self, graph: &mut Graph, rows: &RowNodes) -> NodeId {
         let mut terms = Vec::new();
         for (index, &row) in CoordinateId::first(rows.scalars.len()).zip(&rows.scalars) {
@@ -236,8 +236,8 @@ impl Variables {
     }
 }
 
-/// Returns the gradient of a potential in the cheapest form: unchanged, with common factors, or expanded with
-/// collected terms.
+/// Returns the gradient of a potential in the form with the fewest operations: unchanged, with common factors, or
+/// expanded with collected terms.
 fn choose_cheapest_slopes(graph: &mut Graph, slopes: Vec<NodeId>) -> Vec<NodeId> {
     let apart: Vec<NodeId> = slopes
         .iter()
@@ -251,9 +251,9 @@ fn choose_cheapest_slopes(graph: &mut Graph, slopes: Vec<NodeId>) -> Vec<NodeId>
     }
 }
 
-/// Expands a node if that saves operations. In a velocity term, the rate of a momentum and the gradient of
-/// the kinetic energy share terms that cancel, often only inside products: d/dt(dv/dq') = dv/dq for the rate
-/// v of a function of coordinates.
+/// Expands a node if this saves operations. In a velocity term, the rate of a momentum and the gradient of the
+/// kinetic energy have terms that cancel, because d/dt(dv/dq') = dv/dq for the rate v of a function of coordinates.
+/// Often these terms cancel only after products are expanded.
 fn expand_if_cheaper(graph: &mut Graph, term: NodeId) -> NodeId {
     let mut best = term;
     let mut operations = count_operations(graph, &[term]);

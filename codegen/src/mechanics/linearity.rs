@@ -1,9 +1,9 @@
-//! Structural test of linearity between switching surfaces. Such a model can be solved exactly from switch to
+//! Structural test of linearity between switching surfaces. A model that passes can be solved exactly from switch to
 //! switch.
 //!
-//! A linear model has a constant mass matrix, and forces of first degree in coordinates, rates, inputs and
-//! sines of time, for given sides of the switching surfaces. The test is sufficient, not necessary: it does
-//! not use trigonometric identities.
+//! For given sides of the switching surfaces, a linear model has a constant mass matrix, and forces of first degree
+//! in coordinates, rates, inputs and sinusoids of time. The test is sufficient, not necessary: it does not use
+//! trigonometric identities.
 
 use std::collections::HashMap;
 
@@ -17,15 +17,15 @@ use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape};
 pub enum Linearity {
     /// Linear everywhere.
     Linear,
-    /// Linear between surfaces that are linear themselves.
+    /// Linear between switching surfaces whose switching functions are linear.
     PiecewiseLinear,
-    /// Model with constraints, whose multipliers are solved for with the accelerations. Not tested.
+    /// Model with constraints; its linearity is not tested.
     Constrained,
     /// Model with impacts, at which rates jump.
     Impacts,
-    /// Model whose motion has corners, at which rates jump; the first of their surfaces.
+    /// Model whose motion has corners, at which rates jump; the first such surface.
     Corners(NodeId),
-    /// Nonlinear; the first nonlinear node.
+    /// Nonlinear model; the first nonlinear node.
     Nonlinear(NodeId),
 }
 
@@ -83,7 +83,7 @@ struct Degrees<'g> {
 }
 
 impl Degrees<'_> {
-    /// Returns the degree of a node for given sides, or the first nonlinear node.
+    /// Returns the degree of a node in the motion for given sides. Errors: the first nonlinear node.
     fn degree(&mut self, id: NodeId) -> Result<u32, NodeId> {
         if self.graph.dependence(id).is_parameter_only() {
             return Ok(0);

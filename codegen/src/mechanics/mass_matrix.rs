@@ -9,7 +9,7 @@ use eomgen_model_spec::ids::FieldId;
 pub struct MassMatrix {
     /// Block of the coordinates.
     pub scalars: Vec<Vec<NodeId>>,
-    /// Vector over the modes for each coordinate and field.
+    /// Coupling of each coordinate (outer index) with each field (inner index), as vectors over the modes.
     pub coupling: Vec<Vec<NodeId>>,
     /// Block over the modes for each pair of fields.
     pub modal: Vec<Vec<StructuredMatrix>>,

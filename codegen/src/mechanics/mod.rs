@@ -2,12 +2,14 @@
 //!
 //! - `translate` and `fields` translate expressions to nodes.
 //! - `lagrange`, `sweeps`, `forces` and `kinetic` derive the rows of Lagrange's equations.
-//! - `rigid_tree` derives inverse dynamics from frame to frame.
-//! - `constraints` (with their `redundancy`), `impacts` (of `impact`s, with their `workless_rates`) and `sliding` derive their terms; `solve` derives the accelerations.
+//! - `rigid_tree` derives the inverse dynamics of rigid bodies recursively along the tree of frames.
+//! - `constraints` and `redundancy`, `impacts` with `impact` and `workless_rates`, and `sliding` derive the terms of
+//!   constraints, impacts and sliding; `solve` derives the accelerations.
 //! - `coefficients` derives named coefficients as in Eq. (22).
-//! - `equations` combines these; `outputs` derives additional functions on request.
-//! - `jumps` finds the surfaces at which the energies jump; `corners` derives the jumps of the rates there.
-//! - `linearity` tests linearity between switches; `sides` and `affine` derive the coefficients of such a
+//! - `equations` combines these results; `outputs` derives additional functions on request.
+//! - `jumps` finds the surfaces at which the energies jump; `corners` derives the quantities that determine the jumps
+//!   of the rates.
+//! - `linearity` tests linearity between switches; `sides` and `affine` derive the coefficients of a piecewise-linear
 //!   model.
 //! - `inertia` checks that every motion has inertia; `unsolved` translates a model without its equations.
 

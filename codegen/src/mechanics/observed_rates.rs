@@ -6,7 +6,7 @@ use crate::mechanics::rows::RowNodes;
 use crate::mechanics::translate::{DeriveError, Derived, Translator};
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 
-/// Returns the node of an observable, or of the time derivative that it denotes.
+/// Returns the node of an observable; if the observable is the time derivative of an expression, derives it.
 pub(crate) fn derive_observable(
     translator: &mut Translator,
     observable: &Observable,

@@ -3,9 +3,9 @@
 use eomgen_model_spec::argument::Argument;
 use eomgen_model_spec::model::Model;
 
-/// Constraints that depend on each other at every state that satisfies them. The accelerations are determined, the
-/// multipliers are not: those with the least sum of (s_k lambda_k)^2 are used, with s_k^2 = A_k M^-1 A_k^T, so that
-/// the unit of a constraint has no effect.
+/// Constraints that depend on each other at every state that satisfies them. The accelerations are unique, but the
+/// multipliers are not. The multipliers with the least sum of (s_k lambda_k)^2 are used, with s_k^2 = A_k M^-1 A_k^T.
+/// With these scales, the units of the constraints have no effect.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Redundancy {
     /// Groups of constraints that depend on each other, each ascending.
@@ -19,7 +19,7 @@ pub struct Redundancy {
 pub struct DependentGroup {
     /// Indices of the constraints, ascending.
     pub constraints: Vec<usize>,
-    /// Number of independent ones.
+    /// Number of independent constraints in the group.
     pub rank: usize,
 }
 
@@ -57,7 +57,7 @@ impl Redundancy {
         ))
     }
 
-    /// Returns the number of constraints beyond those that are needed.
+    /// Returns the number of redundant constraints: all dependent constraints minus the rank.
     pub fn excess(&self) -> usize {
         self.constraints().len() - self.rank()
     }

@@ -19,7 +19,7 @@ impl RowNodes {
         self.scalars.iter().chain(&self.modal).copied().collect()
     }
 
-    /// Returns the sum of the products with the entries of another vector.
+    /// Returns the scalar product with another vector.
     pub(crate) fn dot(&self, graph: &mut Graph, other: &Self) -> NodeId {
         let mut terms = Vec::new();
         for (a, b) in self.scalars.iter().zip(&other.scalars) {

@@ -1,5 +1,5 @@
-//! Switching functions as polynomials in the sides of their surfaces. A side is 1 if the surface's function
-//! is positive, else 0; it is between 0 and 1 while the motion is held on the surface.
+//! Piecewise functions as polynomials in the sides of their surfaces. A side is 1 if the switching function is
+//! positive, else 0; it is between 0 and 1 while the motion is held on the surface.
 
 use std::collections::HashMap;
 
@@ -10,7 +10,7 @@ use crate::mechanics::guard::Guard;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 use crate::symbolic::substitute::substitute;
 
-/// Replacements of the switching functions of a model.
+/// Replacements of the piecewise functions of a model.
 pub(crate) struct Sides {
     /// Replacement of each node.
     pub known: HashMap<NodeId, NodeId>,
@@ -19,8 +19,8 @@ pub(crate) struct Sides {
 }
 
 impl Sides {
-    /// Replaces the switching functions in `roots` by polynomials in sides. `side` returns the leaf for the
-    /// side of the one of `guards` with a given index, if it has one.
+    /// Replaces the piecewise functions in `roots` by polynomials in sides. `side` returns the leaf of a guard's side
+    /// for the index of the guard, if it has one.
     pub fn replace_all(
         given: (&mut Graph, &[Guard]),
         roots: &[NodeId],
@@ -29,9 +29,9 @@ impl Sides {
         Self::replace(given, roots, &|guard, _| side(guard))
     }
 
-    /// Replaces only functions that jump. A continuous function has one value at its surface; off the
-    /// surface, a wrong side can move the argument of another function out of its domain, for example in
-    /// `sqrt(abs(p))`.
+    /// Replaces only functions that jump. Continuous functions have the same value on both sides of their surface.
+    /// Away from the surface, a wrong side could move the argument of another function out of its domain, for example
+    /// in `sqrt(abs(p))`.
     pub fn replace_jumps(
         given: (&mut Graph, &[Guard]),
         roots: &[NodeId],
@@ -40,8 +40,8 @@ impl Sides {
         Self::replace(given, roots, &|guard, jumps| side(guard).filter(|_| jumps))
     }
 
-    /// Replaces functions for which `side` returns a leaf, given the index of the guard and true if the function
-    /// jumps there.
+    /// Replaces the functions for which `side` returns a leaf. The arguments of `side` are the index of the guard,
+    /// and true if the function jumps there.
     pub fn replace(
         (graph, guards): (&mut Graph, &[Guard]),
         roots: &[NodeId],
@@ -52,7 +52,7 @@ impl Sides {
             known: HashMap::new(),
             half_widths: Vec::new(),
         };
-        // Operands precede their uses, so inner switching functions are already replaced.
+        // Operands precede their uses, so inner piecewise functions are already replaced.
         for id in graph.reachable(roots) {
             if graph.dependence(id).is_parameter_only() {
                 continue;
@@ -177,7 +177,7 @@ fn sign(graph: &mut Graph, side: NodeId) -> NodeId {
     graph.combine(&[(2.0, side), (-1.0, one)])
 }
 
-/// Returns side a + (1 - side) b, so that a side of 0 or 1 selects one term exactly.
+/// Returns side * a + (1 - side) * b, which is exactly a or b if the side is 1 or 0.
 fn blend_sides(graph: &mut Graph, side: NodeId, a: NodeId, b: NodeId) -> NodeId {
     let other = opposite_side(graph, side);
     let (a, b) = (graph.multiply(side, a), graph.multiply(other, b));

@@ -1,20 +1,20 @@
-//! Motion held on switching surfaces, for example by dry friction at rest: equations with the sides of such
-//! surfaces as inputs.
+//! Motion held on switching surfaces, for example by sticking friction: equations with the sides of such surfaces as
+//! inputs.
 //!
-//! On a surface g = 0 across which the rates jump, the motion continues with a combination of both sides that
-//! keeps g' at zero, if there is one (A. F. Filippov, *Differential Equations with Discontinuous Righthand
-//! Sides*): sign(g), which is -1 or 1 off the surface, takes a value between them. All forces, the power and
-//! the observables follow from the side, a number from 0 to 1. A surface can hold the motion if g' depends on
-//! its side: a velocity's surface can, a position's cannot. The simulator decides which surfaces hold, and
-//! when they release.
+//! The rates jump across a surface g = 0. If a convex combination of the rates on both sides makes g' zero, the
+//! motion continues with this combination (A. F. Filippov, *Differential Equations with Discontinuous Righthand
+//! Sides*). Then sign(g), which is -1 or 1 away from the surface, has a value between -1 and 1. All forces, the power
+//! and the observables follow from the side, a number from 0 to 1. A surface can hold the motion if g' depends on its
+//! side. This is possible if g is a velocity, but not if g is a position. The simulator determines which surfaces
+//! hold the motion, and when they release it.
 //!
 //! The unit vector v/norm(v) of a velocity is set-valued at v = 0 as well; see the module `discs`. The side of each
-//! component is the component itself, -1 to 1: a number from 0 to 1 would round a small component. Its function is the
-//! component of v.
+//! component is the component of the unit vector itself, from -1 to 1, because a number from 0 to 1 would round a
+//! small component. Its switching function is the component of v.
 //!
-//! The sides of all other surfaces are inputs, too. With constant sides the rates are smooth across the surfaces, so
-//! that a step may cross one before the crossing is located. Continuous functions of a surface that can hold the motion
-//! keep their value: its state deviates from the surface by rounding, to either side.
+//! The sides of all other surfaces are inputs, too. With constant sides, the rates are smooth across the surfaces.
+//! Therefore a step may cross a surface before the crossing is located. Continuous functions of a surface that can
+//! hold the motion are not replaced, because rounding moves a held state to either side of the surface.
 
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
@@ -34,7 +34,8 @@ use crate::symbolic::differentiate::derive_by_scalar;
 use crate::symbolic::graph::{Argument, Dependence, Graph, NodeId, Operation, Shape, Variable};
 use crate::symbolic::substitute::substitute;
 
-/// Returns true if there can be surfaces that hold the motion, judged without derivatives.
+/// Returns true if the model may have surfaces that hold the motion. The test needs no derivatives and can return
+/// true for a model without such surfaces.
 pub(crate) fn can_hold_motion(equations: &Equations) -> bool {
     !guards_that_may_hold(equations).is_empty()
         || divides_by_speed(&equations.graph, &equations.rate_nodes())
@@ -49,9 +50,9 @@ pub(crate) struct SideInputs {
     pub sliding: Vec<SlidingSurface<NodeId, RowNodes>>,
 }
 
-/// Makes the sides of surfaces inputs, after those of the model: first the surfaces that cannot hold the motion, then
-/// those that can, which are none if not `may_hold`. Returns `None` if no surface that can hold the motion is found
-/// though it `may_hold`; the equations are then unusable.
+/// Adds the sides of surfaces as inputs after the inputs of the model: first the surfaces that cannot hold the
+/// motion, then those that can. If `may_hold` is false, all surfaces count as unable to hold the motion. If it is
+/// true and no surface can hold the motion, returns `None`; the equations are then unusable.
 pub(crate) fn add_side_inputs(equations: &mut Equations, may_hold: bool) -> Option<SideInputs> {
     let mut sliding = match may_hold {
         true => guards_that_may_hold(equations),
@@ -111,7 +112,7 @@ pub(crate) fn add_side_inputs(equations: &mut Equations, may_hold: bool) -> Opti
     let rates: Vec<NodeId> = functions
         .iter()
         .map(|function| {
-            // Piecewise functions of time keep their side, too.
+            // Piecewise functions of time also use their sides.
             let graph = &mut equations.graph;
             let value = substitute(graph, function.value, &|_, _| None, &mut known);
             guard_rate(equations, value)
@@ -165,13 +166,13 @@ pub(crate) fn add_side_inputs(equations: &mut Equations, may_hold: bool) -> Opti
 pub(crate) struct HeldRates {
     pub accelerations: RowNodes,
     pub first_order_rates: Vec<NodeId>,
-    /// Function of each friction.
+    /// Switching function of each friction.
     pub functions: Vec<NodeId>,
-    /// Change of the rates by the sign of each friction.
+    /// Change of the rates per unit of the sign of each friction.
     pub columns: Vec<Column>,
 }
 
-/// Returns the rates with the sides of all frictions that can hold the motion as an argument.
+/// Returns the rates with the sides of all frictions that can stick as an argument.
 pub(crate) fn hold_frictions(equations: &mut Equations) -> HeldRates {
     let jumping = jumping_guards(equations);
     let candidates = guards_that_may_hold(equations).into_iter();
@@ -215,7 +216,7 @@ fn rates_with_sides(equations: &mut Equations, guards: &[usize]) -> HeldRates {
         modal: with_sides(graph, &rows.modal),
     };
     let first_order_rates = with_sides(graph, &equations.state_rates);
-    // The sign 2 side - 1 changes twice as much as the side.
+    // The sign is 2 side - 1, so a derivative by the sign is half the derivative by the side.
     let by_sign = |graph: &mut Graph, side: usize, nodes: &[NodeId]| -> Vec<NodeId> {
         let own = graph.intern(leaf(side));
         let derivatives = nodes.iter();
@@ -244,18 +245,18 @@ fn rates_with_sides(equations: &mut Equations, guards: &[usize]) -> HeldRates {
     }
 }
 
-/// Function with a side.
+/// Switching function whose side is an input.
 struct SideFunction {
     value: NodeId,
     /// Index among all guard values.
     place: usize,
     is_odd: bool,
-    /// Index of the disc of which the function is a component.
+    /// Index of the disc, if the function is one of its components.
     disc: Option<usize>,
 }
 
-/// Replaces unit vectors of velocities by inputs, after those of `functions`, and adds the components of the
-/// velocities to the functions and to the guards.
+/// Replaces unit vectors of velocities by inputs after those of `functions`, and adds the components of the
+/// velocities to `functions` and to the guards.
 fn add_unit_vectors(
     equations: &mut Equations,
     first_side: usize,
@@ -272,7 +273,7 @@ fn add_unit_vectors(
     for disc in find_discs(&mut equations.graph, &rates) {
         let first = first_side + functions.len();
         let graph = &mut equations.graph;
-        // Guards are evaluated without sides.
+        // Guards are evaluated without sides; therefore components that contain sides are left out.
         let is_side = |part: NodeId| matches!(graph.operation(part), Operation::Input(id) if id.index() >= inputs);
         if graph.reachable(&disc.components).into_iter().any(is_side) {
             continue;
@@ -322,8 +323,7 @@ fn guards_that_may_hold(equations: &Equations) -> Vec<(usize, usize)> {
     found
 }
 
-/// Returns the guards that are no vectors over modes and depend on the motion, each with its index among all guard
-/// values. A guard that is zero in a regime, such as max(x, 0), has no side there: it follows from the state.
+/// Returns the scalar guards that depend on the motion, each with its index among all guard values.
 fn scalar_guards(equations: &Equations) -> Vec<(usize, usize)> {
     let graph = &equations.graph;
     let mut found = Vec::new();
@@ -357,7 +357,7 @@ fn jumping_guards(equations: &mut Equations) -> HashSet<usize> {
     found.into_inner()
 }
 
-/// Returns the nodes that are evaluated while a motion is held.
+/// Returns the nodes that are evaluated with sides.
 fn roots(equations: &Equations) -> Vec<NodeId> {
     let mut roots = equations.rate_nodes();
     roots.extend(equations.forces.nodes());

@@ -1,16 +1,16 @@
 //! Rows of Lagrange's equations by sweeps over the rate-dependent part of a kinetic energy, for models
 //! without fields.
 //!
-//! The rate-dependent part of the kinetic energy is a graph of velocities. One backward sweep gives the
-//! derivative of the energy by every velocity, including the momenta, and with these the derivative by the
-//! coordinates. The rate of the momenta is one tangent along the motion. For velocities from frame to frame
-//! this is the recursion of Newton and Euler, with accelerations outward and forces inward (Luh, Walker and
-//! Paul, 1980: J. Dyn. Sys. Meas. Control 102, 69-76).
+//! The rate-dependent part of the kinetic energy is a graph of velocities. One backward sweep computes the
+//! derivatives of the energy by all velocities, which include the momenta. From these follow the derivatives by the
+//! coordinates. The rates of the momenta are computed by one forward tangent along the motion. If velocities are
+//! defined recursively from frame to frame, this is the Newton-Euler recursion, with accelerations outward and forces
+//! inward (Luh, Walker and Paul, 1980: J. Dyn. Sys. Meas. Control 102, 69-76).
 //!
-//! The mass matrix is the Hessian by the rates, propagated backward over the same graph (Gower and Mello,
-//! 2012: Optim. Methods Softw. 27, 251-269). The intermediate entries between the velocities of a frame are
-//! the inertia of everything that it carries: composite rigid bodies (Walker and Orin, 1982: J. Dyn. Sys.
-//! Meas. Control 104, 205-211).
+//! The mass matrix is the Hessian by the rates, propagated backward over the same graph (Gower and Mello, 2012:
+//! Optim. Methods Softw. 27, 251-269). The intermediate Hessian entries between the velocities of a frame are the
+//! inertia of all bodies that the frame carries: composite rigid bodies (Walker and Orin, 1982: J. Dyn. Sys. Meas.
+//! Control 104, 205-211).
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -20,11 +20,11 @@ use crate::mechanics::translate::along_motion;
 use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 
-/// Velocities of a kinetic energy, with their derivatives by the velocities before them.
+/// Velocities (rate-dependent nodes) of a kinetic energy, with their derivatives by their operands.
 pub(crate) struct Velocities {
-    /// Energy first; each unit precedes its operands.
+    /// Units, the energy first; each unit precedes its operands.
     units: Vec<Unit>,
-    /// Contributions to the energy's derivative by each rate.
+    /// Contributions to the derivative of the energy by each rate.
     received: HashMap<NodeId, Vec<(f64, NodeId)>>,
 }
 
@@ -72,7 +72,7 @@ impl Momenta {
 }
 
 impl Velocities {
-    /// Finds the velocities of a kinetic energy; `None` if it does not depend on the rates.
+    /// Finds the velocities of a kinetic energy; `None` if the energy does not depend on rates.
     pub(crate) fn from_kinetic_energy(graph: &mut Graph, kinetic: NodeId) -> Option<Self> {
         if !is_velocity(graph, kinetic) {
             return None;
@@ -94,7 +94,7 @@ impl Velocities {
         Some(velocities)
     }
 
-    /// Propagates the energy's derivative by a node to the operands of the node.
+    /// Propagates the derivative of the energy from a node to its operands.
     fn push(&mut self, graph: &mut Graph, node: NodeId, operands: Vec<NodeId>) {
         let received = self.received.remove(&node).unwrap_or_default();
         let adjoint = graph.combine(&received);
@@ -135,7 +135,7 @@ impl Velocities {
         }
     }
 
-    /// Returns the Hessian by the rates; `None` if it depends on the rates.
+    /// Returns the Hessian of the energy by the rates; `None` if it depends on rates.
     pub(crate) fn mass_matrix(
         &self,
         graph: &mut Graph,
@@ -165,7 +165,7 @@ impl Velocities {
 }
 
 impl Unit {
-    /// Returns the derivatives by coordinates, with the operands held.
+    /// Returns the derivatives of the node by coordinates, with constant operands.
     fn slopes(&self, graph: &mut Graph, coordinates: usize) -> Vec<(usize, NodeId)> {
         let moving = self.leaves(graph, self.node);
         let mut found = Vec::new();
@@ -181,7 +181,7 @@ impl Unit {
         found
     }
 
-    /// Returns the leaves of a node; operands of the unit count as leaves.
+    /// Returns the leaves of a node; the unit's operands count as leaves.
     fn leaves(&self, graph: &Graph, node: NodeId) -> BTreeSet<NodeId> {
         let mut found = BTreeSet::new();
         let mut seen = HashSet::new();
@@ -202,14 +202,14 @@ impl Unit {
         found
     }
 
-    /// Adds the second derivatives of the node times its adjoint; `None` if they depend on the rates.
+    /// Adds the second derivatives of the node, multiplied by its adjoint; returns `None` if they depend on rates.
     fn add_curvature(&self, graph: &mut Graph, inertia: &mut Inertia) -> Option<()> {
         for (place, &first) in self.operands.iter().enumerate() {
             let slope = self.partials[place];
             if !is_velocity(graph, slope) {
                 continue;
             }
-            // Derivatives by other operands are 0.
+            // The slope has nonzero derivatives only by operands that it contains.
             let within = self.leaves(graph, slope);
             let (earlier, held) = (&self.operands[..=place], &self.operands);
             let held: Vec<NodeId> = held
@@ -257,7 +257,7 @@ impl Inertia {
         }
     }
 
-    /// Eliminates a velocity: its entries are passed to its operands.
+    /// Eliminates a velocity: adds its Hessian entries to those of its operands.
     fn push(&mut self, graph: &mut Graph, unit: &Unit) {
         let Some(row) = self.terms.remove(&unit.node) else {
             return;
@@ -296,7 +296,7 @@ fn is_velocity(graph: &Graph, node: NodeId) -> bool {
     graph.dependence(node).has(Dependence::RATE)
 }
 
-/// Returns the rate-dependent operands of a node; products in a sum count by their factors.
+/// Returns the rate-dependent operands of a node; a product in a sum is replaced by its factors.
 fn rate_dependent_parts(graph: &Graph, node: NodeId) -> Vec<NodeId> {
     let mut parts = BTreeSet::new();
     for operand in graph.operands(graph.operation(node)) {
@@ -315,11 +315,11 @@ fn rate_dependent_parts(graph: &Graph, node: NodeId) -> Vec<NodeId> {
         .collect()
 }
 
-/// Returns the derivative of a node by one operand, or by a coordinate, with the other operands held.
+/// Returns the derivative of a node by one operand or by a coordinate, with the other operands `held` constant.
 fn partial_derivative(graph: &mut Graph, node: NodeId, held: &[NodeId], by: NodeId) -> NodeId {
     let (zero, one) = (graph.zero(), graph.one());
     let mut direction = Direction::default();
-    // Without a seed, the derivatives of other operands are 0.
+    // Operands without a seed have derivative 0.
     let moving = held.iter().filter(|part| graph.may_depend_on(**part, by));
     for part in moving {
         direction.seed(*part, zero);

@@ -20,14 +20,14 @@ use crate::symbolic::differentiate::{Direction, KnownDerivatives};
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Space};
 use crate::symbolic::tables::TableKind;
 
-/// Cause and place of a failed derivation.
+/// Error of a derivation: location, cause and help.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeriveError {
-    /// Place of the cause in the specification.
+    /// Location of the cause in the specification.
     pub span: Span,
-    /// Cause.
+    /// Description of the cause.
     pub message: String,
-    /// Cure, if known.
+    /// Suggested correction, if there is one.
     pub help: Option<String>,
 }
 
@@ -63,9 +63,9 @@ pub struct Translator<'m> {
     residuals: HashMap<ConstraintId, NodeId>,
     rules: Vec<Rc<FieldRule>>,
     multipliers: Vec<NodeId>,
-    /// Arguments of dot() so far, with their places.
+    /// Arguments of dot() translated so far, with their locations.
     positions: Vec<(Span, NodeId)>,
-    /// Rates along the motion for held first-order states.
+    /// Known rates of nodes along the motion, with constant first-order states.
     rates: KnownDerivatives,
 }
 
@@ -101,12 +101,12 @@ impl<'m> Translator<'m> {
         }
     }
 
-    /// Returns the arguments of dot() that were translated so far, with their places.
+    /// Returns the arguments of dot() that were translated so far, with their locations.
     pub(crate) fn positions(&self) -> &[(Span, NodeId)] {
         &self.positions
     }
 
-    /// Records the nodes of the multipliers, which observables can contain.
+    /// Stores the nodes of the multipliers, which observables can contain.
     pub fn known_multipliers(&mut self, nodes: &[NodeId]) {
         self.multipliers = nodes.to_vec();
     }
@@ -122,7 +122,7 @@ impl<'m> Translator<'m> {
         Ok(node)
     }
 
-    /// Records the node of the next named coefficient, which later ones can contain.
+    /// Stores the node of the next named coefficient, which later coefficients can contain.
     pub fn push_coefficient(&mut self, node: NodeId) {
         self.coefficients.push(node);
     }
@@ -195,7 +195,7 @@ impl<'m> Translator<'m> {
         }
     }
 
-    /// Returns the coordinate of one mode: the sum over all modes, each times 1 or 0.
+    /// Returns the coordinate of one mode as a sum over all modes with factors 1 and 0.
     fn single_mode(&mut self, expr: &Expr, field: FieldId, mode: usize) -> Derived<NodeId> {
         let order = self.graph.orders()[field];
         if mode > order {
@@ -275,8 +275,8 @@ impl<'m> Translator<'m> {
         }
     }
 
-    /// Returns the rate of a node. Known rates are reused only without first-order states, whose rates
-    /// differ from node to node.
+    /// Returns the rate of a node. Known rates are reused only if `rates` is empty, because `rates` differs between
+    /// nodes.
     fn rate_along(&mut self, node: NodeId, rates: &HashMap<StateId, NodeId>) -> NodeId {
         let tangent = |graph: &mut Graph, leaf: NodeId| rate_of_leaf(graph, leaf, rates);
         if !rates.is_empty() {
@@ -432,15 +432,15 @@ fn field_atom(expr: &Expr) -> Option<Atom> {
     }
 }
 
-/// Returns the time derivative of a node along the motion, without accelerations. Coordinates and inputs with
-/// given rates change with these, time changes with 1, and other inputs are constant.
+/// Returns the time derivative of a node along the motion, without accelerations. Coordinates and inputs with given
+/// rates change at these rates, time changes at rate 1, and other inputs are constant.
 pub fn along_motion(graph: &mut Graph, node: NodeId) -> NodeId {
     let still = HashMap::new();
     let tangent = |graph: &mut Graph, leaf: NodeId| rate_of_leaf(graph, leaf, &still);
     Direction::new(&tangent).derivative(graph, node)
 }
 
-/// Returns the rate of a leaf; first-order states have the rates in `rates`, unknown rates are 0.
+/// Returns the rate of a leaf; `rates` has the rates of first-order states, and missing rates are 0.
 fn rate_of_leaf(graph: &mut Graph, leaf: NodeId, rates: &HashMap<StateId, NodeId>) -> NodeId {
     match *graph.operation(leaf) {
         Operation::Coordinate(index) => graph.intern(Operation::Rate(index)),
@@ -452,7 +452,7 @@ fn rate_of_leaf(graph: &mut Graph, leaf: NodeId, rates: &HashMap<StateId, NodeId
     }
 }
 
-/// Returns the time derivative of a node at constant state: by time, and by inputs with given rates.
+/// Returns the time derivative of a node at constant state, due to explicit time and inputs with given rates.
 pub fn explicit_rate(graph: &mut Graph, node: NodeId) -> NodeId {
     let moves = Dependence::TIME.join(Dependence::INPUT);
     if !graph.dependence(node).has(moves) {

@@ -1,6 +1,6 @@
-//! Nodes of a model without fields, without its equations of motion. Every expression is translated;
-//! constraints and distances of impacts are differentiated by their coordinates. The work is proportional to
-//! the size of the specification; that of the equations grows with its square or faster.
+//! Nodes of a model without fields, without its equations of motion. Every expression is translated; constraints and
+//! distances of impacts are differentiated by their coordinates. The work is proportional to the size of the
+//! specification; deriving the equations of motion takes work that grows at least with its square.
 
 use eomgen_model_spec::ids::{ConstraintId, StateId};
 use eomgen_model_spec::model::{CoefficientKind, Model};
@@ -24,7 +24,7 @@ pub(crate) struct Unsolved {
 }
 
 pub(crate) struct ConstraintNodes {
-    /// Expression that is zero for every motion.
+    /// Expression of the constraint.
     pub(crate) residual: NodeId,
     /// Nonzero derivatives by coordinates, or by rates, with their indices.
     pub(crate) derivatives: Vec<(usize, NodeId)>,
@@ -94,7 +94,7 @@ fn translate_constraints(translator: &mut Translator) -> Derived<Vec<ConstraintN
         });
         multipliers.push(multiplier);
     }
-    // Observables can contain multipliers. Placeholders depend on rates, as multipliers do.
+    // Observables can contain multipliers. The placeholders depend on rates, like the multipliers.
     translator.known_multipliers(&multipliers);
     Ok(found)
 }
@@ -109,7 +109,7 @@ fn translate_coefficients(translator: &mut Translator) -> Derived<()> {
                 if let Some(times) = times {
                     translator.node(times)?;
                 }
-                // Placeholder: the factor needs accelerations.
+                // This is a placeholder, because the coefficient itself needs the accelerations.
                 let unknown = Operation::Argument(Argument::Weights, Variable::Time);
                 translator.graph.intern(unknown)
             }
@@ -119,7 +119,7 @@ fn translate_coefficients(translator: &mut Translator) -> Derived<()> {
     Ok(())
 }
 
-/// Translates impacts without the changes of rates that they cause.
+/// Translates impacts without deriving their changes of the rates.
 ///
 /// # Errors
 /// Expressions that cannot be derived, a distance that no coordinate changes, and a slip that is not linear in
@@ -130,7 +130,7 @@ pub(crate) fn translate_impacts(translator: &mut Translator) -> Derived<()> {
         let distance = translator.node(&impact.when)?;
         translator.node(&impact.restitution)?;
         let graph = &mut translator.graph;
-        // At order 0 the distance of a field can contain no modes.
+        // At order 0, a distance of a field depends on no mode.
         let is_rigid = model.fields.is_empty();
         if is_rigid && nonzero_gradient(graph, distance, &GradientBy::Coordinates).is_empty() {
             return Err(immovable_distance_error(impact));

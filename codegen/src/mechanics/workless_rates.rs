@@ -8,9 +8,9 @@
 //! p D = g' - w,    w = g_t - b D + mu c
 //! ```
 //!
-//! An impulse P changes T + V by P (g' - w) with the mean of the rates g' before and after it. The slip of a contact
-//! with friction acts alike. b is zero if T is a quadratic form of the rates, but not for coordinates relative to a
-//! moving frame.
+//! An impulse P changes T + V by P (g' - w) with the mean of the rates g' before and after it. The same equations
+//! hold for the slip of a contact with friction. b is zero if T is a quadratic form of the rates; for coordinates
+//! relative to a moving frame, b is not zero.
 
 use std::collections::HashMap;
 
@@ -24,7 +24,7 @@ use crate::symbolic::degree::is_quadratic_in_rates;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 use crate::symbolic::substitute::substitute;
 
-/// Momenta and rates of the constraints at zero rates of the coordinates.
+/// Momenta and constraint rates at zero rates of the coordinates.
 pub(crate) struct RestTerms {
     /// Momenta b; `None` if they are zero.
     momenta: Option<RowNodes>,
@@ -60,8 +60,8 @@ impl RestTerms {
         }
     }
 
-    /// Returns the rate w of a distance or slip with this rate at zero rates of the coordinates, from the effect of a
-    /// unit impulse: the change of the rates and the multipliers of the constraints.
+    /// Returns the rate w of a distance or slip. `rate` is its rate at zero rates of the coordinates. The change of
+    /// the rates and the multipliers of the constraints are the effect of a unit impulse.
     pub(crate) fn workless_rate(
         &self,
         graph: &mut Graph,

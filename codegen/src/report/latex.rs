@@ -1,4 +1,5 @@
-//! Report as a LaTeX document. Every formula is a paragraph, so that TeX breaks its lines.
+//! Report as a LaTeX document. Every formula is a paragraph, because TeX breaks the lines of paragraphs
+//! automatically.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -106,7 +107,7 @@ impl Report {
         )
     }
 
-    /// Returns the definitions of the piecewise functions in all formulas.
+    /// Returns the definitions of the piecewise functions that occur in the formulas.
     fn piecewise_functions(&self) -> Vec<String> {
         let mut found = BTreeMap::new();
         self.for_each_formula(&mut |formula| {
@@ -146,7 +147,7 @@ impl Report {
     }
 }
 
-/// Returns the cases of a piecewise function.
+/// Returns the definition of a piecewise function by cases, as LaTeX.
 fn definition(function: Function) -> Option<&'static str> {
     match function {
         Function::Deadzone => Some(

@@ -1,5 +1,5 @@
-//! Selection of the nodes of a report and their names. It precedes all formulas, because formulas share
-//! lines.
+//! Selection of the nodes of a report and their names. The selection must be complete before formulas are written,
+//! because formulas share subexpressions.
 
 use eomgen_model_spec::ids::{CoordinateId, FieldId};
 use eomgen_model_spec::model::{MULTIPLIER, Model, Term};
@@ -16,7 +16,7 @@ pub(super) type Shown = (Formula, NodeId);
 pub(super) struct Outline<'a> {
     model: &'a Model,
     equations: &'a Equations,
-    /// Definitions of the specification with a use.
+    /// Definitions of the specification that are used.
     pub definitions: Vec<Shown>,
     /// Named terms of the specification.
     pub terms: Vec<Shown>,
@@ -81,7 +81,7 @@ impl<'a> Outline<'a> {
         nodes
     }
 
-    /// Returns the symbol of a row: its coordinate, or its field's mode coordinates.
+    /// Returns the symbol of a row: its coordinate, or the mode coordinates of its field.
     pub fn row_symbol(&self, row: EquationRow) -> Symbol {
         match row {
             EquationRow::Coordinate(index) => Symbol::plain(&self.model.coordinates[index].name),
@@ -91,7 +91,7 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// Returns true if the row has an element at these truncation orders.
+    /// Returns true if the row exists at these truncation orders.
     pub fn is_present(&self, row: EquationRow) -> bool {
         match row {
             EquationRow::Coordinate(_) => true,

@@ -25,7 +25,7 @@ pub struct Report {
     pub kinetic: Formula,
     /// Potential energy V.
     pub potential: Formula,
-    /// Long subexpressions with several uses. A line refers only to those before it.
+    /// Long subexpressions that are used several times. A line refers only to earlier lines.
     pub shared: Vec<Line>,
     /// Nonzero entries of the mass matrix on and above the diagonal.
     pub mass_matrix: Vec<MassMatrixEntry>,
@@ -50,13 +50,13 @@ pub struct Report {
     pub accelerations: Vec<Line>,
     /// Formulas that change sign at the switching surfaces.
     pub guards: Vec<Formula>,
-    /// Linearity of the model between its switching surfaces.
+    /// Statement on the linearity of the model between its switching surfaces.
     pub linearity: Sentence,
     /// Solution for the accelerations.
     pub solution: Solution,
 }
 
-/// Name with its formula.
+/// Formula with its name.
 #[derive(Clone, Debug, Serialize)]
 pub struct Line {
     /// Name.
@@ -83,18 +83,18 @@ pub struct CoefficientLine {
     pub name: Formula,
     /// Formula.
     pub formula: Formula,
-    /// Indices over the modes: none for a scalar, one for a vector, two for a matrix.
+    /// Mode indices: none for a scalar, one for a vector, two for a matrix.
     #[serde(skip)]
     pub indices: Vec<Index>,
     /// Number of columns of a matrix, else 1.
     #[serde(skip)]
     pub columns: usize,
-    /// Value, or one value for each mode (a matrix row by row), at the specification's parameters in SI
-    /// units; empty if it depends on time or state.
+    /// Values at the parameters of the specification, in SI units: one number, or one for each mode (a matrix row by
+    /// row). Empty if the coefficient depends on time or state.
     pub values: Vec<f64>,
 }
 
-/// Statement, with the formula that it is about.
+/// Statement about a formula.
 #[derive(Clone, Debug)]
 pub struct Sentence {
     /// Text without a full stop.

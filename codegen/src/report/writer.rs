@@ -66,7 +66,7 @@ impl Writer<'_> {
         Formula::sum(names.collect())
     }
 
-    /// Returns the nodes that have names, with their formulas.
+    /// Returns one line for each node that has a name.
     pub fn named_lines(&self, nodes: &[NodeId]) -> Vec<Line> {
         let mut lines: Vec<Line> = Vec::new();
         for &node in nodes {
@@ -130,7 +130,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Returns each row with named factors as their sum.
+    /// Returns the accelerations with named coefficients, each as the sum of coefficient times operand.
     pub fn accelerations(&self) -> Vec<Line> {
         let mut rows: Vec<(EquationRow, Formula, Vec<Formula>)> = Vec::new();
         for coefficient in &self.equations.coefficients {
@@ -161,7 +161,7 @@ impl Writer<'_> {
         lines.collect()
     }
 
-    /// Returns a named factor times its operand.
+    /// Returns the formula of a named coefficient times its operand.
     fn named_term(&self, name: &str, value: NodeId, by: NodeId) -> Formula {
         let graph = &self.equations.graph;
         let multiplied = self.reader.expression(by);

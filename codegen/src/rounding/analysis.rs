@@ -1,5 +1,5 @@
-//! Forward analysis: bounds of every number and of its error; backward analysis: bounds of the sensitivities of one number
-//! to all roundings.
+//! Forward analysis bounds every number and its rounding error. Backward analysis bounds the sensitivities of one
+//! number to all roundings.
 
 use eomgen_model_spec::function::Function;
 use eomgen_model_spec::interval::Interval;
@@ -14,7 +14,7 @@ use super::slopes::{
     raise, slopes,
 };
 
-/// Bounds of a number.
+/// Bounds of a number and of its rounding error.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounded {
     /// Bounds of the exact value.
@@ -37,7 +37,7 @@ impl Bounded {
         }
     }
 
-    /// Bounds of the exact and of the computed value.
+    /// Returns an interval that contains the exact and the computed value.
     fn wide(&self) -> Interval {
         widen(self.value, self.error)
     }
@@ -47,20 +47,20 @@ impl Bounded {
     }
 }
 
-/// Error of one operation for exact operands.
+/// Rounding of one operation with exact operands.
 enum Rounding {
-    /// None.
+    /// No rounding.
     Exact,
-    /// The nearest number of the format.
+    /// Rounding to the nearest number of the format.
     Nearest,
-    /// Exact but for subnormal results.
+    /// Rounding of subnormal results only.
     Scaling,
-    /// Units in the last place.
+    /// Error of at most this number of units in the last place.
     LastPlaces(f64),
 }
 
-/// Returns the bounds of the numbers `needed`, operands first, over a box: the range of each component of a point.
-/// Entries of other numbers have no meaning.
+/// Returns the bounds of the numbers `needed` (indices, operands first) over a box, which has the range of each
+/// component of a point. Entries of the result for other numbers have no meaning.
 pub fn bound_numbers(
     scalars: &Scalars,
     needed: &[usize],
@@ -132,7 +132,7 @@ fn bound_number(
             }
         }
         ScalarOp::Variable(place) => match ranges[place] {
-            // The number of a single point is converted by the caller.
+            // At a single point, the caller has already rounded the number to the format.
             Some(range) if range.low == range.high => {
                 result(number(format.round(range.low)), 0.0, Rounding::Exact)
             }
@@ -243,12 +243,12 @@ fn bound_number(
     }
 }
 
-/// Sides that a selection may take.
+/// Branches that a selection may take.
 enum Side {
     Then,
     Otherwise,
     Both,
-    /// The comparison has no bounds.
+    /// The compared numbers have no bounds.
     Unknown(Obstacle),
 }
 
@@ -270,11 +270,11 @@ fn passed(operand: &Bounded) -> Bounded {
     }
 }
 
-/// Returns a bound of the error of the number `root`, from the sensitivities of it to the roundings of all numbers.
-/// `needed` are the numbers that it depends on. The result may be infinite.
+/// Returns a bound of the rounding error of the number `root`, from its sensitivities to the roundings of all
+/// numbers. `needed` lists the numbers that `root` depends on. The bound may be infinite.
 ///
-/// By the mean value theorem the error is the sum of all roundings, each multiplied by a sensitivity between the exact
-/// and the computed values. These are inside the bounds of the forward analysis.
+/// By the mean value theorem, the error is the sum of all roundings, each times a sensitivity at a point between the
+/// exact and the computed values. The forward analysis bounds these points.
 pub fn bound_by_sensitivities(scalars: &Scalars, needed: &[usize], known: &[Bounded]) -> f64 {
     let Some(root) = needed.last() else {
         return 0.0;
@@ -299,7 +299,7 @@ pub fn bound_by_sensitivities(scalars: &Scalars, needed: &[usize], known: &[Boun
     match sum.is_nan() {
         false if sum == 0.0 && !has_rounding => 0.0,
         true => f64::INFINITY,
-        // The sum has one term for each number; each may underflow.
+        // The sum has one term for each number, and each term may underflow.
         false => {
             let terms = needed.len() as f64;
             above(sum) * (1.0 + f64::EPSILON * terms) + f64::from_bits(1) * terms
@@ -368,7 +368,7 @@ fn smallest(interval: Interval) -> f64 {
     }
 }
 
-/// Error after multiplication by a slope.
+/// Returns the largest magnitude of an error after multiplication by a slope.
 fn scaled(slope: Interval, error: f64) -> f64 {
     match error == 0.0 {
         true => 0.0,
@@ -376,12 +376,12 @@ fn scaled(slope: Interval, error: f64) -> f64 {
     }
 }
 
-/// Returns true for 1 and -1.
+/// Returns true if the factor is exactly 1 or -1.
 fn is_unit(factor: &Bounded) -> bool {
     factor.is_number(1.0) || factor.is_number(-1.0)
 }
 
-/// Returns true for one number that is a power of two.
+/// Returns true if the factor is exactly a power of two.
 fn is_power_of_two(factor: &Bounded) -> bool {
     let number = factor.value.low;
     let significand = number.to_bits() & ((1 << 52) - 1);

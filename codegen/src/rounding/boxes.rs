@@ -1,4 +1,4 @@
-//! Search for a close bound by division of the ranges into boxes.
+//! Search for a tight bound by division of the ranges into boxes.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -19,7 +19,7 @@ struct Part {
 }
 
 impl Part {
-    /// Bound as a number, infinite if there is none.
+    /// Returns the bound, or infinity if there is none.
     fn size(&self) -> f64 {
         self.bound.unwrap_or(f64::INFINITY)
     }
@@ -45,17 +45,17 @@ impl Ord for Part {
     }
 }
 
-/// Largest number of boxes that are divided.
+/// Largest number of divisions of a box.
 const DIVISIONS: usize = 64;
 
-/// Number of operations that the search evaluates at most, but for the whole box.
+/// Largest number of operations that the search evaluates, not counting those of the whole box.
 const WORK: usize = 4_000_000;
 
-/// Returns a bound of the error of the number `root` at all points in `ranges`: the largest of the bounds of boxes. The
-/// box with the largest is divided again and again.
+/// Returns a bound of the rounding error of the number `root` at all points in `ranges`. The bound is the largest
+/// bound of all boxes; the box with the largest bound is divided repeatedly.
 ///
 /// # Errors
-/// The reason for which a box has no bound.
+/// The reason for the missing bound of a box.
 pub fn bound_root(scalars: &Scalars, root: usize, ranges: &Ranges) -> Result<f64, Obstacle> {
     let needed = scalars.reachable(root);
     let variables = needed
@@ -90,8 +90,8 @@ pub fn bound_root(scalars: &Scalars, root: usize, ranges: &Ranges) -> Result<f64
     parts.pop().map_or(Ok(0.0), |worst| worst.bound)
 }
 
-/// Orders divisions by the larger bound, then by the smaller one. If no half has a bound, the variable with the largest
-/// share of its range is divided.
+/// Orders divisions of a box by the larger bound of the two halves, then by the smaller bound. If no half has a
+/// bound, the variable with the largest share of its range is divided.
 fn compare_halves((a, a_share): &([Part; 2], f64), (b, b_share): &([Part; 2], f64)) -> Ordering {
     let larger = |halves: &[Part; 2]| halves[0].size().max(halves[1].size());
     let smaller = |halves: &[Part; 2]| halves[0].size().min(halves[1].size());
@@ -100,7 +100,7 @@ fn compare_halves((a, a_share): &([Part; 2], f64), (b, b_share): &([Part; 2], f6
     by_bounds.then(b_share.total_cmp(a_share))
 }
 
-/// Width of a box relative to the whole range of a variable.
+/// Returns the width of a box relative to the whole range of a variable.
 fn share(part: &Ranges, whole: &Ranges, place: usize) -> f64 {
     let width = |ranges: &Ranges| ranges[place].map_or(0.0, |range| range.high - range.low);
     width(part) / width(whole)

@@ -31,7 +31,7 @@ impl Format {
         }
     }
 
-    /// Largest finite number.
+    /// Returns the largest finite number.
     pub(super) fn largest(self) -> f64 {
         match self {
             Self::Double => f64::MAX,
@@ -39,7 +39,7 @@ impl Format {
         }
     }
 
-    /// Smallest number with all digits.
+    /// Returns the smallest positive normal number.
     pub(super) fn smallest_normal(self) -> f64 {
         match self {
             Self::Double => f64::MIN_POSITIVE,
@@ -47,7 +47,7 @@ impl Format {
         }
     }
 
-    /// Half the distance of neighbouring numbers at 1.
+    /// Returns the unit roundoff: half the distance between 1 and the next larger number.
     fn unit(self) -> f64 {
         match self {
             Self::Double => f64::EPSILON / 2.0,
@@ -55,7 +55,8 @@ impl Format {
         }
     }
 
-    /// Half the smallest positive number; in double precision the smallest positive number.
+    /// Returns half the smallest positive number; in double precision the smallest positive number, because its half
+    /// underflows.
     pub(super) fn smallest_half(self) -> f64 {
         match self {
             Self::Double => f64::from_bits(1),
@@ -63,11 +64,11 @@ impl Format {
         }
     }
 
-    /// Half a unit in the last place of numbers up to `magnitude`.
+    /// Returns half a unit in the last place of numbers up to `magnitude`.
     pub(super) fn half_last_place(self, magnitude: f64) -> f64 {
         match magnitude < self.smallest_normal() {
             true => self.smallest_half(),
-            // The power of two below the magnitude.
+            // The largest power of two that is at most the magnitude.
             false => f64::from_bits(magnitude.to_bits() & !((1 << 52) - 1)) * self.unit(),
         }
     }
@@ -80,7 +81,7 @@ impl Format {
             true => 0.0,
             false => self.half_last_place(magnitude),
         };
-        // All numbers of the interval have one rounded value.
+        // All numbers of the interval have the same rounded value.
         let common = (low - exact.low).abs().max((high - exact.high).abs());
         match low == high {
             true => general.min(above(common)),

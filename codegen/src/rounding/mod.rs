@@ -1,13 +1,14 @@
 //! Bounds of the rounding errors of a program over ranges of time, states, inputs and parameters.
 //!
 //! `scalars` lists the operations on single numbers, `analysis` bounds each number and its error over a box, with the
-//! rules of `format` and `slopes`, and `boxes` divides the ranges until the bound is close. `points` bounds errors at single
-//! points. `quantities` lists the numbers with a bound, and `obstacle` describes the reason for a missing one.
+//! rules of `format` and `slopes`, and `boxes` divides the ranges until the bound is tight. `points` bounds errors at
+//! single points. `quantities` lists the numbers that are bounded, and `obstacle` describes the reason for a missing
+//! bound.
 //!
-//! The error of a quantity is the difference between the value that emitted code computes and the exact value of the same
-//! formulas. Constants, tables, time, states, inputs and parameters are exact: the numbers of the call. In single
-//! precision the coefficients are prepared in double precision and converted. If a function jumps, both values are on
-//! the same side of the jump.
+//! The error of a quantity is the difference between the value that emitted code computes and the exact value of the
+//! same formulas. Constants, tables and the arguments of the call (time, states, inputs, parameters) count as exact.
+//! In single precision the coefficients are prepared in double precision and converted. If a function jumps, the
+//! computed and the exact value are taken on the same side of the jump.
 
 mod analysis;
 mod boxes;
@@ -35,7 +36,7 @@ pub struct RoundingBound {
     pub quantity: Quantity,
     /// Format of the computation.
     pub format: Format,
-    /// Bound in the unit of the quantity, or the reason for its absence.
+    /// Bound in the unit of the quantity, or the reason for a missing bound.
     pub bound: Result<f64, String>,
 }
 
@@ -49,7 +50,7 @@ pub fn bound_quantities(program: &Program, format: Format, ranges: &Ranges) -> V
 /// double precision.
 ///
 /// # Errors
-/// The reason for which one of them has no bound.
+/// The reason for the missing bound of a rate.
 pub fn bound_rates(program: &Program, ranges: &Ranges) -> Result<Vec<f64>, String> {
     let bounds = bound_all(program, quantities::rates(program), Format::Double, ranges);
     bounds.into_iter().map(|bounded| bounded.bound).collect()

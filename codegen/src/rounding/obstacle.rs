@@ -5,21 +5,21 @@ use eomgen_model_spec::interval::Interval;
 use super::scalars::Scalars;
 use crate::program::Program;
 
-/// Place and cause of a missing bound.
+/// Operation and cause of a missing bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Obstacle {
     /// Index of the operation in [`Scalars::list`](super::Scalars::list).
     pub scalar: usize,
     /// Cause.
     pub cause: Cause,
-    /// Bounds of its argument, or of its result for [`Cause::Overflow`].
+    /// Bounds of the operation's argument, or of its result for [`Cause::Overflow`].
     pub bounds: Interval,
 }
 
 /// Cause of a missing bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
-    /// The variable at this place of the point has no range.
+    /// The variable with this index in the point has no range.
     NoRange(usize),
     /// The divisor may be 0.
     Divisor,
@@ -27,9 +27,9 @@ pub enum Cause {
     Pivot,
     /// The argument may be outside the domain.
     OutsideDomain,
-    /// The angle may exceed this size in rad.
+    /// The magnitude of the angle may exceed this value in rad.
     LargeAngle(f64),
-    /// The angle of a point may jump at the negative half-axis.
+    /// The result of `atan2` may jump at the branch cut, the negative half-axis.
     Cut,
     /// The width of a dead zone may be negative.
     NegativeWidth,
@@ -38,7 +38,7 @@ pub enum Cause {
 }
 
 impl Obstacle {
-    /// Describes what is missing and how to state or narrow it.
+    /// Describes the missing or too wide range and how to declare or narrow it.
     pub fn describe(&self, program: &Program, scalars: &Scalars) -> String {
         let Interval { low, high } = self.bounds;
         let between = format!("it is between {low:.2e} and {high:.2e} in the ranges");

@@ -14,7 +14,7 @@ pub struct PointBounds {
 }
 
 impl PointBounds {
-    /// Prepares the bounds of these values of a program, each of which is one number.
+    /// Prepares the bounds of these values of a program; each value must be a scalar.
     pub fn new(program: &Program, values: &[ValueId]) -> Self {
         let scalars = Scalars::record(program, values, Format::Double);
         let roots = values.iter().map(|id| scalars.element(program, *id, 0));

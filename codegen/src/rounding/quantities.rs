@@ -10,11 +10,11 @@ use crate::program::{Program, RowValues, ValueId};
 pub struct Quantity {
     /// Name, such as `mass_matrix[theta, phi]` or `rates[theta_dot]`.
     pub name: String,
-    /// SI unit; `None` if that of a coordinate is not known.
+    /// SI unit; `None` if the unit of a coordinate is not known.
     pub unit: Option<String>,
-    /// Value that contains it.
+    /// Value of the program that contains the number.
     pub value: ValueId,
-    /// Index of the element; a scalar has one for all.
+    /// Index of the element in the value; a scalar has the same number for all indices.
     pub index: usize,
 }
 

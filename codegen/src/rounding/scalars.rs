@@ -1,5 +1,5 @@
-//! Program as a list of operations on single numbers, recorded by running its steps on handles. Equal operations are
-//! merged.
+//! Program as a list of operations on scalars. The list is recorded by an evaluation with handles in place of
+//! numbers; equal operations are merged.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -13,7 +13,7 @@ use crate::program::evaluator::{NO_POINT, Number, Places, step};
 use crate::program::{Extent, Op, Program, ValueId, Variable};
 use crate::statements::coefficient_values;
 
-/// Operation on numbers, which are indices of [`Scalars::list`].
+/// Operation on numbers; operands are indices in [`Scalars::list`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ScalarOp {
     /// Number.
@@ -34,7 +34,7 @@ pub enum ScalarOp {
     Divide(usize, usize),
     /// a^b
     Power(usize, usize),
-    /// Function of one argument, given twice, or of two.
+    /// Function of two arguments; if it has one argument, both operands are equal.
     Call(Function, usize, usize),
     /// `if a > b { then } else { otherwise }`: a, b, then, otherwise.
     Select([usize; 4]),
@@ -42,11 +42,11 @@ pub enum ScalarOp {
     Positive(usize),
 }
 
-/// Kind, payload and operands of an operation.
+/// Kind, constant or function, and operands of an operation.
 type Key = (Discriminant<ScalarOp>, u64, [usize; 4]);
 
 impl ScalarOp {
-    /// Returns the operands; one of several uses may be repeated.
+    /// Returns the operands; an operand may be repeated.
     pub(super) fn operands(&self) -> impl Iterator<Item = usize> + use<> {
         let operands = match *self {
             Self::Constant(_) | Self::Variable(_) => [None; 4],
@@ -62,7 +62,7 @@ impl ScalarOp {
         operands.into_iter().flatten()
     }
 
-    /// Returns bits that are equal for equal operations only.
+    /// Returns a key that is equal only for equal operations.
     fn key(&self) -> Key {
         let mut operands = [0; 4];
         for (slot, operand) in operands.iter_mut().zip(self.operands()) {
@@ -78,14 +78,14 @@ impl ScalarOp {
     }
 }
 
-/// Number of the list.
+/// Number in the list.
 #[derive(Clone, Copy, Debug)]
 pub struct Scalar {
     /// Operation.
     pub op: ScalarOp,
     /// Format of the result.
     pub format: Format,
-    /// Value of the program that contains it.
+    /// Value of the program that contains the number.
     pub value: ValueId,
 }
 
@@ -164,8 +164,8 @@ impl Scalars {
         known
     }
 
-    /// Computes all numbers at a [point](Program::point_place), each in its format. States and inputs must be numbers
-    /// of it.
+    /// Computes all numbers at a [point](Program::point_place), each in its format. States and inputs must be
+    /// representable in the format.
     pub fn evaluate_rounded(&self, point: &[f64]) -> Vec<f64> {
         let mut known: Vec<f64> = Vec::with_capacity(self.list.len());
         for scalar in &self.list {
@@ -228,7 +228,7 @@ fn convert(program: &Program, places: &Places, id: ValueId, elements: &mut [Reco
     }
 }
 
-/// Returns the place in a [point](Program::point_place) of the variable that an operation reads, if it reads one.
+/// Returns the index in a [point](Program::point_place) of the variable that an operation reads, if it reads one.
 fn variable_place(program: &Program, op: &Op) -> Option<usize> {
     let place = |variable| Some(program.point_place(variable));
     match *op {
@@ -244,7 +244,7 @@ fn variable_place(program: &Program, op: &Op) -> Option<usize> {
     }
 }
 
-/// Number of the recording on this thread, by its index.
+/// Index of a number in the list that this thread records.
 #[derive(Clone, Copy, Debug)]
 struct Recorded(usize);
 
@@ -270,7 +270,7 @@ thread_local! {
     static RECORDER: RefCell<Recorder> = RefCell::new(Recorder::new());
 }
 
-/// Records an operation if it is new, and returns its number.
+/// Records an operation if it is new, and returns the index of its result.
 fn emit(op: ScalarOp) -> Recorded {
     RECORDER.with_borrow_mut(|recorder| {
         let key = (recorder.format, op.key());

@@ -1,4 +1,5 @@
-//! Functions over intervals: their slopes, the error of their evaluation, and the arguments for which they have no bound.
+//! Functions on intervals: bounds of their slopes, their evaluation errors, and arguments for which there is no
+//! bound.
 
 use eomgen_elementary::LARGEST_ANGLE;
 use eomgen_model_spec::function::Function;
@@ -10,7 +11,7 @@ use super::obstacle::Cause;
 const ZERO: Interval = number(0.0);
 const ONE: Interval = number(1.0);
 
-/// Returns the interval of one number.
+/// Returns the interval that contains only this number.
 pub(super) const fn number(value: f64) -> Interval {
     Interval {
         low: value,
@@ -18,7 +19,7 @@ pub(super) const fn number(value: f64) -> Interval {
     }
 }
 
-/// Largest angle with stated errors of sine, cosine and tangent in single precision, in rad.
+/// Largest angle in rad for which the errors of sine, cosine and tangent in single precision are known.
 const ACCURATE_SINGLE_ANGLE: f64 = 1e5;
 
 /// Returns the error of a function for exact arguments, in units in the last place, as asserted by the tests of the
@@ -55,7 +56,7 @@ pub(super) fn last_places(function: Function, format: Format) -> Option<f64> {
 /// Error of x^y in units in the last place.
 pub(super) const POWER_LAST_PLACES: f64 = 0.76;
 
-/// Returns why a function has no bound for arguments in `x` and `y`, if it has none.
+/// Returns the reason if a function has no bound for arguments in `x` and `y`.
 pub(super) fn find_obstacle(
     function: Function,
     format: Format,
@@ -81,8 +82,8 @@ pub(super) fn find_obstacle(
     Some(found)
 }
 
-/// Returns the derivatives by both arguments; for piecewise functions, bounds of all difference quotients on one side of
-/// the jumps.
+/// Returns bounds of the derivatives by both arguments; for piecewise functions, bounds of all difference quotients
+/// between points on the same side of the jumps.
 pub(super) fn slopes(function: Function, x: Interval, y: Interval) -> [Interval; 2] {
     if let Some(slope) = x.differentiate(function, Interval::apply_function(function, &[x])) {
         return [slope, ZERO];
@@ -94,7 +95,7 @@ pub(super) fn slopes(function: Function, x: Interval, y: Interval) -> [Interval;
         Function::Atan2 | Function::Min | Function::Max | Function::Deadzone => {
             slopes_of_two(function, x, y)
         }
-        // The functions that jump.
+        // Functions that jump have slope 0 on each side.
         _ => [ZERO, ZERO],
     }
 }
@@ -110,7 +111,8 @@ fn slopes_of_two(function: Function, x: Interval, y: Interval) -> [Interval; 2] 
         Function::Min if y.high <= x.low => [ZERO, ONE],
         Function::Max if x.low >= y.high => [ONE, ZERO],
         Function::Max if y.low >= x.high => [ZERO, ONE],
-        // Deadzone from here on, or an undecided minimum or maximum.
+        // If the comparison of a minimum or maximum is undecided, both slopes are between 0 and 1. The following arms
+        // are for the dead zone.
         Function::Min | Function::Max => [part, part],
         _ if x.low >= y.high => [ONE, ONE.negate()],
         _ if x.high <= -y.high => [ONE, ONE],
@@ -129,7 +131,7 @@ fn slopes_of_two(function: Function, x: Interval, y: Interval) -> [Interval; 2] 
     }
 }
 
-/// Returns the bounds of a^b; all numbers where it is not bounded.
+/// Returns the bounds of a^b; the interval of all numbers if a^b is not bounded.
 pub(super) fn raise(a: Interval, b: Interval) -> Interval {
     match () {
         () if b.low == b.high => a.raise(b.low),
@@ -141,7 +143,7 @@ pub(super) fn raise(a: Interval, b: Interval) -> Interval {
     }
 }
 
-/// Returns why a^b has no bound, if it has none.
+/// Returns the reason if a^b has no bound.
 pub(super) fn find_power_obstacle(a: Interval, b: Interval) -> Option<Cause> {
     let is_constant = b.low == b.high;
     let is_whole = is_constant && b.low.fract() == 0.0;

@@ -1,10 +1,10 @@
-//! Equations of a piecewise-linear model, y' = A y + B u + S sin + C cos + c. Every coefficient depends only
-//! on parameters, so that one program computes the matrices of any regime at any parameters.
+//! Equations of a piecewise-linear model, y' = A y + B u + S sin + C cos + c. All coefficients depend only on
+//! parameters and sides. Therefore one program computes the matrices of every regime for all parameter values.
 //!
-//! A switching function becomes a polynomial in *sides*, one for each switching surface: 1 if the surface's
-//! function is positive, else 0. For example, deadzone(p, b) is s(p - b) (p - b) + (1 - s(p + b)) (p + b).
-//! With the sides as parameters, the equations are linear in the motion. A side between 0 and 1 describes a
-//! state held on the surface (sticking): the convex combination of the motions on both sides.
+//! Every piecewise function becomes a polynomial in *sides*. Each switching surface has one side: 1 if its switching
+//! function is positive, else 0. For example, deadzone(p, b) is s(p - b) (p - b) + (1 - s(p + b)) (p + b). With the
+//! sides as parameters, the equations are linear in the motion. A side between 0 and 1 describes a state that is held
+//! on the surface, for example during sticking: the rates are a convex combination of the rates on both sides.
 
 mod rows;
 
@@ -28,17 +28,17 @@ pub(crate) use rows::AffineRow;
 pub struct AffineEquations {
     pub(crate) graph: Graph,
     pub(crate) parameter_names: Vec<String>,
-    /// Expression of each dependent parameter; the sides follow, without expressions.
+    /// Expression of each derived parameter. The sides follow as further parameters; they have no expressions.
     pub(crate) derived_parameters: Vec<Option<NodeId>>,
     pub(crate) scalars: Vec<AffineRow>,
-    /// One row for each field, with a number or a row of coefficients for each mode.
+    /// One row for each field, with the coefficients of all modes.
     pub(crate) modal: Vec<AffineRow>,
     pub(crate) first_order: Vec<AffineRow>,
     pub(crate) guards: Vec<AffineRow>,
     pub(crate) guard_functions: Vec<Function>,
-    /// For each guard, the first one that differs from it only by parameters.
+    /// For each guard, the first guard whose surface is parallel, because both differ only by parameters.
     pub(crate) guard_groups: Vec<usize>,
-    /// For each guard, true if it can be constant throughout a regime: if it depends on the sides of other
+    /// For each guard, true if it can be constant throughout a regime, because it depends on the sides of other
     /// surfaces or only on inputs.
     pub(crate) guards_rest: Vec<bool>,
     /// Half-widths of dead zones, which must not be negative.
@@ -165,7 +165,7 @@ fn at_time_zero(graph: &mut Graph, phase: NodeId, time: NodeId) -> NodeId {
     substitute(graph, phase, &zero, &mut HashMap::new())
 }
 
-/// Returns, for each surface, the first one that it is parallel to (itself included).
+/// Returns, for each surface, the index of the first parallel surface (possibly its own index).
 fn parallel_groups(graph: &mut Graph, surfaces: &[NodeId]) -> Vec<usize> {
     let mut firsts = Vec::with_capacity(surfaces.len());
     for (index, &surface) in surfaces.iter().enumerate() {
@@ -178,7 +178,7 @@ fn parallel_groups(graph: &mut Graph, surfaces: &[NodeId]) -> Vec<usize> {
     firsts
 }
 
-/// Returns the number of inputs up to the last one with a use.
+/// Returns the number of inputs up to the last input that `nodes` use.
 fn input_count(graph: &Graph, nodes: &[NodeId]) -> usize {
     let inputs = graph
         .reachable(nodes)

@@ -1,4 +1,5 @@
-//! Coefficients of an expression of first degree in the motion: its derivatives, and its value at rest.
+//! Coefficients of an expression of first degree in the motion: its derivatives, and its value with zero state,
+//! inputs and sinusoids.
 
 use std::collections::HashMap;
 
@@ -11,8 +12,8 @@ use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 use crate::symbolic::modal_derivative::ModalDerivative;
 use crate::symbolic::substitute::substitute;
 
-/// Coefficients of an expression. A scalar has numbers, and vectors for the modes; a vector over modes has
-/// vectors, and matrices for the modes.
+/// Coefficients of an expression. The coefficients of a scalar are scalars, or vectors over the modes of a field. The
+/// coefficients of a vector over modes are vectors, or matrices over the modes of both fields.
 #[derive(Clone, Debug)]
 pub(crate) struct AffineRow {
     pub coordinates: Vec<NodeId>,
@@ -88,8 +89,8 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// Prepares the variables of a model whose accelerations have these rows, with `states` states of first
-    /// order.
+    /// Prepares the variables of a model whose accelerations have these rows; `states` is the number of first-order
+    /// states.
     pub fn new(
         graph: &mut Graph,
         (rows, states): (&RowNodes, usize),
@@ -129,7 +130,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Returns the coefficients of `id`; with `elements`, of each element over this space.
+    /// Returns the coefficients of the node `id`; if `elements` is given, those of each element of a vector over this
+    /// space.
     pub fn row(&mut self, graph: &mut Graph, id: NodeId, elements: Option<Space>) -> AffineRow {
         let by = |graph: &mut Graph, variables: &[NodeId]| -> Vec<NodeId> {
             variables
@@ -158,7 +160,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Returns the value at rest, with inputs and sinusoids at 0.
+    /// Returns the value of a node with zero state, inputs and sinusoids.
     fn constant(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
         let sinusoids = self.sinusoids;
         let replacement = |graph: &mut Graph, node: NodeId| {
@@ -177,7 +179,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Differentiates by each field's modes: a vector for a scalar, a matrix for elements.
+/// Differentiates by the modes of each field. The derivative of a scalar is a vector, that of a vector over modes a
+/// matrix.
 fn read_modes(
     graph: &mut Graph,
     id: NodeId,

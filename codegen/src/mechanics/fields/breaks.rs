@@ -1,4 +1,4 @@
-//! Positions at which a coefficient along a field switches, if these are fixed fractions of its length.
+//! Positions at which a coefficient along a field switches, if they are fixed fractions of the field's length.
 
 use eomgen_model_spec::evaluate::{evaluate, evaluate_with};
 use eomgen_model_spec::ids::FieldId;
@@ -6,17 +6,17 @@ use eomgen_model_spec::model::{Expr, ExprKind, Function, Model, ParameterValue};
 
 use super::contents::contents;
 
-/// Rounding errors of a relative position: a dozen operations.
+/// Largest rounding error of a relative position, which takes a dozen operations.
 const ROUNDING: f64 = 1e-14;
 
-/// Numbers of other values of all parameters that must leave a position at its fraction.
+/// Number of other parameter sets for which a position must be at the same fraction of the length.
 const OTHER_VALUES: usize = 2;
 
-/// Function of the position that changes its sign at a break: a sum of arguments with factors.
+/// Function of the position that changes its sign at a break: a sum of expressions with factors.
 type Argument<'m> = Vec<(f64, &'m Expr)>;
 
-/// Returns the relative positions, ascending, inside the domain. Coefficients that switch at a position that depends on
-/// the parameters in another way have none.
+/// Returns the relative positions inside the domain, ascending. Switches whose relative position depends on the
+/// parameters are left out.
 pub(super) fn fixed_breaks(model: &Model, field: FieldId) -> Vec<f64> {
     let arguments = switching_arguments(model, field);
     if arguments.is_empty() {
@@ -106,7 +106,8 @@ fn relative_root(
     (is_linear && root.is_finite()).then_some(root)
 }
 
-/// Returns the parameters with all independent ones changed by different factors; their bounds do not matter.
+/// Returns the parameters, with each independent parameter multiplied by a different factor; declared bounds are
+/// ignored.
 fn other_values(model: &Model, draw: usize) -> Option<Vec<f64>> {
     let mut changed = model.clone();
     for (place, parameter) in changed.parameters.iter_mut().enumerate() {

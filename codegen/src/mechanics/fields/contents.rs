@@ -1,9 +1,9 @@
-//! Quantities in parts of an integrand.
+//! Quantities that a part of an integrand depends on.
 
 use eomgen_model_spec::ids::DefinitionId;
 use eomgen_model_spec::model::{Expr, ExprKind, Model};
 
-/// Quantities in an expression.
+/// Quantities that an expression depends on.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Contents {
     pub position: bool,
@@ -30,7 +30,7 @@ impl Contents {
     }
 }
 
-/// Returns the quantities in a part of an integrand.
+/// Finds the quantities that a part of an integrand depends on.
 pub(super) fn contents(model: &Model, expr: &Expr) -> Contents {
     let mut found = Contents::default();
     match &expr.kind {

@@ -4,14 +4,14 @@ use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::{Expr, ExprKind, Model};
 
-/// Highest exponent that counts as that of a polynomial.
+/// Largest exponent of a power that is treated as a polynomial.
 const MAX_EXPONENT: f64 = 32.0;
 
-/// Degree of a product of two shapes, which is that of an energy of a linear machine.
+/// Degree of a product of two shapes, as in the energies of a linear beam.
 const QUADRATIC: u32 = 2;
 
-/// Returns the highest degree of the integrals over a field in its shapes, at least 2. Integrands that are not
-/// polynomials of the field have no degree and do not count.
+/// Returns the highest degree in the mode shapes of all integrands over a field, at least 2. Integrands that are not
+/// polynomials of the field are ignored.
 pub(crate) fn highest_degree(model: &Model, of: FieldId) -> u32 {
     let mut highest = QUADRATIC;
     model.for_each_expression(&mut |expr| {
@@ -25,7 +25,8 @@ pub(crate) fn highest_degree(model: &Model, of: FieldId) -> u32 {
     highest
 }
 
-/// Returns the degree in the shapes of the field; `None` if the expression is not a polynomial of them.
+/// Returns the degree of an expression in the mode shapes of the field; `None` if the expression is not a polynomial
+/// in them.
 fn degree(expr: &Expr) -> Option<u32> {
     match &expr.kind {
         ExprKind::Field(_) | ExprKind::ModeShape(_) => Some(1),

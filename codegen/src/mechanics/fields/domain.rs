@@ -28,7 +28,7 @@ pub struct Domain {
 }
 
 impl Domain {
-    /// Checks that the shapes have the derivatives of this atom.
+    /// Checks that the mode shapes have the derivative that this atom needs.
     ///
     /// # Errors
     /// A third derivative of tabulated shapes, which are cubic splines.
@@ -42,8 +42,8 @@ impl Domain {
         Ok(())
     }
 
-    /// Returns s = (x - from)/(to - from). Tabulated shapes need a constant s, so equal terms of x and the
-    /// domain are cancelled for them.
+    /// Returns s = (x - from)/(to - from). Tabulated shapes need a constant s; for these, equal terms of x and of the
+    /// ends of the domain are cancelled.
     pub fn relative_position(&self, graph: &mut Graph, position: NodeId) -> NodeId {
         if self.basis.table().is_none() {
             let from_start = graph.subtract(position, self.from);

@@ -1,10 +1,10 @@
 //! Functions of the position along a field, and their integrals over its domain.
 //!
-//! An integrand is a sum of terms. Each term has a scalar, a power of s = (x - from)/(to - from), an optional
-//! weight at quadrature nodes, and at most two field atoms (w, its rate, a mode shape, or a derivative of one
-//! by the position). Terms without a weight have exact dimensionless integrals (`modes`), so that lengths and
-//! stiffnesses remain parameters. A weight of parameters is integrated when the coefficients are prepared.
-//! Other integrands are evaluated at the quadrature nodes.
+//! An integrand is a sum of terms. Each term has a scalar, a power of s = (x - from)/(to - from), an optional weight
+//! at quadrature nodes, and at most two field atoms (w, its rate, a mode shape, or a derivative of one by the
+//! position). Terms without a weight have exact dimensionless integrals (`modes`); lengths and stiffnesses remain
+//! parameters. A weight that depends only on parameters is integrated by `prepare`. Other integrands are evaluated at
+//! the quadrature nodes in every call.
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::model::Function;
@@ -61,7 +61,7 @@ impl FieldFunction {
         function
     }
 
-    /// Returns a multiple.
+    /// Multiplies the function by a number.
     pub fn scale(mut self, graph: &mut Graph, factor: f64) -> Self {
         for term in &mut self.terms {
             term.scalar = graph.scale(factor, term.scalar);
@@ -121,7 +121,7 @@ impl FieldFunction {
         Ok(Self::weight(graph, result))
     }
 
-    /// Returns the value at a position that depends only on parameters.
+    /// Returns the value of the function at a position that depends only on parameters.
     pub fn evaluate_at(
         &self,
         graph: &mut Graph,
@@ -247,7 +247,7 @@ impl FieldFunction {
         }
     }
 
-    /// Returns the values at the quadrature nodes: a vector over the nodes, or a scalar.
+    /// Returns the values at the quadrature nodes: a vector over the nodes, or a scalar if they are equal.
     fn values(&self, graph: &mut Graph, domain: &Domain) -> Outcome<NodeId> {
         let s = domain.table(graph, TableKind::NodePosition);
         let mut terms = Vec::new();
@@ -267,7 +267,7 @@ impl FieldFunction {
     }
 }
 
-/// Moves a power without a table into the weight.
+/// Multiplies the weight by a power of s that has no table of integrals.
 fn reduce_power(
     graph: &mut Graph,
     domain: &Domain,

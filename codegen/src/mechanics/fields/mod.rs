@@ -1,11 +1,11 @@
 //! Functions of the position along a field, and their integrals.
 //!
-//! `rule` is the quadrature rule, by the `degree` of integrals and the `breaks` of coefficients, which depend on the
-//! `contents` of integrands. `resolution` checks the quadrature at values of the parameters.
+//! `rule` selects the quadrature rule from the `degree` of integrands and the `breaks` of coefficients; `contents`
+//! finds the quantities of an integrand. `resolution` checks the quadrature for given parameters.
 //!
-//! `term` and `function` define integrands as sums of terms, `moments` their integrals as nodes, `domain` the
-//! interval of a field. `mode`, `beam` and `spline` compute shapes, `modes` and `quadrature` the tables of a
-//! basis.
+//! `term` and `function` define integrands as sums of terms. `moments` builds the nodes of their integrals, and
+//! `domain` those of a field's interval. `mode`, `beam` and `spline` compute mode shapes; `modes` and `quadrature`
+//! compute the tables of a basis.
 
 mod beam;
 mod breaks;

@@ -1,8 +1,8 @@
 //! Mode of a uniform beam, a rod or a string: shape, derivatives and end values.
 //!
-//! phi(s) = a sin z + c cos z + f exp(-z) + g exp(z - k), z = k s. One exponential decays from the start and
-//! one from the end: hyperbolic functions would lose all digits from about the twelfth mode on. The
-//! elementary functions are those of this project, so that the tables have the same bits on every machine.
+//! phi(s) = a sin z + c cos z + f exp(-z) + g exp(z - k), z = k s. One exponential decays from the start and one from
+//! the end, because hyperbolic functions lose all digits from about the twelfth mode on. The project's own elementary
+//! functions make the tables bit-identical on all machines.
 
 use eomgen_elementary::Function;
 use eomgen_model_spec::model::End;
@@ -28,8 +28,8 @@ pub(super) struct Mode {
 }
 
 impl Mode {
-    /// Returns the integral of phi, or of s phi with `power` 1. With phi'''' = k^4 phi, integration by parts
-    /// leaves only end values.
+    /// Returns the integral of s^power phi for `power` 0 or 1. Because phi'''' = k^4 phi, integration by parts leaves
+    /// only end values.
     pub(super) fn moment(&self, power: u32) -> f64 {
         let k = self.wavenumber;
         match power {
@@ -38,7 +38,7 @@ impl Mode {
         }
     }
 
-    /// Returns phi^(n)(s), the derivative by s.
+    /// Returns phi^(n)(s), the n-th derivative by s.
     pub(super) fn shape(&self, derivative: u8, s: f64) -> f64 {
         let z = self.wavenumber * s;
         let (sine, cosine) = (Function::Sin.apply(&[z]), Function::Cos.apply(&[z]));
@@ -59,9 +59,10 @@ impl Mode {
     }
 }
 
-/// Returns phi^(n)/k^n for n = 0 .. 3 at an end, from the wave (the first two terms of phi) and the
-/// exponentials, each with its first derivative divided by k. The end condition makes two of the four vanish.
-/// If both kinds of term contribute, they are opposite in these two and equal in the other two.
+/// Returns phi^(n)/k^n for n = 0 .. 3 at an end. The arguments are the wave (the first two terms of phi) and the
+/// exponentials at this end, each with its first derivative divided by k. The boundary condition makes two of the
+/// four values zero. If wave and exponentials both contribute, they cancel in these two and are equal in the other
+/// two.
 pub(super) fn values_at(end: End, [w, dw]: [f64; 2], [x, dx]: [f64; 2]) -> [f64; 4] {
     match end {
         End::Clamped => [0.0, 0.0, -2.0 * w, -2.0 * dw],

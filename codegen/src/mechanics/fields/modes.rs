@@ -9,14 +9,14 @@ use super::quadrature::{QuadratureRule, composite, gauss_legendre};
 use super::spline::Spline;
 use crate::symbolic::tables::{TableKind, quadrature_size};
 
-/// Number of shapes in the energies of a linear machine.
+/// Number of shapes in the products for which quadrature nodes are chosen by default.
 const PRODUCT_OF_TWO: u32 = 2;
 
-/// Degree of a piece of a spline.
+/// Polynomial degree of the pieces of a cubic spline.
 const DEGREE_OF_A_PIECE: usize = 3;
 
-/// Returns true if the integral of s^k phi_r^(a) phi_p^(b) vanishes for r != p. The shapes and the curvatures
-/// of a uniform beam are orthogonal; sines and cosines are also in other derivatives of equal kind.
+/// Returns true if the integral of s^k phi_r^(a) phi_p^(b) is zero for all r != p. The shapes of a uniform beam are
+/// orthogonal, and so are their curvatures. For sines and cosines this also holds for other equal derivatives.
 pub fn is_orthogonal(basis: &Basis, power: u32, left: u8, right: u8) -> bool {
     let alike = left == right && (left == 0 || left == 2);
     match *basis {
@@ -28,8 +28,9 @@ pub fn is_orthogonal(basis: &Basis, power: u32, left: u8, right: u8) -> bool {
     }
 }
 
-/// Returns the number of quadrature nodes between neighbouring knots, for products of up to `degree` shapes. Together,
-/// the pieces of a table have as many as other bases, and each has enough for the products.
+/// Returns the number of quadrature nodes between neighbouring knots, for products of up to `degree` shapes. All
+/// pieces of a table together have at least as many nodes as other bases, and each piece has enough nodes for the
+/// products.
 pub(super) fn nodes_of_a_piece(basis: &Basis, order: usize, degree: u32) -> usize {
     let nodes = quadrature_size(order, degree);
     match basis {
@@ -41,7 +42,7 @@ pub(super) fn nodes_of_a_piece(basis: &Basis, order: usize, degree: u32) -> usiz
     }
 }
 
-/// Returns the relative positions between which the shapes have all derivatives, with both ends.
+/// Returns the relative positions between which the shapes are smooth, including both ends.
 pub(super) fn knots(basis: &Basis) -> Vec<f64> {
     let Some(table) = basis.table() else {
         return vec![0.0, 1.0];
@@ -55,7 +56,8 @@ pub(super) fn knots(basis: &Basis) -> Vec<f64> {
         .collect()
 }
 
-/// Computes a table at these quadrature nodes; empty for a table of another kind.
+/// Computes a table of values at these quadrature nodes; returns an empty table if `kind` is not a table at
+/// quadrature nodes.
 pub(crate) fn table_at_nodes(
     basis: &Basis,
     order: usize,
@@ -73,8 +75,8 @@ pub(crate) fn table_at_nodes(
     }
 }
 
-/// Computes a table for modes 1 to `order`; matrices row by row. Tables at quadrature nodes are those for products of
-/// two shapes.
+/// Computes a table for modes 1 to `order`; matrices row by row. Tables at quadrature nodes use the nodes for
+/// products of two shapes.
 pub fn table(basis: &Basis, order: usize, kind: TableKind) -> Vec<f64> {
     let shapes = Shapes::new(basis, order);
     match kind {
@@ -131,7 +133,7 @@ impl Shapes {
         }
     }
 
-    /// Returns a number of each analytic mode.
+    /// Returns `value` of each analytic mode; empty for tabulated shapes.
     fn values(&self, value: impl Fn(&Mode) -> f64) -> Vec<f64> {
         match self {
             Self::Modes(modes) => modes.iter().map(value).collect(),
@@ -139,7 +141,7 @@ impl Shapes {
         }
     }
 
-    /// Returns phi_r^(a)(s) of all modes.
+    /// Returns phi_r^(a)(s) for all modes r.
     pub(super) fn values_at(&self, derivative: u8, s: f64) -> Vec<f64> {
         match self {
             Self::Modes(modes) => modes.iter().map(|m| m.shape(derivative, s)).collect(),
@@ -161,8 +163,9 @@ impl Shapes {
         }
     }
 
-    /// Returns all shapes at the end from the end conditions, which avoids the error of the phase beta_r l.
-    /// The clamped-free beam keeps its original rounding in derivatives that the conditions do not determine.
+    /// Returns all shapes at the end of the domain from the boundary conditions, which avoids the rounding error of
+    /// the phase beta_r l. The clamped-free beam keeps its original rounding in derivatives that the conditions do
+    /// not determine.
     fn at_end(&self, basis: &Basis, derivative: u8) -> Vec<f64> {
         let keeps = *basis == Basis::CLAMPED_FREE && matches!(derivative, 1 | 4..);
         match (self, basis) {
@@ -173,7 +176,7 @@ impl Shapes {
         }
     }
 
-    /// Rows: positions; columns: modes.
+    /// Returns phi_r^(a) with one row for each position and one column for each mode.
     fn values_at_nodes(&self, derivative: u8, places: &[f64]) -> Vec<Vec<f64>> {
         places
             .iter()
@@ -181,7 +184,7 @@ impl Shapes {
             .collect()
     }
 
-    /// Returns the integrals of s^k phi_r^(a).
+    /// Computes the integrals of s^k phi_r^(a) for all modes r.
     fn moments(&self, basis: &Basis, moment: u32, derivative: u8) -> Vec<f64> {
         if matches!(basis, Basis::Beam { .. }) && moment < 2 && derivative == 0 {
             return self.values(|mode| mode.moment(moment));
@@ -193,7 +196,8 @@ impl Shapes {
             .collect()
     }
 
-    /// Returns the integrals of s^k phi_r^(a) phi_r^(b), twice by parts if a and b differ by 2.
+    /// Computes the integrals of s^k phi_r^(a) phi_r^(b) for all modes r; if a and b differ by 2, by integration by
+    /// parts.
     fn own_moments(&self, basis: &Basis, moment: u32, left: u8, right: u8) -> Vec<f64> {
         if is_orthogonal(basis, moment, left, right) {
             let opposite = !(left.abs_diff(right) / 2).is_multiple_of(2);
@@ -228,7 +232,7 @@ impl Shapes {
         }
     }
 
-    /// Returns nodes, and weights times s^k.
+    /// Returns a quadrature rule whose weights are multiplied by s^k.
     fn rule(&self, basis: &Basis, moment: u32) -> QuadratureRule {
         let nodes = nodes_of_a_piece(basis, self.order(), PRODUCT_OF_TWO);
         let mut rule = match self {
@@ -242,8 +246,8 @@ impl Shapes {
     }
 }
 
-/// Sums weights times values with compensation of the rounding errors: the off-diagonal integrals are small
-/// differences of large terms.
+/// Sums weights times values with compensated summation, because the off-diagonal integrals are small differences of
+/// large terms.
 fn sum_over(weights: &[f64], value: impl Fn(usize) -> f64) -> f64 {
     let (mut total, mut lost) = (0.0, 0.0);
     for (g, weight) in weights.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! Mode shapes at a point and integrals of integrand terms, as nodes: exact dimensionless constants if
-//! possible, else quadrature.
+//! Graph nodes of mode shapes at a point and of integrals of integrand terms. The integrals are exact dimensionless
+//! constants if possible, else quadrature.
 
 use eomgen_model_spec::model::{Basis, End, Function};
 
@@ -48,7 +48,7 @@ pub(crate) fn shapes_at(
     }
 }
 
-/// Computes Eq. (17) from xi_r and (1 + xi_r) exp(beta_r l).
+/// Builds the shapes of Eq. (17) from xi_r and (1 + xi_r) exp(beta_r l).
 fn clamped_shapes(graph: &mut Graph, domain: &Domain, s: NodeId, derivative: u8) -> NodeId {
     let beta = domain.table(graph, TableKind::Wavenumber);
     let xi = domain.table(graph, TableKind::Mixing);
@@ -85,8 +85,8 @@ fn clamped_shapes(graph: &mut Graph, domain: &Domain, s: NodeId, derivative: u8)
     graph.product(&[(beta, i32::from(derivative)), (shape, 1)])
 }
 
-/// Computes sin z, sin z + xi cos z or cos z, depending on the start, plus exponentials from both ends if an
-/// end has one.
+/// Builds sin z, sin z + xi cos z or cos z, depending on the end at the start, plus the decaying exponentials of
+/// clamped and free ends.
 fn beam_shapes(
     graph: &mut Graph,
     domain: &Domain,
@@ -129,7 +129,7 @@ fn beam_shapes(
     graph.product(&[(beta, i32::from(derivative)), (shape, 1)])
 }
 
-/// Returns a derivative of sin z or cos z by z, and its sign.
+/// Returns a derivative of sin z or cos z by z as a function and a sign.
 fn sinusoid_derivative(
     graph: &mut Graph,
     function: Function,

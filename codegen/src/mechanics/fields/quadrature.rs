@@ -78,7 +78,7 @@ mod tests {
                 .map(|(x, w)| w * x.powi(degree))
                 .sum();
             let exact = 1.0 / f64::from(degree + 1);
-            // A dozen products of rounded nodes: a few units in the last place.
+            // The tolerance is the rounding error of a dozen products of rounded nodes.
             assert_abs_diff_eq!(integral, exact, epsilon = 1e-15);
         }
     }
@@ -87,7 +87,7 @@ mod tests {
     fn weights_of_a_large_rule_sum_to_one() {
         let rule = gauss_legendre(288);
         let total: f64 = rule.weights.iter().sum();
-        // 288 rounded weights: a hundred units in the last place of 1.
+        // The tolerance is the rounding error of a sum of 288 weights.
         assert_abs_diff_eq!(total, 1.0, epsilon = 1e-13);
     }
 }

@@ -8,7 +8,7 @@ use super::degree::highest_degree;
 use super::modes::{knots, nodes_of_a_piece};
 use super::quadrature::{QuadratureRule, composite};
 
-/// Knots, and the number of nodes between neighbours.
+/// Quadrature rule of a field: knots, and the number of nodes between adjacent knots.
 #[derive(Clone, Debug)]
 pub struct FieldRule {
     knots: Vec<f64>,
@@ -16,8 +16,8 @@ pub struct FieldRule {
 }
 
 impl FieldRule {
-    /// Returns the rule of a field at an order. Knots are the ends, the rows of a table of shapes, and the positions at
-    /// which coefficients switch if these are fixed fractions of the length.
+    /// Returns the rule of a field at an order. The knots are both ends, the rows of a shape table, and the [fixed
+    /// breaks](fixed_breaks) of coefficients.
     pub fn new(model: &Model, field: FieldId, order: usize) -> Self {
         let basis = &model.fields[field].basis;
         let nodes_of_a_piece = nodes_of_a_piece(basis, order, highest_degree(model, field));

@@ -1,11 +1,10 @@
 //! Cubic splines through the values of a table, for shapes without formulas.
 //!
-//! A spline is stored by its values and slopes at the knots. Second derivatives are continuous at the inner
-//! knots, third derivatives at the first and the last inner one (not-a-knot condition). The slopes then solve
-//! a tridiagonal system after one elimination at each end (C. de Boor, "A Practical Guide to Splines",
-//! chapter IV). With steps h the values are within O(h^4) of a smooth function, the second derivatives within
-//! O(h^2).
-//! O(h^4) of a smooth function, the second derivatives within O(h^2).
+//! A spline is stored by its values and slopes at the knots. The second derivative is continuous at all inner knots.
+//! The third derivative is also continuous at the first and the last inner knot (not-a-knot condition). The slopes
+//! then solve a tridiagonal system after one elimination at each end (C. de Boor, "A Practical Guide to Splines",
+//! chapter IV). With knot distances h, the values have errors O(h^4) for a smooth function, and the second
+//! derivatives O(h^2).
 
 /// Spline on [0, 1].
 #[derive(Clone, Debug)]
@@ -25,7 +24,7 @@ impl Spline {
         }
     }
 
-    /// Returns a derivative at s; at a knot, the third derivative is that of the piece before it.
+    /// Returns a derivative at s. At a knot, the third derivative is taken from the piece that ends there.
     pub(super) fn derivative(&self, derivative: u8, s: f64) -> f64 {
         let last = self.knots.len() - 2;
         let piece = self.knots[1..=last].partition_point(|knot| *knot < s);
@@ -52,7 +51,7 @@ fn slopes(knots: &[f64], values: &[f64]) -> Vec<f64> {
     let chord: Vec<f64> = (0..n - 1)
         .map(|i| (values[i + 1] - values[i]) / h[i])
         .collect();
-    // Rows: lower diagonal, diagonal, upper diagonal, right-hand side.
+    // Each row has the lower diagonal, the diagonal, the upper diagonal and the right-hand side.
     let mut rows = vec![[0.0; 4]; n];
     let (a, b) = (h[0], h[1]);
     rows[0] = [
@@ -117,7 +116,7 @@ mod tests {
         }
     }
 
-    // Halving the step divides the error of the values by 16, that of the second derivatives by 4.
+    // Half the knot distance divides the error of the values by 16 and the error of the second derivatives by 4.
     #[test]
     fn spline_errors_have_orders_four_and_two() {
         let error = |count: usize, derivative: u8| {

@@ -3,7 +3,7 @@
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 use eomgen_model_spec::ids::FieldId;
 
-/// Field, its rate or a mode shape, with the number of derivatives by the position.
+/// Field, its rate or a mode shape, with the order of its derivative by the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Atom {
     /// w
@@ -15,7 +15,7 @@ pub enum Atom {
 }
 
 impl Atom {
-    /// Returns the atom, differentiated `times` more by the position.
+    /// Returns the atom after `times` further differentiations by the position.
     pub fn derivative_of_order(self, times: u8) -> Self {
         match self {
             Self::Coordinates(d) => Self::Coordinates(d + times),
@@ -30,7 +30,7 @@ impl Atom {
         }
     }
 
-    /// Returns the vector over the modes that multiplies the shapes; `None` for a bare shape.
+    /// Returns the mode coordinates or their rates, the factors of the shapes; `None` for a shape `phi[i]`.
     pub(crate) fn amplitudes(self, graph: &mut Graph, field: FieldId) -> Option<NodeId> {
         match self {
             Self::Coordinates(_) => Some(graph.intern(Operation::ModeCoordinates(field))),
@@ -40,7 +40,7 @@ impl Atom {
     }
 }
 
-/// Term scalar s^power weight atom_1 atom_2; the derivatives in the atoms are by s.
+/// Term of an integrand: scalar * s^power * weight * atom_1 * atom_2. The atoms are differentiated by s.
 #[derive(Clone, Debug)]
 pub(crate) struct IntegrandTerm {
     pub(crate) scalar: NodeId,

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-/// Rounding error of the factorisation, relative to unit entries and for each row of the matrix.
+/// Rounding error of the factorisation per matrix row, relative to the unit diagonal.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Components of a direction below this fraction of the largest are rounding errors.
@@ -11,9 +11,9 @@ const MAX_ROUNDING_COMPONENT: f64 = 1e-6;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Defect {
-    /// A diagonal entry that is not positive, or an entry of its row that is not finite.
+    /// Row index and value of a diagonal entry that is not positive, or of an entry of this row that is not finite.
     Entry(usize, f64),
-    /// Rates with zero or negative kinetic energy.
+    /// Direction of the rates with zero or negative kinetic energy.
     Direction { rates: Vec<f64>, negative: bool },
 }
 
@@ -43,7 +43,7 @@ pub(super) fn find_defect(rows: &SparseRows) -> Option<Defect> {
         .find_map(|block| find_block_defect(rows, block))
 }
 
-/// Returns the connected sets of indices.
+/// Returns the connected blocks: sets of indices that nonzero entries connect.
 fn blocks(rows: &SparseRows) -> Vec<Vec<usize>> {
     let mut is_seen = vec![false; rows.len()];
     let mut blocks = Vec::new();
@@ -93,9 +93,9 @@ fn find_block_defect(rows: &SparseRows, block: &[usize]) -> Option<Defect> {
 
 /// Cholesky factor of a matrix with a unit diagonal, built with the largest remaining pivot first.
 struct Factor {
-    /// Rows of the factor, up to the eliminated columns.
+    /// Rows of the factor for the columns eliminated so far.
     rows: Vec<Vec<f64>>,
-    /// Remaining diagonal.
+    /// Diagonal of the matrix that remains to be factorised.
     rest: Vec<f64>,
     order: Vec<usize>,
     remaining: Vec<usize>,
@@ -116,7 +116,8 @@ impl Factor {
         remaining.max_by(|a, b| self.rest[*a].total_cmp(&self.rest[*b]))
     }
 
-    /// Returns the index of the smallest remaining pivot, and true if it is negative beyond rounding.
+    /// Returns the index of the smallest remaining pivot, and true if the pivot is more negative than rounding
+    /// explains.
     fn smallest_remaining_pivot(&self) -> (usize, bool) {
         let remaining = self.remaining.iter().copied();
         let smallest = remaining
@@ -140,7 +141,8 @@ impl Factor {
         }
     }
 
-    /// Returns the direction of `place` with the eliminated elements free to follow.
+    /// Returns the direction with component 1 at `index` and the eliminated components that minimise the quadratic
+    /// form.
     fn null_direction(&self, place: usize) -> Vec<f64> {
         let mut direction = vec![0.0; self.rest.len()];
         direction[place] = 1.0;
@@ -156,7 +158,7 @@ impl Factor {
     }
 }
 
-/// Scales the largest component to 1 and removes rounding errors.
+/// Scales the largest component to 1 and sets rounding errors to 0.
 fn normalise(rates: Vec<f64>) -> Vec<f64> {
     let largest = rates.iter().fold(
         0.0_f64,
@@ -217,7 +219,7 @@ mod tests {
     fn direction_without_inertia_is_reported_by_its_rates() {
         let (rates, negative) = along(&[1.0, 1.0, 1.0, 1.0], 2);
         assert!(!negative && (rates[0] + rates[1]).abs() < 1e-12 && rates[0].abs() == 1.0);
-        // (a + 1000 b)^2 + c^2
+        // The quadratic form is (a + 1000 b)^2 + c^2.
         let (rates, _) = along(&[1.0, 1000.0, 0.0, 1000.0, 1e6, 0.0, 0.0, 0.0, 1.0], 3);
         assert!(
             (rates[0] / rates[1] + 1000.0).abs() < 1e-9 && rates[2] == 0.0,

@@ -1,5 +1,5 @@
-//! Check that the mass matrix at the initial state and the declared parameters is positive definite. If not,
-//! the error names the coordinates that can move without inertia, or with a negative one.
+//! Check that the mass matrix at the initial state and the declared parameters is positive definite. If it is not,
+//! the error names the coordinates that can move with zero or negative inertia.
 
 mod lack;
 pub(crate) mod point;
@@ -17,7 +17,7 @@ use point::Point;
 pub use sweep::Sweep;
 use sweep::Velocities;
 
-/// Rejects a model with a motion that has no inertia at the initial state; `mass` is the mass matrix there,
+/// Rejects a model in which a motion has no inertia at the initial state; `mass` is the mass matrix at this state,
 /// row by row in SI units.
 ///
 /// # Errors
@@ -39,8 +39,8 @@ pub fn check(
     machine.check_mass(&to_sparse(mass, size))
 }
 
-/// Checks the kinetic energy of a model without fields; the work grows linearly with the energy's expression.
-/// Returns None if it contains functions of velocities other than sums and products.
+/// Checks the kinetic energy of a model without fields; the work grows linearly with the size of its expression.
+/// Returns `None` if the energy contains functions of velocities other than sums and products.
 ///
 /// # Errors
 /// The errors of [`check`], and initial values that are not finite.
@@ -78,16 +78,16 @@ pub fn check_energy(
     Ok(Some(sweep))
 }
 
-/// Quantities on which a kinetic energy with a variable inertia depends.
+/// Quantities that make the inertia variable if the kinetic energy depends on them.
 const VARIABLE_ENERGY_DEPENDENCE: Dependence = Dependence::COORDINATE
     .join(Dependence::INPUT)
     .join(Dependence::TIME);
 
-/// Quantities on which a variable inertia depends.
+/// Quantities that make the inertia variable if the mass matrix depends on them.
 const VARIABLE_INERTIA_DEPENDENCE: Dependence = VARIABLE_ENERGY_DEPENDENCE.join(Dependence::RATE);
 
 impl Equations {
-    /// Returns true if the mass matrix depends on more than parameters.
+    /// Returns true if the mass matrix depends on time, state or inputs.
     fn has_variable_inertia(&self) -> bool {
         let entries = self.mass.scalars.iter().chain(&self.mass.coupling);
         let mut nodes = entries.flatten().copied();
@@ -106,7 +106,7 @@ struct Machine<'m> {
     moves: bool,
 }
 
-/// Help for an inertia that is not finite.
+/// Help text for an inertia that is not finite.
 const NOT_FINITE_HELP: &str = "a term of [kinetic] exceeds 1.8e308 or leaves the domain of a function: look for a parameter \
                                that is too large, a division by 0, or a logarithm of 0";
 
@@ -178,7 +178,7 @@ impl Machine<'_> {
         let mut found = Diagnostic::error(message);
         if let Some(first) = places.next() {
             found = found.with_span(first, label);
-            // All modes of a field have one place.
+            // All modes of a field have the same location.
             let mut others: Vec<Span> = places.filter(|place| *place != first).collect();
             others.dedup();
             for other in others {
@@ -206,7 +206,7 @@ impl Machine<'_> {
         }
     }
 
-    /// Returns the place of the declaration of a coordinate, or of a mode's field.
+    /// Returns the location of the declaration of a coordinate, or of the field of a mode.
     fn span(&self, place: usize) -> Span {
         let coordinates = &self.model.coordinates;
         if let Some(coordinate) = coordinates.get(place) {

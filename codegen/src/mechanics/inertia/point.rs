@@ -14,7 +14,7 @@ pub(crate) struct Point<'p> {
 }
 
 impl Point<'_> {
-    /// Computes the values of `nodes` (operands first), indexed by node; None if one belongs to a field.
+    /// Computes the values of `nodes` (operands first), indexed by node; `None` if a node belongs to a field.
     pub(crate) fn values(&self, graph: &Graph, nodes: &[NodeId]) -> Option<Vec<f64>> {
         let size = nodes.last().map_or(0, |last| last.0 as usize + 1);
         let mut values = vec![f64::NAN; size];

@@ -1,10 +1,10 @@
 //! Numerical mass matrix at one point: the Hessian of the kinetic energy by the rates, from one backward
 //! sweep over the velocities of the energy (Gower and Mello, 2012: Optim. Methods Softw. 27, 251-269).
 //!
-//! A rate is eliminated as soon as no remaining velocity contains it, so that the factorisation stays sparse.
-//! Along a chain of bodies this is the recursion of articulated-body inertias (Featherstone, 1983: Int. J.
-//! Robotics Research 2, 13-30), along a chain of masses a band elimination. The work is proportional to the
-//! expression.
+//! A rate is eliminated as soon as no unprocessed velocity contains it; this keeps the factorisation sparse. Along a
+//! chain of bodies the elimination is the recursion of articulated-body inertias (Featherstone, 1983: Int. J.
+//! Robotics Research 2, 13-30), along a chain of masses a band elimination. The work is proportional to the size of
+//! the expression.
 
 use std::collections::BTreeMap;
 
@@ -20,7 +20,7 @@ pub struct Sweep {
     pub updates: usize,
 }
 
-/// Velocities of a kinetic energy, operands first, with the value of each node.
+/// Rate-dependent nodes of a kinetic energy ("velocities"), operands first, with the value of each node.
 pub(crate) struct Velocities<'g> {
     graph: &'g Graph,
     nodes: Vec<NodeId>,
@@ -33,8 +33,7 @@ struct Local {
 }
 
 impl<'g> Velocities<'g> {
-    /// Selects the velocities among `reachable`, the nodes of the energy; `values` has the value of each
-    /// node.
+    /// Selects the velocities among `reachable`, the nodes of the energy; `values` is indexed by node.
     pub(crate) fn new(graph: &'g Graph, reachable: &[NodeId], values: &'g [f64]) -> Self {
         let moves = |node: &NodeId| graph.dependence(*node).has(Dependence::RATE);
         Self {
@@ -44,7 +43,7 @@ impl<'g> Velocities<'g> {
         }
     }
 
-    /// Eliminates the rates; None if a function other than a sum or product has a velocity as its argument.
+    /// Eliminates the rates; `None` if a function other than a sum or product has a velocity as its argument.
     pub(super) fn eliminate(&self, coordinates: usize) -> Option<Sweep> {
         let mut composite = Hessian::default();
         let mut articulated = Hessian::default();
@@ -69,8 +68,8 @@ impl<'g> Velocities<'g> {
         Some(found)
     }
 
-    /// Returns the diagonal of the mass matrix, with 0 for entries that functions other than sums and
-    /// products hide.
+    /// Computes the diagonal of the mass matrix; an entry is 0 if its rate is the argument of a function other than a
+    /// sum or product.
     pub(crate) fn diagonal(&self, coordinates: usize) -> Vec<f64> {
         let mut hessian = Hessian::default();
         let mut diagonal = vec![0.0; coordinates];
@@ -86,7 +85,8 @@ impl<'g> Velocities<'g> {
         diagonal
     }
 
-    /// Returns the mass matrix without structural zeros; None under the condition of `eliminate`.
+    /// Computes the mass matrix without structural zeros; `None` if a function other than a sum or product has a
+    /// velocity as its argument.
     pub(super) fn mass_matrix(&self, coordinates: usize) -> Option<SparseRows> {
         let mut hessian = Hessian::default();
         self.sweep(&mut |step| {
@@ -200,9 +200,9 @@ impl<'g> Velocities<'g> {
 }
 
 enum Step<'s> {
-    /// Velocity, its derivatives by its operands, and the energy's derivative by it.
+    /// Velocity, its derivatives by its operands, and the derivative of the energy by the velocity.
     Velocity(NodeId, &'s Local, f64),
-    /// Rate that no remaining velocity contains.
+    /// Rate that no unprocessed velocity contains.
     Complete(NodeId),
 }
 
@@ -232,7 +232,7 @@ impl Hessian {
         row
     }
 
-    /// Eliminates a velocity: its entries are passed to its operands.
+    /// Eliminates a velocity: adds its Hessian entries to those of its operands.
     fn push(&mut self, node: NodeId, local: &Local, adjoint: f64) {
         for (other, value) in self.take(node) {
             if other == node {

@@ -1,7 +1,7 @@
-//! Gradients by reverse accumulation: derivatives of a weighted sum of nodes by every leaf, in one pass from
-//! the nodes to the leaves. Vectors are not split: contributions of a vector to a scalar are summed over its
-//! elements, and a contribution of a sum applies to every element. Conditions of a branch are applied to its
-//! final contributions.
+//! Gradients by reverse accumulation: derivatives of a weighted sum of nodes by every leaf, in one pass from the
+//! nodes to the leaves. Vectors are not split into elements. If a vector contributes to a scalar, its contributions
+//! are summed over the elements; the adjoint of a sum over elements applies to every element. The conditions of a
+//! branch are applied to the sum of its contributions.
 
 use eomgen_model_spec::ids::{CoordinateId, FieldId, ParameterId, StateId};
 use std::collections::HashMap;
@@ -14,12 +14,12 @@ use crate::symbolic::graph::{
     Argument, Dependence, Graph, NodeId, Operation, Shape, Space, Variable,
 };
 
-/// Returns the leaf of the weight of a rate.
+/// Returns the leaf for the weight of the rate of a variable.
 pub fn weight(graph: &mut Graph, variable: Variable) -> NodeId {
     graph.intern(Operation::Argument(Argument::Weights, variable))
 }
 
-/// Pairs the weight of each acceleration and of each first-order rate with its node.
+/// Pairs each acceleration and each rate of a first-order state with the leaf of its weight.
 pub fn pair_weights(equations: &mut Equations) -> Vec<(NodeId, NodeId)> {
     let rows = &equations.accelerations.rows;
     let graph = &mut equations.graph;
@@ -36,16 +36,16 @@ pub fn pair_weights(equations: &mut Equations) -> Vec<(NodeId, NodeId)> {
     weighted
 }
 
-/// Returns the gradient of the sum of weight times node (summed over the elements of a vector) by every leaf
-/// that is no parameter. Moving diagonals of Gram matrices are not followed; the caller must exclude them.
+/// Returns the gradient of the sum of weight times node (summed over the elements of a vector) by every leaf except
+/// parameters. State-dependent diagonals of Gram matrices are not differentiated; the caller must exclude them.
 pub fn gradient(graph: &mut Graph, weighted: &[(NodeId, NodeId)]) -> HashMap<NodeId, NodeId> {
     accumulate(graph, weighted, |graph, id| {
         !graph.dependence(id).is_parameter_only()
     })
 }
 
-/// Returns the gradient by every independent parameter, in their order, through derived parameters. None if a
-/// matrix depends on parameters.
+/// Returns the gradient by every independent parameter, in their order, including the dependence through derived
+/// parameters. Returns `None` if a matrix depends on parameters.
 pub fn gradient_by_parameters(
     graph: &mut Graph,
     weighted: &[(NodeId, NodeId)],
@@ -69,7 +69,7 @@ pub fn gradient_by_parameters(
     Some(independent.map(|(parts, _)| graph.combine(parts)).collect())
 }
 
-/// Adds the contributions to the leaf of each parameter to its parts.
+/// Adds the contributions from derived parameters to the contributions of the parameters in their expressions.
 fn propagate_to_parameters(
     graph: &mut Graph,
     weighted: &[(NodeId, NodeId)],
@@ -89,7 +89,7 @@ fn depends_on_parameters(graph: &Graph, id: NodeId) -> bool {
     graph.dependence(id).has(Dependence::PARAMETER)
 }
 
-/// Returns the derived parameters, each before those that its expression uses.
+/// Returns the derived parameters, each before the derived parameters in its expression.
 fn outermost_first(graph: &Graph, derived: &[Option<NodeId>]) -> Vec<ParameterId> {
     let mut order = Vec::new();
     let mut known = vec![false; derived.len()];
@@ -119,7 +119,7 @@ fn order_after_operands(
     order.push(index);
 }
 
-/// Returns the gradient by every leaf, through the nodes that `follows` accepts.
+/// Returns the gradient by every leaf; only nodes that `follows` accepts are differentiated.
 fn accumulate(
     graph: &mut Graph,
     weighted: &[(NodeId, NodeId)],
@@ -178,9 +178,9 @@ impl Condition {
     }
 }
 
-/// Part of an adjoint under conditions, the outermost first. The selection is postponed until parts of other
-/// branches join: a partial derivative in a branch that is not taken can be infinite or NaN, and 0 times it
-/// is NaN.
+/// Part of an adjoint under conditions, the outermost first. The selection is postponed until parts of different
+/// branches are added. A partial derivative in a branch that is not taken can be infinite or NaN, and its product
+/// with 0 would be NaN.
 #[derive(Clone)]
 pub(super) struct Part {
     conditions: Vec<Condition>,
@@ -212,7 +212,7 @@ impl Part {
         self.select_to(graph, 0).value
     }
 
-    /// Applies conditions until at most `open` remain.
+    /// Applies the innermost conditions until at most `open` conditions remain.
     fn select_to(mut self, graph: &mut Graph, open: usize) -> Self {
         while self.conditions.len() > open
             && let Some(condition) = self.conditions.pop()
@@ -263,7 +263,7 @@ impl Adjoints {
         }
     }
 
-    /// Adds a vector over `space`, or a scalar that applies to each of its elements.
+    /// Adds a vector over `space`, or a scalar for each element of this space, to the adjoint of a node.
     pub(super) fn add_over(
         &mut self,
         graph: &mut Graph,

@@ -1,11 +1,12 @@
-//! Contributions to a matrix that depends on the state in reverse accumulation. They are the gradient of the
-//! bilinear form y^T M x, in which x is the solution of a system.
+//! Reverse accumulation through matrices that depend on the state. The contribution of a matrix M is the gradient of
+//! the bilinear form y^T M x, in which x is the solution of a linear system.
 
 use super::adjoint::{Adjoints, Part};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 
 impl Adjoints {
-    /// Passes the gradient of y^T M x to the operands of M, with x held; `y` is a vector under conditions.
+    /// Adds the gradient of y^T M x with constant x to the adjoints of the operands of M; `y` is a vector under
+    /// conditions.
     pub(super) fn propagate_to_matrix(
         &mut self,
         graph: &mut Graph,
@@ -73,7 +74,7 @@ impl Adjoints {
         self.propagate_product(graph, nodes, weight, &y, x);
     }
 
-    /// Adds y times x, element by element over `space`, to a vector or to a repeated scalar.
+    /// Adds y times x, element by element over `space`, to the adjoint of a vector, or their sum to that of a scalar.
     fn propagate_product(
         &mut self,
         graph: &mut Graph,

@@ -21,7 +21,7 @@ use crate::symbolic::factor::factor_if_cheaper;
 use crate::symbolic::graph::{Argument, Graph, NodeId, Operation, Shape, Space, Variable};
 use eomgen_model_spec::ids::{CoordinateId, FieldId};
 
-/// Name of the column of derivatives along a direction: rates without those of the coordinates, then observables.
+/// Name of the column of derivatives along a direction: accelerations and first-order rates, then observables.
 pub const TANGENTS: &str = "tangents";
 
 /// Derives the requested outputs.
@@ -95,17 +95,17 @@ pub fn derive_outputs(
     Ok(result)
 }
 
-/// Output that cannot be derived.
+/// Output that cannot be derived, with the reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OutputError {
-    /// Jacobian.
+    /// A Jacobian cannot be derived.
     MovingDiagonal(MovingDiagonal),
-    /// Step of fixed length.
+    /// A step of fixed length cannot be derived.
     Step(StepObstacle),
 }
 
 impl OutputError {
-    /// Returns the index of the term at fault in [`Equations::terms`], if it is known.
+    /// Returns the index in [`Equations::terms`] of the term that causes the error, if it is known.
     pub fn term(self) -> Option<usize> {
         match self {
             Self::MovingDiagonal(found) => found.term,
@@ -125,8 +125,8 @@ impl std::fmt::Display for OutputError {
 
 impl std::error::Error for OutputError {}
 
-/// Sum over modes that weights the square of each mode shape by a function of the state. Its Jacobian is not
-/// implemented.
+/// Sum over modes in which a function of the state weights the square of each mode shape. The Jacobian of such a sum
+/// is not implemented.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MovingDiagonal {
     /// Index of the term in [`Equations::terms`]; `None` if the sum is in no term.
@@ -164,8 +164,9 @@ fn bias_forces(equations: &mut Equations) -> RowNodes {
     }
 }
 
-/// Returns the rows of M a + bias with the accelerations as an argument, in the cheapest form: by the mass
-/// matrix, by a sweep, or by recursion from frame to frame. The last two form no mass matrix.
+/// Returns the rows of M a + bias with the accelerations as an argument. Of three forms, the one with the fewest
+/// operations is used: by the mass matrix, by a sweep, or by recursion along the tree of frames. The last two need no
+/// mass matrix.
 fn inverse_dynamics(equations: &mut Equations, bias: &RowNodes) -> RowNodes {
     let mut best = inverse_dynamics_by_mass(equations, bias);
     let scalars = [
@@ -277,8 +278,8 @@ fn products(equations: &mut Equations) -> Products<NodeId, RowNodes> {
     }
 }
 
-/// Returns the gradient of the weighted rates by the independent parameters: by reverse accumulation, or
-/// parameter by parameter if matrices depend on them.
+/// Returns the gradient of the weighted rates by the independent parameters. It is derived by reverse accumulation,
+/// or parameter by parameter if matrices depend on parameters.
 fn derive_weighted_by_parameters(
     equations: &mut Equations,
     weighted: &[(NodeId, NodeId)],
@@ -314,7 +315,7 @@ fn derivatives(graph: &mut Graph, direction: &mut Direction<'_>, nodes: &[NodeId
         .collect()
 }
 
-/// Returns the component of the direction for a leaf: 0 for time and parameters.
+/// Returns the component of the direction for a leaf; it is 0 for time and parameters.
 fn direction_component(graph: &mut Graph, leaf: NodeId) -> NodeId {
     match variable_of(graph, leaf) {
         Some(variable) => graph.intern(Operation::Argument(Argument::Direction, variable)),
@@ -334,7 +335,7 @@ fn variable_of(graph: &Graph, leaf: NodeId) -> Option<Variable> {
     })
 }
 
-/// Derives the Jacobians by the variables that are requested, first of the rates, then of the observables.
+/// Derives the Jacobians by the requested variables, first those of the rates, then those of the observables.
 fn jacobians(
     equations: &mut Equations,
     is_requested_by: impl Fn(&str) -> bool,
@@ -372,8 +373,9 @@ const OBSERVABLES_BY: [&str; 3] = [
     "observables_by_parameters",
 ];
 
-/// Derives the Jacobians of observables, scalar guards and the rates of these, distances of impacts, residuals of
-/// constraints and the rates of these, and the jumps of the rates by impacts without friction, one after the other.
+/// Derives Jacobians of observables and of the quantities at events. These are scalar guards and their rates,
+/// distances of impacts, residuals of constraints and their rates, and the jumps of the rates by impacts without
+/// friction.
 fn event_jacobians(equations: &mut Equations) -> Vec<Jacobian<NodeId>> {
     let guards = equations.guards.iter().map(|guard| guard.value);
     let guards: Vec<NodeId> = guards
@@ -450,7 +452,7 @@ fn event_jacobians(equations: &mut Equations) -> Vec<Jacobian<NodeId>> {
     found
 }
 
-/// Returns the jump of the rates by an impact without friction, after Newton's law.
+/// Returns the jump of the rates by an impact without friction, according to Newton's law of restitution.
 fn impact_jump(equations: &mut Equations, place: usize) -> RowNodes {
     let impact = &equations.impacts[place];
     let graph = &mut equations.graph;

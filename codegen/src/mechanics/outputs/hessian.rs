@@ -1,6 +1,6 @@
-//! Second derivatives of the rates: the derivative of the gradient of their weighted sum along a direction,
-//! forward over reverse. One function gives every column of the Hessian, so that the emitted code grows as
-//! the gradient does, independently of the number of variables.
+//! Second derivatives of the rates by forward-over-reverse differentiation: the gradient of their weighted sum is
+//! differentiated along a direction. One function computes every column of the Hessian. Therefore the emitted code
+//! has a size proportional to the gradient, independent of the number of variables.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -13,10 +13,10 @@ use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Argument, NodeId, Operation, Variable};
 use eomgen_model_spec::ids::{InputId, ParameterId};
 
-/// Indices of each variable in the order time, state, inputs, independent parameters.
+/// Variables with their index ranges, in the order time, state, inputs, independent parameters.
 type Places = Vec<(Variable, Range<usize>)>;
 
-/// Derives the gradient's derivative along a direction. `weighted_by_parameters` is the gradient by the
+/// Derives the derivative of the gradient along a direction. `weighted_by_parameters` is the gradient by the
 /// parameters.
 pub(crate) fn gradient_derivative(
     equations: &mut Equations,
@@ -123,7 +123,8 @@ fn gradient(
     rows
 }
 
-/// Returns the columns of each leaf: its own, or for a derived parameter those of its independent parameters.
+/// Returns the Hessian columns of each leaf: its own columns, or for a derived parameter the columns of the
+/// independent parameters in its expression.
 fn columns(equations: &mut Equations, places: &Places) -> HashMap<NodeId, Vec<Range<usize>>> {
     let mut columns = HashMap::new();
     for (variable, place) in places {
@@ -133,7 +134,7 @@ fn columns(equations: &mut Equations, places: &Places) -> HashMap<NodeId, Vec<Ra
     for index in ParameterId::first(equations.derived_parameters.len()) {
         let graph = &mut equations.graph;
         let leaf = graph.intern(Operation::Parameter(index));
-        // Expressions can use other derived parameters; collect all parameters that they reach.
+        // Expressions can contain other derived parameters, so their expressions are searched, too.
         let mut pending = vec![leaf];
         let mut reached = Vec::new();
         while let Some(of) = pending.pop() {

@@ -1,5 +1,5 @@
-//! Jacobians as blocks of structural nonzeros: each row, or the rows of a field's modes, by each variable, or
-//! by the modes of a field. Rows are differentiated with their shared factors, so that a common sum over all
+//! Jacobians as blocks of structural nonzeros. A block has one row, or the rows of a field's modes; it has one
+//! column, or the columns of a field's modes. All rows are differentiated together; therefore a common sum over all
 //! modes is differentiated once.
 
 use super::types::{Jacobian, JacobianBlock};
@@ -11,15 +11,15 @@ use crate::symbolic::matrix::StructuredMatrix;
 use crate::symbolic::modal_derivative::ModalDerivative;
 use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, ParameterId, StateId};
 
-/// Rows of a Jacobian: nodes, and possibly a diagonal block of ones.
+/// Rows of a Jacobian: nodes to differentiate, and possibly a diagonal block of ones.
 pub(crate) struct JacobianRows {
     count: usize,
-    /// First column of a diagonal block of ones in the first rows.
+    /// First column of the diagonal block of ones in the first rows, if there is one.
     identity: Option<usize>,
     rows: Vec<EquationRow>,
 }
 
-/// Row, or one row for each mode of a field.
+/// One row, or one row for each mode of a field.
 #[derive(Clone, Copy)]
 struct EquationRow {
     first: usize,
@@ -77,7 +77,7 @@ pub(super) fn stacked_rows(equations: &Equations, lists: &[RowNodes]) -> Jacobia
     }
 }
 
-/// Returns the rates of the state; the rates of coordinates are themselves states.
+/// Returns the rows of the state's rates. The rates of coordinates are themselves states and give the block of ones.
 pub(crate) fn rate_rows(equations: &Equations) -> JacobianRows {
     let degrees = degrees_of_freedom(equations);
     let mut rows = rows_of_degrees(equations, &equations.accelerations.rows, degrees);
@@ -95,7 +95,7 @@ pub(crate) fn rate_rows(equations: &Equations) -> JacobianRows {
     }
 }
 
-/// Returns the observables, with energy and power last.
+/// Returns the rows of the observables, then of energy and power.
 pub(crate) fn observable_rows(equations: &mut Equations) -> JacobianRows {
     let energy = equations.graph.add(equations.kinetic, equations.potential);
     let nodes = equations.observables.iter().copied();
@@ -154,8 +154,8 @@ pub(crate) fn by_time(
     blocks.jacobian(name, 1)
 }
 
-/// Derives the derivatives of rates and observables along a direction, in one column. The rates of coordinates are
-/// components of the direction and are left out.
+/// Derives the derivatives of rates and observables along a direction, as one column. The rows of the coordinates are
+/// left out, because they are components of the direction.
 pub(super) fn along_direction(
     equations: &mut Equations,
     tangent: &Tangent<'_>,
@@ -258,7 +258,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Adds the blocks of a variable from this column on; returns the number of columns.
+    /// Adds the blocks of a variable, starting at this column; returns the number of its columns.
     fn by_variable(&mut self, variable: Variable, column: usize) -> usize {
         let leaf = self.graph.variable(variable);
         if let Some(mut derivative) = ModalDerivative::new(self.graph, leaf) {

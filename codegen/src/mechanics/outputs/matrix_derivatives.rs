@@ -1,6 +1,6 @@
-//! Directional derivatives of products, Gram matrices and Cholesky solutions with matrices that vary along
-//! the direction. Modal matrices depend on parameters. Instead of a factor, its system is differentiated:
-//! d(M^-1 b) = M^-1 (db - dM M^-1 b).
+//! Directional derivatives of products, Gram matrices and Cholesky solutions whose matrices vary along the direction,
+//! because modal matrices depend on parameters. A Cholesky factor itself is not differentiated; instead d(M^-1 b) =
+//! M^-1 (db - dM M^-1 b).
 
 use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Assembly, Dependence, Graph, NodeId, Operation};
@@ -39,7 +39,7 @@ impl Direction<'_> {
         graph.cholesky_solve(factor, rest)
     }
 
-    /// Returns d(matrix) vector, with the vector held.
+    /// Returns d(matrix) vector, with a constant vector.
     fn apply_matrix_derivative(
         &mut self,
         graph: &mut Graph,
@@ -71,7 +71,8 @@ impl Direction<'_> {
         }
     }
 
-    /// Returns d(matrix) vector for an assembled matrix, part by part. It is symmetric, so never transposed.
+    /// Returns d(matrix) vector for an assembled matrix, part by part. Assembled matrices are symmetric and need no
+    /// transposition.
     fn differentiate_assembly(
         &mut self,
         graph: &mut Graph,
@@ -127,8 +128,8 @@ impl Direction<'_> {
     }
 }
 
-/// Returns true if `roots` depend on the diagonal of a Gram matrix that varies with the state. Such diagonals
-/// are differentiated only by parameters.
+/// Returns true if `roots` depend on the diagonal of a state-dependent Gram matrix. Such diagonals can be
+/// differentiated only by parameters.
 pub(crate) fn holds_moving_diagonal(graph: &Graph, roots: &[NodeId]) -> bool {
     graph.reachable(roots).into_iter().any(|id| {
         matches!(graph.operation(id), Operation::GramDiagonal { .. })

@@ -1,10 +1,10 @@
 //! Outputs on request, in addition to rates, observables, energy, power, guards and mass matrix.
 //!
-//! `output` lists them, `types` defines their structure, `derive` derives them. `jacobian` differentiates by
-//! state, inputs and parameters, `adjoint` and `adjoint_matrices` derive products with weights by reverse
-//! accumulation, `hessian` second derivatives of the weighted rates, `matrix_derivatives` derivatives of
-//! modal matrices, `regimes` the surfaces that decide each branch, and `reactions` frictions and contacts for steps of
-//! fixed length.
+//! `output` lists them, `types` defines their structure, `derive` derives them. `jacobian` differentiates by state,
+//! inputs and parameters, `adjoint` and `adjoint_matrices` derive products with weights by reverse accumulation, and
+//! `hessian` second derivatives of the weighted rates. `matrix_derivatives` differentiates modal matrices, `regimes`
+//! finds the surfaces that determine each branch, and `reactions` derives frictions and contacts for steps of fixed
+//! length.
 
 #[cfg(feature = "derive")]
 mod adjoint;

@@ -17,33 +17,32 @@ pub enum Output {
     InputJacobians,
     /// Jacobians of rates and observables by parameters.
     ParameterJacobians,
-    /// Products of the rates' Jacobian with a direction, and of weights with the Jacobian.
+    /// Products of the Jacobian of the rates with a direction (forward) and with weights (reverse).
     Products,
     /// Matrices A, B, C and D of a linearisation; includes the Jacobians.
     Linearisation,
-    /// Number of a state's regime, and rates in a regime with every branch decided.
+    /// Number of the regime of a state, and a function that computes the rates in a given regime without comparisons.
     Regimes,
-    /// Derivative of the rates by time. It has no name for requests: external interfaces add it to the
-    /// Jacobians.
+    /// Derivative of the rates by time. It cannot be requested by name; external interfaces add it to the Jacobians.
     TimeDerivatives,
-    /// Derivatives of rates and observables along a direction of state and inputs. It has no name for requests:
+    /// Derivatives of rates and observables along a direction of state and inputs. It cannot be requested by name;
     /// linearisations evaluate it along every variable.
     Tangents,
     /// Jacobian of the gradient of the weighted rates by time, state, inputs and parameters, for optimisers.
     /// Includes the products.
     Hessians,
-    /// Products and the Jacobians of observables, guards, impacts and constraints by state, inputs and parameters. It has no
-    /// name for requests: gradients of trajectories evaluate it.
+    /// Products and the Jacobians of observables, guards, impacts and constraints by state, inputs and parameters. It
+    /// cannot be requested by name; gradients of trajectories evaluate it.
     TrajectoryGradients,
     /// One step of the classical Runge-Kutta method of order 4.
     Step,
-    /// A second version of every function, `inlined_...`, for SIMD lanes. It is compiled together with the
-    /// calling code for registers that are known at run time.
+    /// A second version of every function, `inlined_...`, for 8-wide SIMD. It is inlined into the calling code, which
+    /// selects the instruction set at run time.
     Lanes,
 }
 
 impl Output {
-    /// Every output that all languages support and a request can name.
+    /// Outputs that can be requested by name.
     pub const ALL: [Self; 12] = [
         Self::BiasForces,
         Self::InverseDynamics,

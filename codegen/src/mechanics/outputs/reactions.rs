@@ -1,5 +1,5 @@
-//! Frictions that hold the motion and contacts, for steps of fixed length: functions, columns and effects of their
-//! reactions. The time-stepping method is in `program::evaluator::fixed_step`.
+//! Sticking frictions and contacts for steps of fixed length: functions, columns and effects of their reactions. The
+//! time-stepping method is in `program::evaluator::fixed_step`.
 
 use super::types::Reactions;
 use crate::mechanics::discs::find_discs;
@@ -14,7 +14,7 @@ use crate::symbolic::graph::{Graph, NodeId, Operation};
 pub enum StepObstacle {
     /// Energies jump at a surface.
     Corner,
-    /// A friction acts against the direction of a velocity.
+    /// A friction acts against the direction of a velocity vector, v/norm(v).
     Direction,
     /// The rates are not linear in the sign of a friction.
     Nonlinear,
@@ -38,7 +38,7 @@ impl std::fmt::Display for StepObstacle {
     }
 }
 
-/// Derives the reactions; `None` for a model without contacts and without frictions that can hold the motion.
+/// Derives the reactions; `None` for a model without contacts and without frictions that can stick.
 pub(crate) fn derive_reactions(
     equations: &mut Equations,
 ) -> Result<Option<Reactions<NodeId, RowNodes>>, StepObstacle> {

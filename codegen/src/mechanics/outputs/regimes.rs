@@ -1,13 +1,13 @@
-//! Regimes: the switching surfaces that decide each piecewise function of the accelerations. A function for
-//! one regime needs no comparisons. `affine` derives the polynomials in sides that make a model linear.
+//! Regimes: the switching surfaces that determine the branch of each piecewise function in the accelerations. With a
+//! given regime, the rates need no comparisons.
 
 use crate::mechanics::equations::Equations;
 use crate::mechanics::forces::{Surfaces, surfaces};
 use crate::mechanics::outputs::types::{Decision, SURFACES_OF_A_REGIME, Switch};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 
-/// Returns the piecewise functions of the accelerations that surfaces decide. Functions of modes are
-/// excluded, as are those whose surfaces exceed the bits of a regime's number.
+/// Finds the piecewise functions of the accelerations whose branches are determined by surfaces. Functions of vectors
+/// over modes are excluded, and functions whose surfaces have no bit in the regime number.
 pub(crate) fn switches(equations: &mut Equations) -> Vec<Switch<NodeId>> {
     let roots = equations.rate_nodes();
     let places = places(equations);

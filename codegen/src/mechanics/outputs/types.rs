@@ -8,7 +8,7 @@ use crate::symbolic::variable::Variable;
 /// Requested outputs, with nodes or values `N` and rows `R` of them.
 #[derive(Clone, Debug)]
 pub struct Outputs<N, R> {
-    /// Requests.
+    /// Requested outputs by name.
     pub kinds: Vec<Output>,
     /// Bias forces c - f.
     pub bias_forces: Option<R>,
@@ -16,17 +16,17 @@ pub struct Outputs<N, R> {
     pub inverse_dynamics: Option<R>,
     /// Rate of each guard along the motion.
     pub guard_rates: Option<Vec<N>>,
-    /// Jacobians by state, inputs and parameters: of the rates, then of the observables.
+    /// Jacobians by state, inputs and parameters: first of the rates, then of the observables.
     pub jacobians: Vec<Jacobian<N>>,
     /// Products with the Jacobian of the rates.
     pub products: Option<Products<N, R>>,
     /// Derivative of the gradient of the weighted rates along a direction.
     pub gradient_derivative: Option<GradientDerivative<N>>,
-    /// Frictions that hold the motion and contacts, for steps of fixed length; `None` if the model has neither.
+    /// Sticking frictions and contacts for steps of fixed length; `None` if the model has neither.
     pub reactions: Option<Reactions<N, R>>,
-    /// Branches of the accelerations that a regime decides.
+    /// Piecewise functions of the accelerations whose branches a regime determines.
     pub regimes: Option<Vec<Switch<N>>>,
-    /// Surfaces that can hold the motion, if their sides are inputs.
+    /// Surfaces along which the motion can slide, if their sides are inputs.
     pub sliding: Vec<SlidingSurface<N, R>>,
     /// Other surfaces whose sides are inputs, before those of `sliding`.
     pub sides: Vec<Side>,
@@ -53,7 +53,7 @@ impl<N, R> Default for Outputs<N, R> {
     }
 }
 
-/// Surface with a side, with nodes or values `N` and rows `R` of them.
+/// Surface along which the motion can slide, with nodes or values `N` and rows `R` of them.
 #[derive(Clone, Debug)]
 pub struct SlidingSurface<N, R> {
     /// Index of its function g among all guard values.
@@ -61,7 +61,7 @@ pub struct SlidingSurface<N, R> {
     /// Index of the velocity v of which the function is a component, if the side replaces a component of
     /// v/norm(v).
     pub disc: Option<usize>,
-    /// True if the switching function is the mean of both sides at g = 0, as sign(0) is.
+    /// True if the piecewise function at g = 0 is the mean of its values on both sides, as sign(0) is.
     pub is_odd: bool,
     /// True if the rates are of first degree in the sides.
     pub is_linear: bool,
@@ -69,52 +69,51 @@ pub struct SlidingSurface<N, R> {
     pub rate: N,
     /// Derivatives of g' by the sides of all surfaces.
     pub by_sides: Vec<N>,
-    /// Derivatives of the accelerations by the surface's own side.
+    /// Derivatives of the accelerations by the side of this surface.
     pub column: R,
-    /// Derivatives of the first-order rates by the surface's own side.
+    /// Derivatives of the first-order rates by the side of this surface.
     pub first_order: Vec<N>,
 }
 
-/// Reactions in a step of fixed length, with nodes or values `N` and rows `R` of them: first the frictions that can hold
-/// the motion, then the forces of the contacts, then their frictions.
+/// Reactions in a step of fixed length, with nodes or values `N` and rows `R` of them: first the frictions that can
+/// stick, then the forces of the contacts, then the frictions of the contacts.
 ///
-/// A reaction is an impulse: that of a friction is the integral of its sign over the step, at most the length of the
-/// step; that of a contact is the integral of the force.
+/// A reaction is an impulse over the step. For a friction, it is the integral of the sign, whose magnitude is at most
+/// the step size. For a contact, it is the integral of the force.
 #[derive(Clone, Debug)]
 pub struct Reactions<N, R> {
     /// Accelerations with the sides of the frictions as an [argument](crate::symbolic::variable::Argument::Sides).
     pub accelerations: R,
     /// Rates of the first-order states with these sides.
     pub first_order_rates: Vec<N>,
-    /// Function of each reaction, which it keeps at 0: the function whose sign is the friction, the rate of the
-    /// distance, the slip.
+    /// Function that each reaction keeps at 0: the switching function of a friction, the rate of a contact's
+    /// distance, the slip of a contact.
     pub functions: Vec<N>,
-    /// Change of the state's rates by a unit of each reaction: of the rates of coordinates and modes, then of the
-    /// first-order states.
+    /// Change of the rates of coordinates and modes, and of the first-order states, per unit of each reaction.
     pub columns: Vec<(R, Vec<N>)>,
-    /// Change of each function by a unit of each reaction, row by row.
+    /// Change of each function per unit of each reaction, row by row.
     pub effects: Vec<N>,
     /// Distances of the contacts.
     pub distances: Vec<N>,
     /// Coefficients of restitution of the contacts.
     pub restitutions: Vec<N>,
-    /// Coefficient of each contact's friction, with the index of the contact.
+    /// Friction coefficients of the contacts with friction, each with the index of the contact.
     pub coefficients: Vec<(usize, N)>,
 }
 
 /// Numbers of reactions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReactionCounts {
-    /// Frictions that can hold the motion.
+    /// Number of frictions that can stick.
     pub sides: usize,
-    /// Contacts.
+    /// Number of contacts.
     pub contacts: usize,
-    /// All reactions.
+    /// Number of all reactions.
     pub reactions: usize,
 }
 
 impl<N, R> Reactions<N, R> {
-    /// Returns the number of frictions that can hold the motion.
+    /// Returns the number of frictions that can stick.
     pub fn sides(&self) -> usize {
         self.functions.len() - self.distances.len() - self.coefficients.len()
     }
@@ -134,12 +133,12 @@ impl<N, R> Reactions<N, R> {
 pub struct Side {
     /// Index of its function among all guard values.
     pub guard: usize,
-    /// True if the switching function is the mean of both sides on the surface, as sign(0) is.
+    /// True if the piecewise function on the surface is the mean of its values on both sides, as sign(0) is.
     pub is_odd: bool,
 }
 
-/// Quantities that determine the rates beyond a corner, with nodes or values `N` and rows `R` of them. The
-/// mass matrix of the same program depends on the sides, too.
+/// Quantities that determine the rates after a corner, with nodes or values `N` and rows `R` of them. The mass matrix
+/// of the program also depends on the sides.
 #[derive(Clone, Debug)]
 pub struct Corners<N, R> {
     /// Momenta p = dL/dq'.
@@ -168,10 +167,10 @@ pub struct RateRow<N, R> {
 /// Products with the rates' Jacobian by state and inputs.
 #[derive(Clone, Debug)]
 pub struct Products<N, R> {
-    /// Rows of the accelerations in the product with a direction. The rows above are components of the
-    /// direction.
+    /// Rows of the accelerations in the product with a direction. The rows of the coordinates, which come first, are
+    /// components of the direction.
     pub forward: R,
-    /// Rows of the first-order states in this product.
+    /// Rows of the first-order states in the product with a direction.
     pub forward_first_order: Vec<N>,
     /// Product of the weights with the column of each variable, without the contribution of the weights of
     /// the coordinates' rates.
@@ -197,11 +196,11 @@ pub struct GradientRow<N> {
     pub count: usize,
     /// Derivative along the direction, a scalar or a vector over the modes.
     pub value: N,
-    /// Columns of structural nonzeros of the Hessian, in the same order.
+    /// Columns of the structural nonzeros of the Hessian, in the same order of variables.
     pub columns: Vec<Range<usize>>,
 }
 
-/// Jacobian by its structural nonzeros.
+/// Jacobian, stored by its structural nonzeros.
 #[derive(Clone, Debug)]
 pub struct Jacobian<N> {
     /// Name, for example `rates_by_state`.
@@ -243,7 +242,7 @@ impl<N> JacobianBlock<N> {
 pub struct BlockPlace {
     /// Index of the first nonzero.
     pub start: usize,
-    /// Number of nonzeros in each of the rows, including other blocks: the distance from one row to the next.
+    /// Number of nonzeros in each row, including those of other blocks; it is the distance from one row to the next.
     pub width: usize,
 }
 
@@ -273,37 +272,38 @@ impl<N> Jacobian<N> {
     }
 }
 
-/// Largest number of surfaces in the number of a regime, which has one bit for each.
+/// Largest number of surfaces in a regime number, which has one bit for each surface.
 pub const SURFACES_OF_A_REGIME: usize = u32::BITS as usize;
 
-/// Piecewise function of the accelerations, as a node or value `N`, whose branch a regime decides.
+/// Piecewise function in the accelerations, as a node or value `N`, whose branch a regime determines.
 #[derive(Clone, Copy, Debug)]
 pub struct Switch<N> {
     /// Value of the function.
     pub value: N,
-    /// Deciding surfaces.
+    /// Surfaces that determine the branch.
     pub decided: Decision,
 }
 
-/// Surfaces that decide a branch, by their indices among all guard values.
+/// Surfaces that determine a branch, by their indices among all guard values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decision {
-    /// Dead zone or contact, by p - b and p + b.
+    /// Dead zone or contact; the switching functions are p - b and p + b.
     Between {
         /// Index of p - b.
         above: usize,
         /// Index of p + b.
         beyond: usize,
     },
-    /// Sign or contact that can be zero in a whole regime, by p - b and -p - b, with b = 0 for a sign.
+    /// Sign or contact that can be zero for a whole regime; the switching functions are p - b and -p - b, with b = 0
+    /// for a sign.
     Outside {
         /// Index of p - b.
         above: usize,
         /// Index of -p - b.
         below: usize,
     },
-    /// Other function, by its only surface.
+    /// Other piecewise function with a single surface.
     Surface(usize),
-    /// Selection for a > b by b - a, or `above(p)` by -p.
+    /// Selection by a > b with the switching function b - a, or `above(p)` with the switching function -p.
     NegatedSurface(usize),
 }

@@ -1,6 +1,6 @@
-//! Regrouping of inertial parameters from link to link towards the fixed axes, as far as the motion does not
-//! depend on their distribution. The remaining base parameters (Gautier and Khalil, 1990: IEEE Trans.
-//! Robotics Automat. 6, 368-373) are prepared sums; most other parameters are 0 and cost no operation.
+//! Regrouping of inertial parameters: parameters of a link are added to those of its parent if this does not change
+//! the motion. The remaining base parameters (Gautier and Khalil, 1990: IEEE Trans. Robotics Automat. 6, 368-373) are
+//! sums computed by `prepare`. Most other parameters become 0 and cost no operation.
 
 use super::links::{Joint, Link};
 use super::mass_properties::MassProperties;
@@ -26,7 +26,7 @@ pub(super) fn regroup(graph: &mut Graph, links: &mut [Link]) {
             Joint::Shift(_) => mass.split_by_shift(graph),
         };
         links[place].mass = kept;
-        // Parameters of the fixed axes do no work.
+        // Inertial parameters of the fixed axes have no effect on the motion.
         if let Some(parent) = parent {
             links[parent].mass = links[parent].mass.add(graph, &passed);
         }

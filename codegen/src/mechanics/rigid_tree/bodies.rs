@@ -23,8 +23,8 @@ pub(crate) struct RigidBodies {
 }
 
 impl RigidBodies {
-    /// Collects the bodies of a model; `applied` are its forces without the potential. Returns `None` without
-    /// bodies, with fields, or with a gravity that is not constant.
+    /// Collects the rigid bodies of a model; `applied` are its forces without those of the potential. Returns `None`
+    /// if the model has no bodies, if it has fields, or if its gravity is not constant.
     pub(crate) fn find(
         translator: &mut Translator,
         variables: &Variables,
@@ -55,8 +55,9 @@ impl RigidBodies {
         }))
     }
 
-    /// Returns the rows of M a + c - f: those of the bodies by recursion, the others by Lagrange's equations.
-    /// `None` if the other kinetic energy has no velocities.
+    /// Returns the rows of M a + c - f. The contribution of the bodies is derived by recursion, the other
+    /// contributions by Lagrange's equations. Returns `None` if the remaining kinetic energy does not depend on
+    /// rates.
     pub(crate) fn inverse_dynamics(
         &self,
         graph: &mut Graph,

@@ -1,4 +1,4 @@
-//! Inward recursion: forces and moments of the links, and their work along the coordinates.
+//! Inward recursion: forces and moments of the links, and the generalised forces by virtual work.
 
 use eomgen_model_spec::ids::CoordinateId;
 
@@ -16,7 +16,7 @@ struct Wrench {
     moment: VectorTerms,
 }
 
-/// Returns the generalised force along each coordinate for this motion of the links.
+/// Returns the generalised force of each coordinate for this motion of the links.
 pub(super) fn generalised_forces(
     graph: &mut Graph,
     links: &[Link],
@@ -30,7 +30,7 @@ pub(super) fn generalised_forces(
         wrench.add_inertia(graph, &link.mass, &motions[place]);
         let force = signed_sums(graph, &wrench.force);
         let moment = signed_sums(graph, &wrench.moment);
-        // Pairs of virtual work: effort and displacement.
+        // Pairs of force and displacement (or moment and angle) whose product is the virtual work.
         let pairs = match &link.joint {
             Joint::Rotation(turn) => vec![(moment[turn.axis], turn.angle)],
             Joint::Shift(origin) => force.into_iter().zip(*origin).collect(),

@@ -1,4 +1,4 @@
-//! Tree of frames as links, each a shift or a rotation relative to its parent.
+//! Tree of frames as links; each link is shifted or rotated relative to its parent.
 
 use eomgen_model_spec::rigid_tree::{AxisTurn, RigidTree};
 
@@ -8,7 +8,7 @@ use crate::symbolic::graph::{Graph, NodeId};
 
 /// Set of axes with the mass fixed to it.
 pub(super) struct Link {
-    /// Parent link; `None` for the fixed axes.
+    /// Index of the parent link; `None` if the parent is the fixed axes.
     pub(super) parent: Option<usize>,
     /// Position relative to the parent.
     pub(super) joint: Joint,
@@ -35,16 +35,15 @@ impl Joint {
     }
 }
 
-/// Position of a frame: a link, then constant rotations.
+/// Position of a frame: a link, followed by constant rotations.
 #[derive(Clone, Default)]
 struct Placement {
     link: Option<usize>,
     fixed: Vec<AxisTurn<NodeId>>,
 }
 
-/// Returns the links of a tree, parents first. A constant rotation becomes a link only if a moving one
-/// follows; otherwise its content is expressed along the axes before it, along which velocities are known
-/// already.
+/// Returns the links of a tree, parents first. A constant rotation becomes a link only if a moving link follows.
+/// Otherwise, its bodies are expressed along the axes before the rotation, along which velocities are already known.
 pub(super) fn links(graph: &mut Graph, tree: &RigidTree<NodeId>) -> Vec<Link> {
     let mut links: Vec<Link> = Vec::new();
     let mut placements: Vec<Placement> = Vec::with_capacity(tree.frames.len());

@@ -1,4 +1,5 @@
-//! Mass, first moments and inertia of the content of a frame. The forces of a motion are linear in them.
+//! Mass, first moments and inertia of the bodies that are fixed to a frame. The inertia forces are linear in these
+//! parameters.
 
 use eomgen_model_spec::rigid_tree::{AxisTurn, RigidBody};
 
@@ -51,7 +52,7 @@ impl MassProperties {
     /// Transforms the parameters from rotated axes to the axes before the rotation.
     pub(super) fn rotate_back(&self, graph: &mut Graph, turn: &AxisTurn<NodeId>) -> Self {
         let rows = self.inertia.map(|row| rotate_back(graph, turn, &row));
-        // The inertia is symmetric: its rows are its columns.
+        // The inertia matrix is symmetric, so its rows equal its columns.
         let columns = [0, 1, 2].map(|j| [0, 1, 2].map(|i| rows[i][j]));
         Self {
             mass: self.mass,
@@ -60,8 +61,8 @@ impl MassProperties {
         }
     }
 
-    /// Transforms the parameters to an origin from which the present one has the offset `origin`.
-    /// Huygens-Steiner theorem with first moments h: J + (2 h.o + m o.o) 1 - h o' - o h' - m o o'.
+    /// Transforms the parameters to a new origin; `origin` is the position of the present origin relative to the new
+    /// one. Huygens-Steiner theorem with first moments h: J + (2 h.o + m o.o) 1 - h o' - o h' - m o o'.
     pub(super) fn shift_back(&self, graph: &mut Graph, origin: &Vector) -> Self {
         let moved = origin.map(|component| graph.multiply(self.mass, component));
         let first_moment =
@@ -96,8 +97,9 @@ impl MassProperties {
         }
     }
 
-    /// Splits the parameters into those unaffected by a rotation about an axis through the origin, and the
-    /// rest. The first part has mass, first moment along the axis, and the inertia of a thin rod along it.
+    /// Splits the parameters into a part that a rotation about an axis through the origin does not change, and the
+    /// rest. The first part has the mass, the first moment along the axis, and the inertia of a thin rod along the
+    /// axis.
     pub(super) fn split_by_rotation(&self, graph: &mut Graph, axis: usize) -> (Self, Self) {
         let [i, j] = next_axes(axis);
         let (mut symmetric, mut rest) = (Self::zero(graph), self.clone());
@@ -115,7 +117,8 @@ impl MassProperties {
         (symmetric, rest)
     }
 
-    /// Splits off the inertia, which a shift leaves unchanged if mass and first moment remain.
+    /// Splits the parameters into the inertia and the rest. The inertia alone, without mass and first moment, is
+    /// unchanged by a shift.
     pub(super) fn split_by_shift(&self, graph: &mut Graph) -> (Self, Self) {
         let (mut passed, mut rest) = (Self::zero(graph), self.clone());
         std::mem::swap(&mut passed.inertia, &mut rest.inertia);

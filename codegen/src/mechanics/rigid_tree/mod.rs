@@ -1,5 +1,5 @@
-//! Inverse dynamics of rigid bodies from frame to frame, for models without fields: accelerations outward,
-//! forces and moments inward (Luh, Walker and Paul, 1980: J. Dyn. Sys. Meas. Control 102, 69-76), with the
+//! Inverse dynamics of rigid bodies by recursion along the tree of frames, for models without fields: accelerations
+//! outward, forces and moments inward (Luh, Walker and Paul, 1980: J. Dyn. Sys. Meas. Control 102, 69-76), with the
 //! fewest inertial parameters and shared products (Khalil and Kleinfinger, 1987: IEEE J. Robotics Automat. 3,
 //! 517-526).
 //!

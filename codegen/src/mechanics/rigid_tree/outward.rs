@@ -23,7 +23,8 @@ pub(super) struct Motion {
     pub(super) gradient: Matrix,
 }
 
-/// Returns the motion of every link. The fixed axes accelerate against gravity, which replaces all weights.
+/// Returns the motion of every link. An acceleration of the fixed axes opposite to gravity replaces the weights of
+/// all bodies.
 pub(super) fn motions(
     graph: &mut Graph,
     links: &[Link],
@@ -64,7 +65,7 @@ pub(super) fn motions(
     motions
 }
 
-/// Returns the motion of axes with a shifted origin, which can move.
+/// Returns the motion of axes whose origin is shifted by a constant or moving offset.
 fn shift_motion(
     graph: &mut Graph,
     mut motion: Motion,

@@ -16,12 +16,13 @@ pub(super) fn zero(graph: &mut Graph) -> Vector {
     [graph.zero(); 3]
 }
 
-/// Returns the two axes (i, j) after an axis, so that axis = i x j.
+/// Returns the next two axes (i, j) in cyclic order, with axis = i x j.
 pub(super) fn next_axes(axis: usize) -> [usize; 2] {
     [(axis + 1) % 3, (axis + 2) % 3]
 }
 
-/// Returns a sum; a sum of only negative terms becomes minus a sum, because its uses absorb the sign.
+/// Returns a sum. A sum of only negative terms becomes the negative of a sum, because later operations can absorb the
+/// sign.
 pub(super) fn signed_sum(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
     let sum = graph.combine(terms);
     let positive: Vec<(f64, NodeId)> = match graph.operation(sum) {
@@ -65,7 +66,7 @@ pub(super) fn rotate(graph: &mut Graph, turn: &AxisTurn<NodeId>, vector: &Vector
     rotate_by_angle(graph, turn, vector, 1.0)
 }
 
-/// Transforms a vector from the rotated axes back to the axes before.
+/// Transforms a vector from the rotated axes to the axes before the rotation.
 pub(super) fn rotate_back(graph: &mut Graph, turn: &AxisTurn<NodeId>, vector: &Vector) -> Vector {
     rotate_by_angle(graph, turn, vector, -1.0)
 }

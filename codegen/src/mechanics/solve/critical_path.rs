@@ -1,14 +1,14 @@
-//! Shortening of the critical path of an acceleration. An elementary function takes as long as a dozen
-//! additions in a row, so terms that need it come last. With c and k of parameters, three operations follow
-//! the sine in c (a + k sin(x)) and two in c a + (c k) sin(x); the rest is computed before. No operation is
-//! added, also if c (a + k b) becomes c a + (c k) b.
+//! Shortening of the critical path of an acceleration. An elementary function has the latency of about a dozen
+//! additions, so terms with such a function are added last. For example, c and k depend only on parameters. Then
+//! three operations follow the sine in c (a + k sin(x)), but two in c a + (c k) sin(x), because the rest is computed
+//! earlier. The number of operations stays the same.
 
 use std::collections::HashMap;
 
 use crate::mechanics::rows::RowNodes;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 
-/// Pulls the terms on the critical path out of the products of each coordinate's row.
+/// Pulls the terms on the critical path out of the products in the acceleration of each coordinate.
 pub(super) fn shorten_critical_path(graph: &mut Graph, rows: &RowNodes) -> RowNodes {
     let uses = graph.uses(&rows.nodes());
     let scalars = rows
@@ -39,7 +39,7 @@ struct ScaledTerm {
     node: NodeId,
 }
 
-/// Expands the sums of a product with the scale, along the critical path.
+/// Expands scale * node along the critical path into terms and adds these to `parts`.
 fn pull_out(
     graph: &mut Graph,
     uses: &HashMap<NodeId, usize>,
@@ -136,8 +136,8 @@ fn expand_sums(
     all
 }
 
-/// Returns true if a term absorbs a scale without an operation: it depends only on parameters, or has such a
-/// factor and no other use. The scaled term can then equal a term of another row.
+/// Returns true if a term can be multiplied by the scale without an additional operation: it depends only on
+/// parameters, or it has a factor of parameters and no other use.
 fn absorbs_scale(graph: &Graph, uses: &HashMap<NodeId, usize>, node: NodeId) -> bool {
     let parameter_only = |id: NodeId| graph.dependence(id).is_parameter_only();
     let shared = uses.get(&node).is_some_and(|uses| *uses > 1);
@@ -148,7 +148,7 @@ fn absorbs_scale(graph: &Graph, uses: &HashMap<NodeId, usize>, node: NodeId) -> 
     parameter_only(node) || (has_a_factor && !shared)
 }
 
-/// Returns the scaled sum of terms as one term; if all terms are negative, so is its factor.
+/// Returns the scaled sum of terms as one term; if all terms are negative, its factor is -1.
 fn scaled_sum(graph: &mut Graph, scale: NodeId, terms: &[(f64, NodeId)]) -> (f64, NodeId) {
     let negative = terms.iter().all(|(c, _)| *c < 0.0);
     let sign = if negative { -1.0 } else { 1.0 };

@@ -9,7 +9,7 @@ pub(super) struct Elimination {
     pub(super) right: Vec<NodeId>,
     /// True if both halves of the matrix are the same nodes.
     is_symmetric: bool,
-    /// Pivots so far; those of rows with negative pivots have the opposite sign.
+    /// Pivots so far; rows with negative pivots are stored with the opposite sign.
     pub(super) pivots: Vec<NodeId>,
     reciprocals: Vec<NodeId>,
 }
@@ -55,7 +55,7 @@ impl Elimination {
                 continue;
             }
             let factor = graph.multiply(matrix[row][pivot_row], reciprocal);
-            // The remainder of a symmetric matrix is symmetric: its upper half suffices.
+            // The remaining matrix of a symmetric matrix is symmetric, so only its upper half is computed.
             let first = if self.is_symmetric { place } else { step + 1 };
             for &column in &order[first..] {
                 let product = graph.multiply(factor, matrix[pivot_row][column]);
@@ -92,8 +92,8 @@ impl Elimination {
     }
 }
 
-/// Returns the reciprocal of a pivot. A plain product of parameters can cancel against the row that it
-/// divides; the preparation of the coefficients checks it. Any other pivot is checked when it is used.
+/// Returns the reciprocal of a pivot. A product of parameters can cancel against factors of its row; such a pivot is
+/// checked by `prepare`. Any other pivot is checked when it is used.
 pub(super) fn pivot_reciprocal(graph: &mut Graph, pivot: NodeId) -> NodeId {
     let plain = match graph.operation(pivot) {
         Operation::Parameter(_) | Operation::Product(_) => true,
@@ -114,7 +114,7 @@ pub(super) fn inner_product(graph: &mut Graph, field: FieldId, a: NodeId, b: Nod
     }
     let space = Space::Modes(field);
     match graph.operation(b).clone() {
-        // The terms of a sum have separate prepared factors: keep them separate.
+        // The terms of a sum have separate prepared factors and stay separate.
         Operation::Sum(terms) if terms.len() > 1 => {
             let terms: Vec<(f64, NodeId)> = terms
                 .iter()

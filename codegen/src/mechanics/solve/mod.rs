@@ -5,15 +5,15 @@
 //! the modes cost O(S). The interface forces p = G Phi^T a_q + C^T a - b are additional unknowns of a small
 //! system with the coordinates, solved without pivoting in the cheapest order.
 //!
-//! - Unknowns are the forces p, not the accelerations Phi^T a_q. With many modes the tip is light, its
-//!   acceleration is large and nearly cancels that of its load, and p would be their difference.
-//! - Coupling that depends on the state goes through interfaces (C), other coupling does not (H), so that
-//!   only scalars depend on the state (see `ModalBlock::couple_through_interfaces`).
+//! - The unknowns are the forces p, not the accelerations Phi^T a_q. With many modes, the effective mass of a beam
+//!   tip is small; p would be the small difference of nearly equal large accelerations.
+//! - State-dependent coupling is expressed through interfaces (C), other coupling directly (H); therefore only
+//!   scalars depend on the state (see `ModalBlock::couple_through_interfaces`).
 //! - If G is not diagonal or C is not zero, the interfaces are orthogonalised first; otherwise a pivot could
 //!   be negative although M is positive definite (see `ModalBlock::orthogonalise`).
 //! - If the basis is not orthogonal, the modal block is dense and its Cholesky factor replaces D.
 //! - Pivots must be positive; the reciprocal of any other pivot is NaN.
-//! - Dependent constraints have the multipliers of least norm (see `redundant`).
+//! - For dependent constraints, the multipliers of least norm are computed (see `redundant`).
 
 mod critical_path;
 mod elimination;
@@ -31,14 +31,13 @@ use modal::{ModalBlock, ModalInverse};
 use redundant::DependentRows;
 use small::SmallSystem;
 
-/// Accelerations with their pivots.
+/// Accelerations with the pivots of their solution.
 #[derive(Clone, Debug)]
 pub struct Accelerations {
     /// Accelerations.
     pub rows: RowNodes,
-    /// All pivots of the factorisation, which must be positive: those of the coordinates in the order of
-    /// their elimination, those of the interfaces, vectors over the modes, and Cholesky factors (positive if
-    /// not NaN).
+    /// All pivots of the factorisation, which must be positive: those of the coordinates in the order of their
+    /// elimination, those of the interfaces, vectors over the modes, and Cholesky factors (positive unless NaN).
     pub pivots: Vec<NodeId>,
     /// Report on the solution.
     pub report: SolveReport,
@@ -114,8 +113,8 @@ pub(crate) fn solve(
 /// [ M  -A^T ] [ a      ]   [  f ]
 /// [ -A   0  ] [ lambda ] = [ -b ]
 /// ```
-/// A multiplier couples to the modes as a coordinate does, through interfaces if its coupling depends on the
-/// state. It is eliminated last, with minus a pivot of A M^-1 A^T.
+/// Multipliers are coupled to the modes like coordinates, through interfaces if the coupling depends on the state.
+/// They are eliminated last; their pivots are the negative pivots of A M^-1 A^T.
 fn border_matrix(
     graph: &mut Graph,
     mass: &MassMatrix,
@@ -145,8 +144,8 @@ fn border_matrix(
     (mass, right)
 }
 
-/// Returns the orders to try besides the natural one: all others for up to four coordinates, else its
-/// reverse.
+/// Returns the elimination orders to try in addition to the natural order: all other orders for up to four
+/// coordinates, else the reverse order.
 fn other_orders(count: usize) -> Vec<Vec<usize>> {
     if count > 4 {
         return vec![(0..count).rev().collect()];
@@ -163,6 +162,6 @@ fn other_orders(count: usize) -> Vec<Vec<usize>> {
             })
             .collect();
     }
-    // The first is the natural one.
+    // The first order is the natural one.
     orders.split_off(1)
 }

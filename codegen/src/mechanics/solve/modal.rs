@@ -1,5 +1,4 @@
-//! Modal block of the mass matrix: its inverse field by field, and the interface scalars of its outer
-//! products.
+//! Modal block of the mass matrix: one inverse for each field, and the interface scalars of its outer products.
 
 use super::elimination::{inner_product, pivot_reciprocal};
 use super::separation::{SeparatedTerm, separate};
@@ -10,7 +9,7 @@ use eomgen_model_spec::ids::FieldId;
 
 /// Solution for the modes of one field.
 pub(super) enum ModalInverse {
-    /// Division by a diagonal.
+    /// Division by a diagonal matrix.
     Diagonal {
         diagonal: NodeId,
         reciprocal: NodeId,
@@ -23,7 +22,7 @@ pub(super) enum ModalInverse {
 impl ModalInverse {
     pub(super) fn new(graph: &mut Graph, mass: &MassMatrix, field: FieldId) -> Self {
         let block = &mass.modal[field][field];
-        // Without a diagonal, a block with fewer outer products than modes is singular.
+        // A block without a diagonal part is singular if it has fewer outer products than modes.
         let full_rank = block.outer.len() >= graph.size(Space::Modes(field));
         if block.matrices.is_empty() && (block.diagonal.is_some() || !full_rank) {
             let diagonal = block.diagonal.unwrap_or_else(|| graph.zero());
@@ -38,7 +37,8 @@ impl ModalInverse {
         Self::Dense { factor }
     }
 
-    /// Divides every term by a constant diagonal, so that it cancels against the stiffness of the same mode.
+    /// Applies the inverse to a vector. A constant diagonal divides every term separately, because it can cancel
+    /// against the stiffness of the mode.
     pub(super) fn apply(&self, graph: &mut Graph, vector: NodeId) -> NodeId {
         match *self {
             Self::Dense { factor } => graph.cholesky_solve(factor, vector),
@@ -67,7 +67,7 @@ impl ModalInverse {
     }
 }
 
-/// Vector over one field's modes in an outer product.
+/// Vector over the modes of one field in an outer product.
 pub(super) struct Interface {
     pub(super) field: FieldId,
     pub(super) shape: NodeId,
@@ -77,8 +77,8 @@ pub(super) struct Interface {
     pub(super) square: NodeId,
 }
 
-/// Smallest remaining square of an interface, as a fraction. A dependent interface leaves about 1e-32 by
-/// rounding.
+/// Smallest fraction of an interface's square norm that remains after orthogonalisation. For a dependent interface,
+/// rounding leaves about 1e-32.
 const MIN_SQUARE_FRACTION: f64 = 1e-20;
 
 /// Modal block: an inverse for each field, and interfaces with their weights G.
@@ -141,9 +141,9 @@ impl ModalBlock {
         block
     }
 
-    /// Makes the shapes of a field interfaces if its coupling depends on the state, as that of a link depends
-    /// on the angle of the next one; only scalars then depend on the state. Shapes that depend on the state
-    /// are excluded, because their interfaces would cost more than they save.
+    /// Makes the shapes of a field interfaces if its coupling depends on the state; for example, the coupling of a
+    /// flexible link depends on the angle of the next link. Then only scalars depend on the state. Shapes that depend
+    /// on the state are excluded, because their interfaces would cost more than they save.
     fn couple_through_interfaces(&mut self, graph: &mut Graph, field: FieldId) {
         if !matches!(
             self.inverses[field],
@@ -203,10 +203,9 @@ impl ModalBlock {
     /// Makes the interfaces of a field orthogonal with respect to D^-1 (Gram-Schmidt): phi_k = psi_k + sum
     /// over j < k of mu_kj psi_j, G' = U G U^T with U_jk = mu_kj.
     ///
-    /// The pivots of I + G K, K = Phi^T D^-1 Phi, are ratios of its leading minors. With a diagonal K these
-    /// are the minors of the symmetric I + K^1/2 G K^1/2, all positive if the modal block is positive
-    /// definite. With another K a pivot can be negative, for example for a mass on a lever between two points
-    /// of a beam.
+    /// The pivots of I + G K, K = Phi^T D^-1 Phi, are ratios of its leading minors. With a diagonal K these are the
+    /// minors of the symmetric I + K^1/2 G K^1/2, all positive if the modal block is positive definite. If K is not
+    /// diagonal, a pivot can be negative, for example for a mass on a lever between two points of a beam.
     fn orthogonalise(&mut self, graph: &mut Graph, field: FieldId) {
         let places: Vec<usize> = (0..self.interfaces.len())
             .filter(|place| self.interfaces[*place].field == field)
@@ -227,8 +226,8 @@ impl ModalBlock {
         }
     }
 
-    /// Returns mu, the share of the orthogonal interface `earlier` in the interface `place`; 0 if `earlier`
-    /// depends on other interfaces, so that only rounding errors remain of it.
+    /// Returns mu, the component of the interface `index` along the orthogonal interface `earlier`. The result is 0
+    /// if `earlier` depends on other interfaces, because then it contains only rounding errors.
     fn share(&self, graph: &mut Graph, place: usize, earlier: usize) -> NodeId {
         let (own, other) = (&self.interfaces[place], &self.interfaces[earlier]);
         let product = inner_product(graph, own.field, own.shape, other.solved);
@@ -239,7 +238,7 @@ impl ModalBlock {
         graph.select(square, least, share, zero)
     }
 
-    /// Updates the weights for phi_place = psi + share psi_earlier.
+    /// Updates the weights for phi_index = psi + share psi_earlier.
     fn move_weight(&mut self, graph: &mut Graph, place: usize, earlier: usize, share: NodeId) {
         for column in 0..self.interfaces.len() {
             let moved = graph.multiply(share, self.weights[place][column]);
@@ -255,7 +254,7 @@ impl ModalBlock {
         }
     }
 
-    /// Splits u v^T into interfaces; scalar factors become weights.
+    /// Adds the outer product u v^T: its vectors become interfaces, its scalar factors weights.
     fn add_outer(&mut self, graph: &mut Graph, u: (FieldId, NodeId), v: (FieldId, NodeId)) {
         let (rows, columns) = (separate(graph, u.1), separate(graph, v.1));
         for u_part in &rows {

@@ -4,8 +4,9 @@
 //! With the scales S, the diagonal of A M^-1 A^T, S^-1/2 W S^-1/2 = V D^-1 V^T is factorised with pivoting (N. J.
 //! Higham, *Accuracy and Stability of Numerical Algorithms*, 10.3): D are the pivots, and the columns V have one row
 //! for each constraint. The solution that minimises lambda^T S lambda is V N^-1 D N^-1 V^T r with N = V^T V, in the
-//! scaled unknowns. It does not depend on the choice of the pivots. Therefore they are chosen anew at every state: a
-//! fixed choice can be singular at a state at which the constraints have their full rank.
+//! scaled unknowns. The solution does not depend on the choice of the pivots. Therefore the pivots are selected anew
+//! at every state, because a fixed selection can be singular at a state at which the constraints have their full
+//! rank.
 
 use super::elimination::{Elimination, pivot_reciprocal};
 use crate::symbolic::graph::{Graph, NodeId};
@@ -13,9 +14,9 @@ use crate::symbolic::graph::{Graph, NodeId};
 /// Multipliers that depend on each other.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DependentRows {
-    /// Indices among the multipliers, ascending.
+    /// Indices of the dependent rows among all multipliers, ascending.
     pub(super) rows: Vec<usize>,
-    /// Rank of their system.
+    /// Rank of the system of these multipliers.
     pub(super) rank: usize,
 }
 
@@ -31,14 +32,14 @@ pub(super) struct DependentSystem {
     pub(super) has_unit_diagonal: bool,
 }
 
-/// Column of the factor with its pivot.
+/// Column of the factor V with its pivot.
 struct PivotColumn {
     column: Vec<NodeId>,
     pivot: NodeId,
 }
 
 impl DependentSystem {
-    /// Returns the solution of least norm, and the pivots, which must be positive.
+    /// Returns the solution of least norm and the pivots, which must be positive.
     pub(super) fn solve(self, graph: &mut Graph) -> (Vec<NodeId>, Vec<NodeId>) {
         let scales = self.scales.iter();
         let weights: Vec<NodeId> = scales
@@ -75,7 +76,7 @@ impl DependentSystem {
     fn factorise(&self, graph: &mut Graph, weights: &[NodeId]) -> Vec<PivotColumn> {
         let zero = graph.zero();
         let mut rest = self.matrix.clone();
-        // The rows before have no remainder.
+        // In these rows the remaining matrix is zero.
         let mut first = 0;
         let mut found = Vec::with_capacity(self.rank);
         for step in 0..self.rank {
@@ -111,7 +112,7 @@ impl DependentSystem {
     }
 }
 
-/// Returns the column with the largest scaled diagonal entry among those of the last rows.
+/// Returns the column with the largest scaled diagonal entry of the remaining rows.
 fn select_column(graph: &mut Graph, rows: &[Vec<NodeId>], weights: &[NodeId]) -> PivotColumn {
     let first = rows[0].len() - rows.len();
     let mut best = PivotColumn {

@@ -5,15 +5,15 @@ use std::collections::BTreeMap;
 
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 
-/// Scalar times a vector without scalar factors (1 for equal entries).
+/// Scalar times a vector without scalar factors; the vector is 1 if all entries are equal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SeparatedTerm {
     pub(super) scalar: NodeId,
     pub(super) vector: NodeId,
 }
 
-/// Splits a vector into a sum of terms, each vector once, in the order of the graph. Sums are expanded from
-/// the outermost to the innermost, so that a shared one is expanded once.
+/// Splits a vector into a sum of terms with distinct vectors, in the order of the graph. Sums are expanded from the
+/// outermost to the innermost; therefore a shared sum is expanded only once.
 pub(super) fn separate(graph: &mut Graph, vector: NodeId) -> Vec<SeparatedTerm> {
     let one = graph.one();
     let mut waiting: BTreeMap<NodeId, Vec<(f64, NodeId)>> =
@@ -63,7 +63,7 @@ pub(super) fn separate(graph: &mut Graph, vector: NodeId) -> Vec<SeparatedTerm> 
         .collect()
 }
 
-/// Removes a sum from the factors and returns its terms; empty without a sum.
+/// Removes a sum from the factors and returns its terms; returns no terms if no factor is a sum.
 fn remove_sum(graph: &Graph, factors: &mut Vec<(NodeId, i32)>) -> Vec<(f64, NodeId)> {
     let place = factors.iter().position(|(factor, exponent)| {
         *exponent == 1 && matches!(graph.operation(*factor), Operation::Sum(_))

@@ -14,7 +14,7 @@ pub(super) struct SmallSystem {
     pub(super) interfaces: usize,
     /// Number of rows of multipliers at the end, whose pivots are negative.
     multipliers: usize,
-    /// Multipliers that depend on each other; they are eliminated last.
+    /// Dependent multipliers, which are eliminated last.
     dependent: DependentRows,
     pub(super) matrix: Vec<Vec<NodeId>>,
     pub(super) right: Vec<NodeId>,
@@ -94,7 +94,7 @@ impl SmallSystem {
             let coupling = coupling.map(|h| inner_product(graph, field, shape, h[field]));
             response.coupling.push(coupling.collect());
             let free = self.free_modes[field];
-            // Many terms are summed before the products with the shapes.
+            // A sum of many terms is computed before its products with the shapes.
             response.free.push(if orthogonal && !graph.is_zero(free) {
                 let product = graph.multiply(shape, free);
                 graph.total_over(Space::Modes(field), product)
@@ -137,8 +137,8 @@ impl SmallSystem {
         self.matrix.push(row);
     }
 
-    /// Adds the row (A - H D^-1 H^T) a - (H D^-1 Phi + C K) p = f - H D^-1 f_q - C Phi^T D^-1 f_q; a field
-    /// couples through C or through H.
+    /// Adds the row (A - H D^-1 H^T) a - (H D^-1 Phi + C K) p = f - H D^-1 f_q - C Phi^T D^-1 f_q. The coupling with
+    /// a field is either C or H.
     fn push_coordinate_row(
         &mut self,
         graph: &mut Graph,

@@ -22,8 +22,8 @@ pub(super) fn mode(from: End, to: End, number: usize) -> Mode {
     let [falling, rising] = exponentials(from, to, root, wave, wave_at_end[0]);
     let [sine, cosine] = wave;
     let (falling_at_end, rising_at_start) = (falling * root.decay, rising * root.decay);
-    // 4 int phi^2 = phi(1)^2 + phi''(1)^2/k^4 - 2 phi'(1) phi'''(1)/k^4, or the same at the start. At an end
-    // from which the shape decays, one of these terms remains.
+    // 4 int phi^2 = phi(1)^2 + phi''(1)^2/k^4 - 2 phi'(1) phi'''(1)/k^4; the same formula holds with the values at
+    // the start. At an end with a decaying exponential, only one of these terms is not zero.
     let mean_square = match (from, to) {
         (start, _) if has_decaying_exponential(start) => [cosine; 2],
         (_, end) if has_decaying_exponential(end) => [wave_at_end[0]; 2],
@@ -49,8 +49,8 @@ pub(super) fn mode(from: End, to: End, number: usize) -> Mode {
     }
 }
 
-/// Computes the mode `number` with beta_r l and xi_r as printed in Eq. (18) and (19). It satisfies no
-/// condition at its end, and its integrals have no closed form.
+/// Computes the mode `number` with beta_r l and xi_r as printed in Eq. (18) and (19). This shape does not satisfy the
+/// boundary conditions at its end, and its integrals have no closed form.
 pub(super) fn printed_mode(number: usize) -> Mode {
     let wavenumber = std::f64::consts::PI * (number as f64 - 0.5);
     let sine = -alternating(number);
@@ -73,7 +73,7 @@ pub(super) fn is_sinusoidal(from: End, to: End) -> bool {
     !has_decaying_exponential(from) && !has_decaying_exponential(to)
 }
 
-/// k = beta_r l with its sine and cosine, which are more accurate than those of the rounded k.
+/// Wave number k = beta_r l with its sine and cosine, which are computed more accurately than from the rounded k.
 #[derive(Clone, Copy)]
 struct Root {
     k: f64,
@@ -128,7 +128,7 @@ impl Root {
     }
 }
 
-/// Returns the sine and cosine of -2, -1, 0, 1 or 2 times pi/4.
+/// Returns the sine and cosine of `quarters` pi/4 for `quarters` = -2 to 2.
 fn quarter_turns(quarters: f64) -> [f64; 2] {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     if quarters == 0.0 {
@@ -149,13 +149,13 @@ fn has_decaying_exponential(end: End) -> bool {
     matches!(end, End::Clamped | End::Free)
 }
 
-/// Returns the sign of two ends that decay: -1 for equal ends, cos k cosh k = 1; 1 for clamped and free, cos
-/// k cosh k = -1.
+/// Returns -1 for two equal ends (cos k cosh k = 1), and 1 for a clamped and a free end (cos k cosh k = -1).
 fn end_difference(from: End, to: End) -> f64 {
     if from == to { -1.0 } else { 1.0 }
 }
 
-/// Returns the factors of sin z and of cos z. The sine has the factor 1; without a sine, the cosine has it.
+/// Returns the amplitudes of sin z and cos z. The shape is scaled to amplitude 1 of the sine or, without a sine, of
+/// the cosine.
 fn wave(from: End, to: End, root: Root) -> [f64; 2] {
     let square = root.decay * root.decay;
     let mixing = match (from, to) {
@@ -163,8 +163,8 @@ fn wave(from: End, to: End, root: Root) -> [f64; 2] {
         (End::Guided, _) => return [0.0, 1.0],
         (_, End::Pinned) => -(1.0 - square) / (1.0 + square),
         (_, End::Guided) => -(1.0 + square) / (1.0 - square),
-        // -(sin - sinh)/(cos - cosh) and -(sin + sinh)/(cos + cosh), numerator and denominator
-        // times 2 exp(-k)
+        // -(sin - sinh)/(cos - cosh) or -(sin + sinh)/(cos + cosh) at k, with numerator and denominator multiplied by
+        // 2 exp(-k)
         _ => {
             let unlike = end_difference(from, to);
             let numerator = 2.0 * root.sine * root.decay + unlike - unlike * square;
@@ -179,10 +179,10 @@ fn wave_divisor(unlike: f64, root: Root) -> f64 {
     2.0 * root.cosine * root.decay + unlike + unlike * root.decay * root.decay
 }
 
-/// Returns the wave at the end, and its first derivative divided by k.
+/// Returns the wave (the sine and cosine part) at the end, and its first derivative divided by k.
 fn wave_at_end(from: End, to: End, root: Root, number: usize, [a, c]: [f64; 2]) -> [f64; 2] {
     if has_decaying_exponential(from) && has_decaying_exponential(to) {
-        // Such a wave is equal from both ends except for signs.
+        // If both ends are clamped or free, the wave is symmetric or antisymmetric about the middle.
         let sign = end_difference(from, to) * alternating(number);
         return [sign * c, -sign * a];
     }
@@ -192,10 +192,10 @@ fn wave_at_end(from: End, to: End, root: Root, number: usize, [a, c]: [f64; 2]) 
     ]
 }
 
-/// Returns the factors of exp(-z) and of exp(z - k).
+/// Returns the amplitudes of exp(-z) and exp(z - k).
 fn exponentials(from: End, to: End, root: Root, wave: [f64; 2], wave_at_end: f64) -> [f64; 2] {
     let decay = root.decay;
-    // Exponentials cancel the wave at a clamped end and double it at a free one.
+    // The exponential cancels the wave at a clamped end and doubles it at a free end.
     let sense = |end| if end == End::Free { 1.0 } else { -1.0 };
     match (from, to) {
         (End::Pinned, end) if has_decaying_exponential(end) => {

@@ -1,4 +1,4 @@
-//! Modes of beams, compared with published eigenvalues, end conditions, quadrature and mirror images.
+//! Modes of beams, compared with published eigenvalues, boundary conditions, quadrature and mirrored shapes.
 
 use eomgen_model_spec::model::End;
 
@@ -45,7 +45,7 @@ fn eigenvalues_match_published_table() {
         for (number, eigenvalue) in (1..).zip(eigenvalues) {
             for mode in [mode(from, to, number), mode(to, from, number)] {
                 let found = mode.wavenumber;
-                // One unit of the last printed digit.
+                // The tolerance is one unit of the last printed digit.
                 assert!(
                     (found - eigenvalue).abs() < 1e-7,
                     "{from:?}, {to:?}: {found}"
@@ -55,7 +55,7 @@ fn eigenvalues_match_published_table() {
     }
 }
 
-// The phase at the end, up to 403, has a rounding error of 3e-14.
+// The phase at the end is up to 403; its rounding error is 3e-14.
 #[test]
 fn shapes_satisfy_the_conditions_at_both_ends() {
     for (from, to, number) in all() {
@@ -77,8 +77,8 @@ fn shapes_satisfy_the_conditions_at_both_ends() {
     }
 }
 
-// Closed forms of the integrals of phi^2, phi and s phi, compared with quadrature; its nodes are rounded, as
-// the phases are.
+// Compares the closed forms of the integrals of phi^2, phi and s phi with quadrature. The tolerance allows for
+// rounded nodes and phases.
 #[test]
 fn closed_integrals_match_quadrature() {
     for (from, to, number) in all() {

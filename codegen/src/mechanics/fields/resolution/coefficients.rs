@@ -1,4 +1,4 @@
-//! Comparison of the quadrature nodes with panels that resolve a coefficient along the field.
+//! Error of the quadrature rule of a field, by comparison with panels that resolve a coefficient along the field.
 
 use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::evaluate::{enclose_with, evaluate, evaluate_at_time, evaluate_with};
@@ -14,13 +14,13 @@ use super::MAX_ERROR;
 use super::panels::{Panels, Profile, divide};
 use super::products::{Coefficient, Product};
 
-/// Number of combinations of all modes that are tried in addition to single modes.
+/// Number of combinations of all modes that are tested in addition to single modes.
 const COMBINATIONS: usize = 3;
 
-/// Shapes per panel: with 24 nodes, the product of their waves is exact to rounding.
+/// Largest number of shape waves per panel; with 24 nodes, quadrature of their product is exact to rounding.
 const SHAPES_PER_PANEL: usize = 4;
 
-/// Field at values of the parameters.
+/// Field at given parameters.
 pub(super) struct CheckedField<'m> {
     model: &'m Model,
     field: &'m Field,
@@ -31,7 +31,7 @@ pub(super) struct CheckedField<'m> {
     rule: FieldRule,
 }
 
-/// Shapes at the nodes of a rule: for each derivative, nodes by modes.
+/// Mode shapes at the nodes of a rule: for each derivative, one row for each node and one column for each mode.
 struct ShapeTables<'r> {
     rule: &'r QuadratureRule,
     values: Vec<(u8, Vec<Vec<f64>>)>,
@@ -54,7 +54,7 @@ impl<'m> CheckedField<'m> {
         }
     }
 
-    /// Compares the integrals of a product at all checked times.
+    /// Checks the integrals of a product at several times if it depends on time.
     ///
     /// # Errors
     /// An error above [`MAX_ERROR`].
@@ -77,7 +77,7 @@ impl<'m> CheckedField<'m> {
         Ok(())
     }
 
-    /// Returns the largest error of the product with single modes and combinations of them, and the narrowest panel.
+    /// Returns the largest relative error over single modes and combinations of modes, and the narrowest panel.
     fn error_at(&self, product: &Product<'_>, t: f64) -> (f64, [f64; 2]) {
         let value = |s: f64| {
             let factors = product.coefficients.iter();
@@ -127,7 +127,7 @@ impl<'m> CheckedField<'m> {
         (worst, narrowest)
     }
 
-    /// Returns the ends of panels in which a product of shapes is resolved.
+    /// Returns the ends of panels that resolve a product of this number of shapes.
     fn panel_ends(&self, shapes: usize) -> Vec<f64> {
         let knots = self.rule.knots();
         let pieces = (shapes.max(1) * self.order)
@@ -141,7 +141,7 @@ impl<'m> CheckedField<'m> {
         inner.chain([1.0]).collect()
     }
 
-    /// Returns amplitudes of the modes: single modes, and combinations of all.
+    /// Returns the tested amplitudes of the modes: single modes, and combinations of all modes.
     fn amplitudes(&self, product: &Product<'_>) -> Vec<Vec<f64>> {
         if product.shapes.is_empty() {
             return vec![Vec::new()];
@@ -252,7 +252,7 @@ impl<'m> CheckedField<'m> {
 }
 
 impl ShapeTables<'_> {
-    /// Returns the largest magnitude of each shape: for each derivative, a number per mode.
+    /// Returns the largest magnitude of each mode shape for each derivative.
     fn scales(&self) -> Vec<Vec<f64>> {
         let largest = |rows: &Vec<Vec<f64>>| {
             let modes = rows.first().map_or(0, Vec::len);
@@ -265,7 +265,7 @@ impl ShapeTables<'_> {
         self.values.iter().map(|(_, rows)| largest(rows)).collect()
     }
 
-    /// Returns the integral of the product with these amplitudes of the modes, and that of its magnitude.
+    /// Returns the integrals of the product and of its magnitude for these mode amplitudes.
     fn integral(
         &self,
         product: &Product<'_>,
@@ -291,7 +291,8 @@ impl ShapeTables<'_> {
     }
 }
 
-/// Returns the times at which coefficients that depend on time are compared, s: 0 and six decades, ten in each.
+/// Returns the times in s at which coefficients that depend on time are checked: 0, and ten times per decade over six
+/// decades.
 fn times() -> Vec<f64> {
     let decades = (-30..=30).map(|k| 10.0_f64.powf(0.1 * f64::from(k)));
     std::iter::once(0.0).chain(decades).collect()

@@ -1,10 +1,10 @@
 //! Checks the quadrature of integrals over a field.
 //!
-//! An integral with a coefficient that is not a polynomial of the position is evaluated at the quadrature
-//! nodes of its field (`modes`). The error of these nodes is the difference from panels that resolve the
-//! coefficient: bounds of the coefficient by interval arithmetic show where it changes between the nodes.
-//! `products` expands an integrand, `panels` divides the domain, `coefficients` compares both rules, and
-//! `motion` does so at a state for integrands that are no polynomials of the motion.
+//! An integral with a coefficient that is not a polynomial of the position is evaluated at the quadrature nodes of
+//! its field (`modes`). The error is estimated by comparison with panels that resolve the coefficient. Bounds by
+//! interval arithmetic detect changes of the coefficient between the nodes. `products` expands an integrand, `panels`
+//! divides the domain, and `coefficients` compares both rules. `motion` compares them at a given state for integrands
+//! that are not polynomials of the motion.
 
 mod coefficients;
 mod motion;
@@ -24,7 +24,7 @@ pub use motion::State;
 /// Largest error of an integral by quadrature, relative to the integral of the integrand's magnitude.
 pub const MAX_ERROR: f64 = 1e-9;
 
-/// Integral over a field that needs quadrature.
+/// Integral over a field that is computed by quadrature.
 struct Quadrature<'m> {
     field: FieldId,
     integrand: &'m Expr,
@@ -34,7 +34,7 @@ struct Quadrature<'m> {
 /// Error of the quadrature of an integral.
 #[derive(Clone, Debug)]
 pub struct QuadratureError {
-    /// Place of the integrand in the specification.
+    /// Location of the integrand in the specification.
     pub span: Span,
     /// Text of the integrand.
     pub text: String,
@@ -44,11 +44,11 @@ pub struct QuadratureError {
     pub nodes: usize,
 }
 
-/// Checks the integrals with a coefficient that depends on the position, parameters and time only.
+/// Checks the integrals with a coefficient that depends only on position, parameters and time.
 ///
 /// # Errors
-/// The first coefficient whose integrals have an error above [`MAX_ERROR`] at the parameters of the model, and a jump
-/// at a position that moves along the field.
+/// The first coefficient whose integrals have an error above [`MAX_ERROR`] at the parameters of the model, or a
+/// coefficient that jumps at a position that moves along the field.
 pub fn check_coefficients(model: &Model, orders: &[usize]) -> Result<(), Diagnostic> {
     if model.fields.is_empty() {
         return Ok(());
@@ -77,8 +77,8 @@ pub fn check_coefficients(model: &Model, orders: &[usize]) -> Result<(), Diagnos
     Ok(())
 }
 
-/// Returns the largest error of integrals that are no polynomials of the motion, at a state; `None` if the model has
-/// no such integral, or none with a finite value at this state.
+/// Returns the largest quadrature error at a state, over the integrals that are not polynomials of the motion.
+/// Returns `None` if the model has no such integral, or none with a finite value at this state.
 pub fn worst_at_state(
     model: &Model,
     orders: &[usize],
@@ -103,14 +103,14 @@ pub fn worst_at_state(
     errors.max_by(|one, other| one.error.total_cmp(&other.error))
 }
 
-/// Returns true if an integral of the model is no polynomial of the motion.
+/// Returns true if the integrand of an integral of the model is not a polynomial of the motion.
 pub fn has_nonlinear_integrals(model: &Model) -> bool {
     find_integrals(model)
         .iter()
         .any(|found| matches!(found.expansion, Expansion::Nonlinear))
 }
 
-/// Returns the integrals of the model, once for each place in the specification.
+/// Finds the integrals of the model, each location in the specification once.
 fn find_integrals(model: &Model) -> Vec<Quadrature<'_>> {
     let mut found: Vec<Quadrature<'_>> = Vec::new();
     if model.fields.is_empty() {

@@ -10,7 +10,7 @@ use super::super::rule::FieldRule;
 use super::Quadrature;
 use super::panels::{Profile, divide};
 
-/// Time, parameters, state and inputs, in SI.
+/// Time, parameters, state and inputs, in SI units.
 #[derive(Clone, Copy, Debug)]
 pub struct State<'s> {
     /// All parameters, in the order of the model.
@@ -29,11 +29,11 @@ struct Scene<'m> {
     orders: &'m [usize],
     at: State<'m>,
     shapes: Vec<Shapes>,
-    /// Mode for `q[i]` and `phi[i]`, from 0.
+    /// Index of the mode i in `q[i]` and `phi[i]`, from 0.
     element: usize,
 }
 
-/// Value of a field: which derivative, by time and by the position.
+/// Field or mode shape, with the order of its derivatives by time and position.
 #[derive(Clone, Copy)]
 struct FieldValue {
     is_rate: bool,
@@ -41,8 +41,8 @@ struct FieldValue {
     derivative: u8,
 }
 
-/// Returns the error of an integral, relative to the integral of the magnitude; `None` if it is not finite at this
-/// state. An integrand with `phi[i]` is evaluated for the first and for the last mode.
+/// Returns the quadrature error of an integral, relative to the integral of the magnitude; `None` if it is not finite
+/// at this state. An integrand with `phi[i]` is evaluated for the first and for the last mode.
 pub(super) fn error_at(
     model: &Model,
     orders: &[usize],
@@ -214,7 +214,7 @@ fn field_value(leaf: &ExprKind) -> Option<FieldValue> {
     }
 }
 
-/// Returns the integral of a function and of its magnitude.
+/// Returns the integrals of a function and of its magnitude.
 fn integrate(rule: &QuadratureRule, value: &dyn Fn(f64) -> f64) -> [f64; 2] {
     let nodes = rule.nodes.iter().zip(&rule.weights);
     nodes.fold([0.0; 2], |[sum, magnitude], (s, weight)| {

@@ -1,46 +1,47 @@
-//! Division of [0, 1] into panels in which a function is a polynomial to rounding.
+//! Division of [0, 1] into panels in which a function equals a polynomial up to rounding.
 
 use eomgen_model_spec::interval::Interval;
 
 use super::super::quadrature::{QuadratureRule, gauss_legendre, legendre};
 
-/// Number of nodes of a panel.
+/// Number of quadrature nodes per panel.
 const NODES: usize = 24;
 
-/// Number of Legendre coefficients that must vanish.
+/// Number of highest Legendre coefficients that must be zero up to rounding.
 const TAIL: usize = 4;
 
-/// Largest coefficient that counts as vanishing, relative to the largest magnitude of the function.
+/// Largest Legendre coefficient that counts as zero, relative to the largest magnitude of the function.
 const MAX_TAIL: f64 = 1e-13;
 
-/// Part of the integral that a panel may contain unseen.
+/// Largest fraction of the integral that a panel may miss between its nodes.
 const MAX_UNSEEN: f64 = 1e-11;
 
-/// Factor by which bounds may exceed the range of the values in a panel.
+/// Largest accepted ratio of the interval bounds to the range of the sampled values in a panel.
 const MAX_EXCESS: f64 = 4.0;
 
-/// Shortest panel: a jump at its far end changes integrals by less than this.
+/// Width of the shortest panel, relative to the domain. A jump inside it changes integrals by less than this
+/// fraction.
 const MIN_WIDTH: f64 = 1e-14;
 
-/// Number of panels after which bounds are left out: they are too wide for this function.
+/// Number of panels from which interval bounds are no longer used, because they are too wide for this function.
 const MAX_PANELS: usize = 4000;
 
-/// Rule over all panels, and the narrowest panel.
+/// Quadrature rule over all panels, and the narrowest panel.
 pub(super) struct Panels {
     pub rule: QuadratureRule,
     /// Start and end of the narrowest panel.
     pub narrowest: [f64; 2],
 }
 
-/// Function on [0, 1], with bounds between two positions if there are any.
+/// Function on [0, 1], with an optional function that bounds its values between two positions.
 pub(super) struct Profile<'f> {
     pub value: &'f dyn Fn(f64) -> f64,
     pub bounds: Option<&'f dyn Fn(f64, f64) -> Interval>,
 }
 
-/// Samples of the function in a panel.
+/// Properties of the sampled function in a panel.
 struct Samples {
-    /// Largest of the last Legendre coefficients.
+    /// Largest magnitude of the last Legendre coefficients.
     tail: f64,
     low: f64,
     high: f64,
@@ -125,7 +126,7 @@ fn sample(
     }
 }
 
-/// Returns the factors of the values at the nodes in each of the last Legendre coefficients.
+/// Returns, for each of the last Legendre coefficients, the factors of the values at the nodes.
 fn legendre_tails(rule: &QuadratureRule) -> Vec<Vec<f64>> {
     let last = NODES - TAIL..NODES;
     last.map(|degree| {

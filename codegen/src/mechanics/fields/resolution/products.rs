@@ -17,7 +17,7 @@ const MAX_PRODUCTS: usize = 4096;
 pub(super) enum Expansion<'m> {
     /// Products; empty if all integrals are exact.
     Products(Vec<Product<'m>>),
-    /// The integrand is no polynomial of the motion with coefficients along the field.
+    /// The integrand is not a polynomial of the motion.
     Nonlinear,
 }
 
@@ -49,7 +49,7 @@ pub(super) fn expand<'m>(model: &Model, integrand: &'m Expr) -> Expansion<'m> {
     Expansion::Products(products)
 }
 
-/// Returns a jump at a position that moves along the field by time, motion or inputs.
+/// Returns the first subexpression that jumps at a position which moves along the field with time, motion or inputs.
 pub(super) fn moving_jump<'m>(model: &Model, integrand: &'m Expr) -> Option<&'m Expr> {
     let mut found = None;
     integrand.visit(&mut |part| {
@@ -76,7 +76,7 @@ impl Coefficient<'_> {
     }
 }
 
-/// Returns the sum of products; `None` if there is none, or one of too many products.
+/// Expands an expression into a sum of products; `None` if this is impossible or takes too many products.
 fn products<'m>(model: &Model, expr: &'m Expr) -> Option<Vec<Product<'m>>> {
     let all = contents(model, expr);
     if !all.vary_along_field() {
@@ -141,7 +141,7 @@ fn multiply<'m>(one: &[Product<'m>], other: &[Product<'m>]) -> Option<Vec<Produc
     Some(without_repetition(products.collect()))
 }
 
-/// Returns the distinct products: their factors that are constant along the field do not matter.
+/// Removes repeated products; factors that are constant along the field are ignored.
 fn without_repetition(products: Vec<Product<'_>>) -> Vec<Product<'_>> {
     let mut distinct: Vec<Product<'_>> = Vec::new();
     for product in products {
