@@ -1,4 +1,4 @@
-//! Warnings and JSON of the energy audit in `simulate`.
+//! Results of the energy audit in `simulate`, as warnings and JSON.
 
 use eomgen_compiled_model::{Audit, Imbalance, Instance, Motion, Overlap};
 use serde_json::{Value, json};
@@ -33,7 +33,7 @@ impl<'m> AuditResult<'m> {
         }
     }
 
-    /// Returns the energy balance, or null if there is none.
+    /// Returns the energy balance as JSON; null if it was not computed.
     pub fn json(&self) -> Value {
         let Some(audit) = self.audit else {
             return Value::Null;

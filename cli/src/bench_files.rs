@@ -55,7 +55,7 @@ harness = false
     )
 }
 
-/// Returns a benchmark of rates, observables and the requested functions.
+/// Returns the source of a benchmark of rates, observables and the requested functions.
 fn source(state: &[f64], outputs: &[Output]) -> String {
     let state: Vec<String> = state.iter().map(|number| format!("{number:?}")).collect();
     let has = |request| outputs.contains(&request);

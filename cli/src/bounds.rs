@@ -1,4 +1,4 @@
-//! Bounds of rounding errors over the ranges of the command line.
+//! Bounds of rounding errors for the ranges on the command line.
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::variant::Variant;
@@ -70,7 +70,8 @@ fn read_end(run: &Instance<'_>, name: &str, end: &str) -> Result<f64> {
     Ok(value.map_or(f64::NAN, |(_, value)| value))
 }
 
-/// Returns the names of all modes, or of their rates, if `name` is that of a field; else the name itself.
+/// Returns the names of all modes (or of their rates) if `name` is the name of a field (or of its rate); otherwise
+/// returns `name`.
 fn modes(compiled: &CompiledModel, name: &str) -> Vec<String> {
     let (field, ending) = match name.strip_suffix("_dot") {
         Some(field) => (field, "_dot"),

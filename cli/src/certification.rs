@@ -1,4 +1,4 @@
-//! Certificates as JSON and as summaries.
+//! Summaries of certificates, and certificates as JSON.
 
 use eomgen_validate::certificate::{Certificate, Check, SkipKind, Verdict};
 use eomgen_validate::meaning::describe;
@@ -13,7 +13,7 @@ pub fn document(certificate: &Certificate) -> Result<String> {
     Ok(text + "\n")
 }
 
-/// Returns one line per kind of check, coverage and verdict.
+/// Returns one line for each kind of check, then coverage and verdict.
 pub fn summary(certificate: &Certificate) -> String {
     let mut text = format!("{}, order {}\n", certificate.model, certificate.order);
     let (skipped, applicable): (Vec<&Check>, Vec<&Check>) =
@@ -41,7 +41,7 @@ pub fn summary(certificate: &Certificate) -> String {
     text
 }
 
-/// Returns one line per quantity with the bounds of its rounding errors.
+/// Returns one line for each quantity with the bounds of its rounding errors.
 fn bounds_table(bounds: &Bounds) -> String {
     let mut text = "rounding errors, at most\n".to_owned();
     let names = bounds.quantities.iter().map(|quantity| quantity.name.len());
@@ -67,13 +67,13 @@ fn bounds_table(bounds: &Bounds) -> String {
     text
 }
 
-/// Returns true if two checks have the same statement in different regimes.
+/// Returns true if two checks test the same statement, for example in different regimes.
 pub fn are_of_same_kind(one: &str, other: &str) -> bool {
     let kind = |name: &str| name.split(' ').next().map(str::to_owned);
     kind(one) == kind(other) && kind(one).as_deref() != Some("reference")
 }
 
-/// Returns the statement of a check as a sentence.
+/// Returns the statement that a check confirms, as a sentence.
 pub fn statement(name: &str) -> String {
     describe(name).unwrap_or_else(|| name.replace('_', " "))
 }
@@ -83,7 +83,7 @@ fn is_not_applicable(check: &Check) -> bool {
     skipped.is_some_and(|skip| skip.kind == SkipKind::NotApplicable)
 }
 
-/// Describes the result of checks of one kind, of which all passed, or of a single check.
+/// Describes the result of several passed checks of one kind, or of a single check.
 fn describe_result(group: &[&Check]) -> String {
     let first = group[0];
     let sentence = statement(&first.name);
@@ -101,7 +101,7 @@ fn describe_result(group: &[&Check]) -> String {
     }
 }
 
-/// Describes what passed checks compared, and their largest deviation.
+/// Describes the number of items that passed checks compared, and the largest deviation.
 fn describe_size(group: &[&Check]) -> String {
     let first = group[0];
     let mut parts = Vec::new();

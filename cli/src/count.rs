@@ -1,4 +1,4 @@
-//! Counted items in messages.
+//! Formats counted items in messages.
 
 /// Returns a number with its noun in the singular or plural; `noun` is the singular.
 pub fn count(number: impl TryInto<u64>, noun: &str) -> String {

@@ -1,4 +1,4 @@
-//! Comparison of a model with records, discovery of missing effects, and the files that they write.
+//! Comparison of a model with records and discovery of missing effects, including the output files.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -14,7 +14,7 @@ use crate::error::{Error, Result, warn};
 use crate::model::{load, orders};
 use crate::output::{file_place, write_file};
 
-/// Files and seed of a comparison or a discovery.
+/// Files, options and seed of a comparison or a discovery.
 pub struct Task<'a> {
     pub spec: &'a Path,
     pub order: Option<&'a str>,
@@ -77,7 +77,8 @@ pub fn discover(task: &Task<'_>, limit: Option<f64>, effects: Option<&Path>) -> 
     Ok(document)
 }
 
-/// Copies the tables of mode shapes to the folder of the extended specification, unless it is that of the original.
+/// Copies the tables of mode shapes to the folder of the extended specification, unless both specifications are in the
+/// same folder.
 fn copy_tables(model: &Model, task: &Task<'_>) -> Result {
     let folder = task.spec.parent().unwrap_or(Path::new(""));
     let tables = model.fields.iter().filter_map(|field| field.basis.table());
@@ -92,7 +93,7 @@ fn copy_tables(model: &Model, task: &Task<'_>) -> Result {
     Ok(())
 }
 
-/// Checks before the work that the output files can be written.
+/// Checks that the output files can be written. It is called before the computation.
 fn check_outputs(task: &Task<'_>, names: &[&str]) -> Result {
     for name in names {
         file_place(&task.out.join(name))?;

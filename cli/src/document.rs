@@ -1,4 +1,4 @@
-//! JSON documents that the commands print and write.
+//! Format of the JSON documents that the commands print and write.
 
-/// Version of the documents.
+/// Version of the format of JSON documents.
 pub const SCHEMA: u32 = 2;

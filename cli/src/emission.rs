@@ -1,4 +1,4 @@
-//! Emitted files of the targets of `generate`: the options of the command line for `eomgen_targets`.
+//! Emitted files for the targets of `generate`: converts command-line options to calls of `eomgen_targets`.
 
 use eomgen_codegen::c::{self, CASADI_OUTPUTS, Real};
 use eomgen_codegen::program::{Output, Program};
@@ -16,16 +16,16 @@ use crate::arguments::{Extra, Packaging, Target};
 use crate::count::count;
 use crate::error::{Error, Result, warn};
 
-/// Emits a program as Rust in this form.
+/// Emits a program as Rust in this packaging.
 pub fn source(program: &Program, packaging: rust::Packaging) -> Result<String> {
     Ok(rust::emit(program, packaging)?)
 }
 
-/// Returns names and contents of the emitted files in this form, or in the usual one. The file with the equations is
-/// first.
+/// Returns names and contents of the emitted files in this packaging, or in the default one. The file with the
+/// equations is first.
 ///
 /// # Errors
-/// A form that the target does not have.
+/// A packaging that the target does not support.
 pub fn files(
     model: &Model,
     variant: &Variant,
@@ -45,11 +45,11 @@ pub fn files(
             let text = c::emit_header_only(program, Real::Double)?;
             Ok(vec![(format!("{}.h", program.name), text.into_bytes())])
         }
-        (_, Some(Packaging::HeaderOnly)) => Err(Error::input(
-            "--packaging header-only needs --target c99: it is a form of C",
-        )),
+        (_, Some(Packaging::HeaderOnly)) => {
+            Err(Error::input("--packaging header-only needs --target c99"))
+        }
         (_, Some(Packaging::Crate | Packaging::Module)) => Err(Error::input(
-            "--packaging crate and --packaging module need --target rust: they are forms of Rust",
+            "--packaging crate and --packaging module need --target rust",
         )),
     }
 }
@@ -92,7 +92,7 @@ pub fn sources(
 /// Returns a functional mock-up unit with the compiler of the program that loads it.
 ///
 /// # Errors
-/// A file that is no archive.
+/// A file that is not a ZIP archive.
 pub fn unit_source(name: &str, contents: &[u8], compiler: CCompiler) -> Result<UnitSource> {
     Ok(UnitSource {
         name: name.to_owned(),
@@ -102,7 +102,7 @@ pub fn unit_source(name: &str, contents: &[u8], compiler: CCompiler) -> Result<U
     })
 }
 
-/// Returns emitted C in a source file and its header, with the compiler that checks it.
+/// Returns emitted C (source file and header) with the compiler to use in its checks.
 pub fn c_source(
     name: &str,
     (source, header): (String, String),
@@ -120,8 +120,8 @@ pub fn c_source(
     }
 }
 
-/// Returns emitted C in one header, with the compiler that checks it. The source is the file that compiles the
-/// functions.
+/// Returns header-only C with the compiler to use in its checks. The source is a file that includes the header and
+/// compiles the functions.
 pub fn header_only_source(
     name: &str,
     header: String,
@@ -135,12 +135,12 @@ pub fn header_only_source(
     }
 }
 
-/// Bounds the functions of emitted C with a cross compiler.
+/// Bounds the instructions and the stack of the functions of emitted C for a cross compiler.
 pub fn instructions(source: &CSource, command: &str) -> Result<InstructionBounds, String> {
     InstructionBounds::of_source(&source.name, (&source.source, &source.header), command)
 }
 
-/// Returns emitted functions for CasADi with all their outputs, and the compiler that checks them.
+/// Returns emitted functions for CasADi with all outputs and the compiler to use in their checks.
 pub fn casadi_source(
     name: &str,
     source: String,

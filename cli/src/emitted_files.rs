@@ -4,11 +4,11 @@ use std::collections::HashMap;
 
 use crate::error::{Error, Result};
 
-/// Name of a certificate.
+/// File name of a certificate.
 pub const CERTIFICATE: &str = "certificate.json";
 
-/// Checks that files with different contents have different names, given with their contents. Some file systems ignore
-/// the case of letters.
+/// Checks that files with different contents have different names. Names are compared without case, because some file
+/// systems ignore it.
 ///
 /// # Errors
 /// A name that two files have.

@@ -20,13 +20,13 @@ use crate::document::SCHEMA;
 pub type Result<T = (), E = Error> = std::result::Result<T, E>;
 
 pub enum Error {
-    /// Usage or input error; the message states the cure.
+    /// Usage or input error; the message contains the remedy.
     Input(String),
     /// Diagnostics of a specification or dataset file.
     Specification(Diagnostics),
-    /// Negative result with its message.
+    /// Negative result with a message.
     Stopped(String),
-    /// Negative result; all messages are printed.
+    /// Negative result whose messages are already printed.
     Failed,
 }
 
@@ -70,12 +70,12 @@ impl Error {
         Self::Input(format!("cannot {action} {}: {error}", path.display()))
     }
 
-    /// Error of a model with the given values.
+    /// Creates the error of a model whose values are invalid.
     pub fn model(source: &Source, error: ModelError) -> Self {
         Self::Specification(Diagnostics::from_one(source.clone(), error.diagnostic()))
     }
 
-    /// Rejected records.
+    /// Creates the error of rejected records.
     pub fn records(refusal: Refusal) -> Self {
         match refusal {
             Refusal::Description(found) => Self::Specification(found),
@@ -83,7 +83,7 @@ impl Error {
         }
     }
 
-    /// Error of a comparison or a discovery.
+    /// Creates the error of a comparison or a discovery.
     pub fn discovery(error: DiscoverError) -> Self {
         match error {
             DiscoverError::Records(refusal) => Self::records(*refusal),
@@ -92,7 +92,7 @@ impl Error {
         }
     }
 
-    /// Returns the document that `--json` prints for an error; `None` if the command printed its own.
+    /// Returns the document that `--json` prints for an error; `None` if the command already printed a document.
     pub fn to_json(&self) -> Option<Value> {
         let (message, diagnostics) = match self {
             Self::Input(message) => {
@@ -116,7 +116,7 @@ impl Error {
     pub fn report(&self) -> ExitCode {
         match self {
             Self::Input(message) => {
-                // Messages of some libraries are rendered diagnostics, which already have the prefix.
+                // Messages of some libraries are rendered diagnostics with the prefix `error: `.
                 let message = message.strip_prefix("error: ").unwrap_or(message);
                 warn(&format!("error: {message}"));
             }
@@ -131,7 +131,7 @@ impl Error {
     }
 }
 
-/// Prints a message to stderr, with control characters escaped. Errors of writing are ignored.
+/// Prints a message to stderr, with escaped control characters. Write errors are ignored.
 pub fn warn(text: &str) {
     let _ = writeln!(std::io::stderr(), "{}", escape_hidden(text));
 }
@@ -143,18 +143,18 @@ pub fn print_diagnostics(findings: &Diagnostics) {
     let _ = writeln!(stderr, "{text}");
 }
 
-/// Prints text to stdout, with control characters escaped. A closed pipe is no error.
+/// Prints text to stdout, with escaped control characters. A closed pipe is not an error.
 pub fn print_text(text: &str) -> Result {
     print_bytes(escape_hidden(text).as_bytes())
 }
 
-/// Prints a JSON document to stdout, with control characters escaped.
+/// Prints a JSON document to stdout, with escaped control characters.
 pub fn print_json(document: &serde_json::Value) -> Result {
     let text = format!("{document:#}\n");
     print_bytes(escape_hidden_in_strings(&text).as_bytes())
 }
 
-/// Prints bytes to stdout. A closed pipe is no error.
+/// Prints bytes to stdout. A closed pipe is not an error.
 pub fn print_bytes(bytes: &[u8]) -> Result {
     let mut out = std::io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {

@@ -1,10 +1,10 @@
-//! The event log of `simulate` as CSV.
+//! Event log of `simulate` as CSV.
 
 use eomgen_compiled_model::{Instance, Motion};
 
 use crate::error::{Error, Result};
 
-/// Encodes the events of a motion. Without a jump, the jumps of the rates are 0.
+/// Encodes the events of a motion. The jump of a rate is 0 if the rate is continuous.
 pub fn encode(instance: &Instance<'_>, motion: &Motion) -> Result<Vec<u8>> {
     let failed = |error: &dyn std::fmt::Display| Error::input(format!("cannot write CSV: {error}"));
     let names = instance.model().state_names();

@@ -1,4 +1,4 @@
-//! Shape functions of fields at positions along them.
+//! Mode shapes of fields at evenly spaced positions.
 
 use eomgen_codegen::mechanics::fields::modes::table;
 use eomgen_codegen::symbolic::tables::TableKind;
@@ -8,18 +8,18 @@ use eomgen_model_spec::model::Field;
 
 use crate::error::{Error, Result};
 
-/// Field with its shape functions at evenly spaced positions.
+/// Field with its mode shapes at evenly spaced positions.
 pub struct FieldShapes<'m> {
     pub field: &'m Field,
     /// Positions from the start to the end of the field, in SI.
     pub positions: Vec<f64>,
-    /// A row per position, a number per mode of the field.
+    /// Values of the mode shapes: one row for each position, one number for each mode.
     pub functions: Vec<Vec<f64>>,
-    /// Index of its first modal coordinate in the state.
+    /// Index of the field's first mode coordinate in the state.
     pub first: usize,
 }
 
-/// Returns the shapes of all fields with modes, at `intervals` + 1 positions.
+/// Returns the mode shapes of all fields that have modes, at `intervals` + 1 positions.
 pub fn field_shapes(compiled: &CompiledModel, intervals: usize) -> Result<Vec<FieldShapes<'_>>> {
     let model = compiled.model();
     let values = model.parameter_values();

@@ -1,11 +1,12 @@
-//! Figures of a finished sweep: a map over two axes, a diagram over one.
+//! Figures of a finished sweep: a map for two axes, a diagram for one axis.
 
 use eomgen_model_spec::unit::Unit;
 use eomgen_plot::map::{Coordinate, Map, Scatter, Shades};
 use eomgen_plot::{PlotError, draw_map, draw_scatter, render_png};
 use eomgen_sweep::{Column, Description, Job, Table};
 
-/// Draws each measure as PNG, with the measure's name. There are none unless one or two axes have several values.
+/// Draws each measure as PNG and returns the figures with the names of the measures. There is no figure unless one or
+/// two axes have several values.
 pub fn draw(job: &Job, table: &Table) -> Vec<(String, Result<Vec<u8>, PlotError>)> {
     let axes = job.points().axes();
     let wide: Vec<usize> = (0..axes.len())
@@ -22,7 +23,7 @@ pub fn draw(job: &Job, table: &Table) -> Vec<(String, Result<Vec<u8>, PlotError>
         .collect()
 }
 
-/// Draws the first column over the first axis (to the right) and the second (upwards).
+/// Draws the first column as a map: the first axis to the right, the second axis upwards.
 fn map(
     job: &Job,
     table: &Table,
@@ -36,7 +37,7 @@ fn map(
         .find(|column| column.name == *drawn)?;
     let (along, up) = (Line::new(job, along)?, Line::new(job, up)?);
     let shown = DisplayUnit::new(column);
-    // The last axis of the grid varies fastest; the first axis of a map.
+    // In the table, the last axis varies fastest; in a map, the first axis does.
     let numbers = table.column(drawn)?;
     let rows = up.order.len();
     let cells = up.order.iter().flat_map(|j| {
@@ -61,7 +62,7 @@ fn map(
     Some(svg.and_then(|svg| render_png(&svg)))
 }
 
-/// Draws all columns over the axis.
+/// Draws all columns as functions of the axis.
 fn diagram(
     job: &Job,
     table: &Table,
@@ -112,7 +113,7 @@ struct Line {
     name: String,
     shown: DisplayUnit,
     values: Vec<f64>,
-    /// Indices of these values on the axis of the grid.
+    /// Indices of the values on the axis of the grid.
     order: Vec<usize>,
 }
 
@@ -123,7 +124,7 @@ impl Line {
         let of = |name: &String| parameters.iter().find(|column| column.name == *name);
         let first = of(axis.names.first()?)?;
         let shown = DisplayUnit::new(first);
-        // Parameters with equal numbers but different units have different values.
+        // Parameters with equal numbers but different units have different values in SI.
         let columns = axis.names.iter().filter_map(of);
         let columns = columns.filter(|column| column.unit == first.unit);
         let names: Vec<&str> = columns.map(|column| column.name.as_str()).collect();
@@ -152,10 +153,10 @@ impl Line {
     }
 }
 
-/// SI unit of a column; figures add prefixes.
+/// SI unit of a column; figures add SI prefixes.
 pub struct DisplayUnit {
     declared: Option<Unit>,
-    /// Unit; empty for a dimensionless number.
+    /// Symbol of the unit; empty for a dimensionless number.
     pub unit: String,
 }
 

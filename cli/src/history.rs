@@ -1,5 +1,5 @@
 //! Figure (SVG) of a motion over time: coordinates, first-order states and observables. Quantities of the same kind and
-//! unit share a panel, unless one of them would be a flat line in it.
+//! unit share a panel, unless one of them would look constant in it.
 
 use eomgen_codegen::program::Quantity;
 use eomgen_compiled_model::CompiledModel;
@@ -76,7 +76,7 @@ pub fn figure(compiled: &CompiledModel, table: &Table) -> Result<String> {
     time_history(&history).map_err(|error| Error::input(format!("--plot: {error}")))
 }
 
-/// Returns the title of a panel: the description of its only quantity, if it has one, and the names.
+/// Returns the title of a panel: the names, and for a single quantity its description.
 fn title(described: &[Quantity], names: &[&str]) -> String {
     let mut known = described.iter();
     let doc = match names {
@@ -90,7 +90,7 @@ fn title(described: &[Quantity], names: &[&str]) -> String {
     }
 }
 
-/// Returns true if all curves of the panel and the new one are visible in it together.
+/// Returns true if the new curve and all curves of the panel remain visible in one panel.
 fn has_room(panel: &Panel<'_>, curve: &Series<'_>) -> bool {
     let curves = panel.series.iter().chain([curve]);
     let ranges: Vec<(f64, f64)> = curves.map(|curve| range(curve.values)).collect();
@@ -176,7 +176,7 @@ mod tests {
         let large = panel(&[-1.0, 1.0]);
         assert!(has_room(&large, &curve(&[0.0, 0.2])));
         assert!(!has_room(&large, &curve(&[0.0, 0.05])));
-        // A constant is visible anywhere, but it must not flatten others.
+        // A constant curve is visible in any panel, but it must not make other curves look constant.
         assert!(has_room(&large, &curve(&[3.0, 3.0])));
         assert!(!has_room(&panel(&[0.0, 0.01]), &curve(&[3.0, 3.0])));
         assert!(has_room(&panel(&[0.0, 0.0]), &curve(&[0.0, 1.0])));

@@ -1,4 +1,4 @@
-//! Input files of a command. No output replaces them.
+//! Input files of a command. Outputs that would overwrite one of them are rejected.
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -50,10 +50,10 @@ pub fn check_is_no_input(output: &Path) -> Result {
     }
 }
 
-/// Largest size of a file in bytes, that of a large firmware image with debugging information.
+/// Maximum size of an input file in bytes, enough for a large firmware image with debugging information.
 const MAX_BYTES: u64 = 1 << 30;
 
-/// Reads a file. Devices and pipes, which may never end, and files of more than 1 GiB are rejected.
+/// Reads a file. Devices and pipes are rejected because they may never end, and files of more than 1 GiB are rejected.
 pub fn read_file(path: &Path) -> Result<Vec<u8>> {
     let failed = |error: &dyn std::fmt::Display| Error::file("read", path, error);
     let found = std::fs::metadata(path).map_err(|error| failed(&error))?;

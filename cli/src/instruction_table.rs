@@ -1,8 +1,8 @@
-//! Bounds of instructions and stack as a table.
+//! Formats bounds of instructions and stack as a table.
 
 use eomgen_validate::instructions::{FunctionBounds, InstructionBounds};
 
-/// Returns the command and one line per function.
+/// Returns the compiler command and one line for each function.
 pub fn table(bounds: &InstructionBounds) -> String {
     let InstructionBounds {
         source,

@@ -9,15 +9,15 @@ use crate::error::{Error, Result};
 use crate::npz::{Array, archive};
 use crate::operating_point::{head, inputs, values_by_name};
 
-/// Linearisation, and its discrete form if requested.
+/// Linearisation and, if requested, its discrete-time form.
 pub struct LinearModel {
     pub continuous: Linearisation,
-    /// Sample period, s, and the discrete form.
+    /// Sample period in s, and the discrete-time form.
     pub discrete: Option<(f64, DiscreteSystem)>,
 }
 
 impl LinearModel {
-    /// Computes the discrete form for a sample period (s).
+    /// Adds the discrete-time form for a sample period in s.
     pub fn new(
         compiled: &CompiledModel,
         continuous: Linearisation,
@@ -35,7 +35,7 @@ impl LinearModel {
     }
 }
 
-/// Returns the operating point, names, units and matrices.
+/// Returns the operating point, names, units and matrices as JSON.
 pub fn document(
     compiled: &CompiledModel,
     (at, is_equilibrium): (&OperatingPoint, bool),
@@ -45,7 +45,7 @@ pub fn document(
     let (inputs, input_units) = inputs(compiled);
     let states = compiled.state_names();
     let outputs = compiled.observable_names();
-    // A matrix without columns keeps its rows.
+    // A matrix without columns is printed as empty rows.
     let of = |matrix: &[f64], height: usize, columns: usize| match columns {
         0 => json!(vec![Vec::<f64>::new(); height]),
         _ => matrix.chunks(columns).map(|row| json!(row)).collect(),
@@ -107,7 +107,7 @@ struct AllowedMatrices {
     discrete: Option<DiscreteSystem>,
 }
 
-/// Returns the matrices, or none for a model without constraints.
+/// Returns the matrices; `None` for a model without constraints.
 fn minimal(compiled: &CompiledModel, linear: &LinearModel) -> Result<Option<AllowedMatrices>> {
     let found = &linear.continuous;
     let held = found.constraint_matrix(compiled);

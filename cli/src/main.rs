@@ -51,7 +51,7 @@ use arguments::{Arguments, Command, Paper};
 use error::{Error, Result, print_json};
 
 fn main() -> ExitCode {
-    // A command line with an error has no parsed options.
+    // If parsing of the command line fails, there are no parsed options, so the arguments are searched for `--json`.
     let is_json = std::env::args_os().any(|argument| argument == "--json");
     let arguments = match Arguments::read() {
         Ok(arguments) => arguments,
@@ -102,7 +102,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints an error as a JSON document on stdout. Errors of writing are ignored: stderr has the message.
+/// Prints an error as a JSON document on stdout. Write errors are ignored because the message is on stderr too.
 fn print_error(error: &Error) {
     if let Some(document) = error.to_json() {
         let _ = print_json(&document);

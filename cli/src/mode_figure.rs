@@ -1,5 +1,5 @@
-//! Figure of natural modes: shapes of fields over their length, coordinates and first-order states as bars, and
-//! the regime of a piecewise model.
+//! Figure of natural modes: shapes of fields over their length, bars for coordinates and first-order states, and the
+//! regime of a piecewise model.
 
 use eomgen_analysis::natural_modes::NaturalMode;
 use eomgen_compiled_model::{CompiledModel, Instance};
@@ -15,8 +15,10 @@ const MAX_MODES: usize = 12;
 /// Maximum number of bars of a mode; the largest are shown.
 const MAX_BARS: usize = 24;
 
-/// Number of switching surfaces on a line, and maximum number of lines.
+/// Number of switching surfaces in one line of the figure.
 const SIDES_PER_LINE: usize = 4;
+
+/// Maximum number of lines with switching surfaces.
 const MAX_LINES: usize = 8;
 
 /// Number of intervals along a shape.
@@ -61,7 +63,7 @@ fn regime_line(sides: &[String]) -> String {
     format!("where {}", sides.join(", "))
 }
 
-/// Describes a mode by frequency and damping, or by its growth rate.
+/// Describes a mode by frequency and damping ratio, or by its growth rate.
 fn describe_mode(mode: &NaturalMode) -> String {
     let rate = mode.eigenvalue.re;
     if mode.eigenvalue.norm() == 0.0 {
@@ -77,7 +79,7 @@ fn describe_mode(mode: &NaturalMode) -> String {
     format!("{frequency:.6} Hz, damping ratio {damping:.6}").replace('-', "−")
 }
 
-/// Returns a field in a mode: the sum of shape functions times modal coordinates.
+/// Returns the deflection of a field in a natural mode: the sum of mode shapes times mode coordinates.
 fn field_shape(shapes: &FieldShapes<'_>, mode: &NaturalMode) -> Shape {
     let coordinates = mode.shape.get(shapes.first..).unwrap_or_default();
     let amplitude = |functions: &Vec<f64>| {
@@ -95,7 +97,7 @@ fn field_shape(shapes: &FieldShapes<'_>, mode: &NaturalMode) -> Shape {
     }
 }
 
-/// Quantity with a bar: index in a mode shape, name and unit.
+/// Quantity that is drawn as a bar: index in the state, name and unit.
 struct BarQuantity {
     place: usize,
     name: String,

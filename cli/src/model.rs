@@ -1,4 +1,4 @@
-//! Loading, checking and deriving a specification.
+//! Loads, checks and derives a specification.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use crate::input_file::register_input;
 /// Reads and checks a specification.
 ///
 /// # Errors
-/// A dataset file, and all findings of an invalid specification.
+/// A dataset file, or the messages about an invalid specification.
 pub fn read(path: &Path) -> Result<Checked> {
     eomgen_model_spec::load(path).map_err(|found| match is_dataset(&found) {
         true => Error::input(format!(
@@ -82,14 +82,14 @@ pub fn derive(model: Model, orders: &[usize]) -> Result<CompiledModel> {
     Ok(compiled)
 }
 
-/// Prints notes about constraints that depend on each other.
+/// Prints notes about dependent constraints.
 pub fn note_redundancy(notes: &[String]) {
     for note in notes {
         warn(&format!("note: {note}"));
     }
 }
 
-/// Prints notes about constraints of a model that depend on each other.
+/// Checks the constraints of a model for dependence and prints notes about dependent ones.
 pub fn note_dependent_constraints(model: &Model, orders: &[usize]) -> Result {
     if !model.constraints.is_empty() {
         let redundancy = examine(model, orders).map_err(Error::Specification)?;

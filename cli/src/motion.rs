@@ -1,4 +1,4 @@
-//! Simulation with a progress bar, and its table.
+//! Simulation with a progress bar, and the table of the result.
 
 use eomgen_compiled_model::{
     FrictionChoice, InitialChange, Instance, Motion, Request, SampledController, Solver,
@@ -10,12 +10,12 @@ use crate::error::{Result, warn};
 use crate::progress::Bar;
 use crate::table::Table;
 
-/// Simulates over all requested times. A stop of the solver is an error.
+/// Simulates all requested times. Errors: a solver that stops before the end.
 pub fn simulate(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion> {
     Ok(follow(instance, request)?.into_complete()?)
 }
 
-/// Simulates up to the end or a stop of the solver. A stop at the start is an error.
+/// Simulates until the end or until the solver stops. Errors: a solver that stops at the start.
 pub fn follow(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion> {
     let (begin, end) = request.time_span();
     let bar = Bar::new("simulating", end - begin, "s");
@@ -61,14 +61,14 @@ fn note_choices(motion: &Motion) {
     }
 }
 
-/// Prints a note about states that were moved onto the constraints.
+/// Prints a note about states that were changed to satisfy the constraints.
 pub fn note_moved(what: &str, all: &[InitialChange]) {
     if let Some(text) = InitialChange::describe_all(what, all) {
         warn(&format!("note: {text}"));
     }
 }
 
-/// Returns the work of the solver in words.
+/// Describes the number of steps and evaluations of the solver.
 pub fn describe_work(motion: &Motion) -> String {
     let work = motion.trajectory.statistics;
     match motion.solver {
@@ -90,7 +90,7 @@ pub fn columns(instance: &Instance<'_>) -> Vec<String> {
     columns
 }
 
-/// Returns a table with time, state, observables and states of controllers of every sample.
+/// Returns a table with one row for each output time: time, state, observables and controller states.
 pub fn table(instance: &Instance<'_>, motion: &Motion) -> Result<Table> {
     let columns = columns(instance);
     let mut row = Vec::with_capacity(columns.len());

@@ -8,7 +8,7 @@ use crate::error::Result;
 const ALIGNMENT: usize = 64;
 
 pub enum Array<'a> {
-    /// Numbers row by row, with the numbers of rows and columns.
+    /// Entries row by row, with the numbers of rows and columns.
     Matrix(&'a [f64], [usize; 2]),
     Vector(&'a [f64]),
     Names(&'a [String]),
@@ -47,7 +47,7 @@ impl Array<'_> {
         };
         let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
         let mut file = b"\x93NUMPY\x01\x00".to_vec();
-        // The aligned header includes its length (two bytes) and the newline.
+        // The aligned header includes the two bytes of its length and the newline.
         let length =
             (file.len() + 2 + header.len() + 1).next_multiple_of(ALIGNMENT) - file.len() - 2;
         file.extend((length as u16).to_le_bytes());
@@ -64,7 +64,7 @@ fn bytes(values: &[f64]) -> Vec<u8> {
         .collect()
 }
 
-/// Returns texts in UTF-32, encode_texts to `width` characters.
+/// Returns texts in UTF-32, padded to `width` characters.
 fn encode_texts(names: &[String], width: usize) -> Vec<u8> {
     let characters = names.iter().flat_map(|name| {
         let letters = name.chars().map(u32::from);

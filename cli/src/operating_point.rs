@@ -1,4 +1,4 @@
-//! Operating points given on the command line, initial states, and their JSON.
+//! Operating points and initial states from the command line, and their JSON.
 
 use eomgen_compiled_model::{
     CompiledModel, Departure, Equilibrium, EquilibriumRequest, Error as Failure, Instance,
@@ -14,7 +14,7 @@ use crate::model::{derive, load, orders};
 use crate::motion::note_moved;
 use crate::settings::with_settings;
 
-/// Loads a specification with parameters set and derives it.
+/// Loads a specification, sets parameters and derives the equations.
 pub fn model(file: &ModelFile, parameters: &ParameterValues) -> Result<CompiledModel> {
     let model = with_settings(load(&file.spec)?.model, &parameters.set)?;
     if let Some(controller) = model.controllers.first() {
@@ -28,8 +28,8 @@ pub fn model(file: &ModelFile, parameters: &ParameterValues) -> Result<CompiledM
     derive(model, &orders)
 }
 
-/// Returns the point of `--state`: the initial state with every `NAME=EXPR`, moved onto the constraints, or
-/// the nearest equilibrium.
+/// Returns the operating point of `--state`: the initial state, changed by every `NAME=EXPR` and projected onto the
+/// constraints, or the nearest equilibrium.
 pub fn point(run: &Instance<'_>, state: &[String]) -> Result<OperatingPoint> {
     let request = StateRequest::parse("--state", state)?;
     match found(run.requested_point(&request))? {
@@ -48,7 +48,7 @@ pub fn equilibrium(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Resul
     Ok(found)
 }
 
-/// Converts a search without a result to a negative result.
+/// Converts a failed search to a negative result of the command.
 fn found<T>(result: std::result::Result<T, Failure>) -> Result<T> {
     result.map_err(|error| match error {
         Failure::Stopped { reason, .. } => Error::Stopped(reason),
@@ -56,7 +56,7 @@ fn found<T>(result: std::result::Result<T, Failure>) -> Result<T> {
     })
 }
 
-/// Notes a steady motion, and warns about forces that depend on time.
+/// Prints a note about a steady motion and a warning about forces that depend on time.
 fn report_equilibrium(found: &Equilibrium) {
     if !found.nonzero_rates.is_empty() {
         let rates = found.nonzero_rates.join(", ");
@@ -77,7 +77,7 @@ fn report_equilibrium(found: &Equilibrium) {
     }
 }
 
-/// Returns whether a point is an equilibrium, and warns with a consequence if it is not.
+/// Returns true if a point is an equilibrium; otherwise prints a warning with `consequence`.
 pub fn is_equilibrium(run: &Instance<'_>, at: &OperatingPoint, consequence: &str) -> Result<bool> {
     let found = run.find_departure(at)?;
     if !found.is_none() {
@@ -90,7 +90,7 @@ pub fn is_equilibrium(run: &Instance<'_>, at: &OperatingPoint, consequence: &str
     Ok(found.is_none())
 }
 
-/// Names the quantities that change at a state that is no equilibrium.
+/// Describes the quantities that change at a state that is not an equilibrium.
 fn describe(found: &Departure) -> String {
     let parts = [
         ("the machine moves", &found.moving_rates, "is not 0"),
@@ -116,7 +116,7 @@ fn describe(found: &Departure) -> String {
     parts.join(" and ")
 }
 
-/// Returns the initial state with every `NAME=EXPR` of `--state`, or the nearest equilibrium.
+/// Returns the initial state, changed by every `NAME=EXPR` of `--state`, or the nearest equilibrium.
 pub fn initial_state(run: &Instance<'_>, state: &[String]) -> Result<Vec<f64>> {
     let request = StateRequest::parse("--state", state)?;
     let (state, equilibrium) = found(run.requested_state(&request))?;
@@ -126,7 +126,7 @@ pub fn initial_state(run: &Instance<'_>, state: &[String]) -> Result<Vec<f64>> {
     Ok(state)
 }
 
-/// Moves a point onto the constraints of the model, with a note about the states that moved.
+/// Projects a point onto the constraints of the model and prints a note about the changed states.
 fn consistent(run: &Instance<'_>, mut at: OperatingPoint) -> Result<OperatingPoint> {
     let inputs = HeldInputs::constant(at.inputs.clone());
     let (state, moved) = run.find_consistent_state(&at.state, at.t, &inputs)?;
@@ -135,7 +135,7 @@ fn consistent(run: &Instance<'_>, mut at: OperatingPoint) -> Result<OperatingPoi
     Ok(at)
 }
 
-/// Returns the head of a document: schema, model, order.
+/// Returns the first entries of a document: schema, model, order.
 pub fn head(compiled: &CompiledModel) -> Map<String, Value> {
     let mut document = Map::new();
     document.insert("schema".to_owned(), json!(SCHEMA));

@@ -1,5 +1,4 @@
-//! Output files. A temporary file replaces the target when it is complete, so that an interruption leaves no partial
-//! file.
+//! Output files. A complete temporary file replaces the target, so that an interruption leaves no partial file.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -23,7 +22,7 @@ impl Destination {
     /// Returns the destination of `--out`. `json`: true if `--json` uses stdout.
     ///
     /// # Errors
-    /// A folder, a pipe or an impossible path; stdout if `json` is set.
+    /// A folder, a pipe or an invalid path; stdout if `json` is set.
     pub fn for_output(path: &Path, json: bool) -> Result<Self> {
         Self::resolve("--out", path, json)
     }
@@ -31,7 +30,7 @@ impl Destination {
     /// Returns the destination of a table in `--out`, a CSV or Parquet file.
     ///
     /// # Errors
-    /// Those of [`Destination::for_output`], and another format.
+    /// The errors of [`Destination::for_output`], or another file format.
     pub fn for_table(path: &Path, json: bool) -> Result<Self> {
         let ending = path.extension().filter(|_| !is_device(path));
         let is_known = |ending: &std::ffi::OsStr| {
@@ -51,7 +50,7 @@ impl Destination {
     /// Returns the destination of a page in `--out`.
     ///
     /// # Errors
-    /// Those of [`Destination::for_output`], and another format than HTML.
+    /// The errors of [`Destination::for_output`], or a format other than HTML.
     pub fn for_page(path: &Path, json: bool) -> Result<Self> {
         let ending = path.extension().filter(|_| !is_device(path));
         if ending.is_some_and(|ending| !ending.eq_ignore_ascii_case("html")) {
@@ -66,7 +65,7 @@ impl Destination {
     /// Returns the destination of `--plot`. `output` is the path of `--out`.
     ///
     /// # Errors
-    /// Those of [`Destination::for_output`], the path of `--out`, and another format than SVG.
+    /// The errors of [`Destination::for_output`], the path of `--out`, or a format other than SVG.
     pub fn for_figure(figure: &Path, output: Option<&Path>, json: bool) -> Result<Self> {
         if let Some(output) = output {
             check_distinct("--plot", figure, ("--out", output))?;
@@ -81,10 +80,11 @@ impl Destination {
         Self::resolve("--plot", figure, json)
     }
 
-    /// Returns the destination of `--events`, a CSV file. `others` are the other outputs, each with its option.
+    /// Returns the destination of `--events`, a CSV file. `others` contains the option and the path of each other
+    /// output.
     ///
     /// # Errors
-    /// Those of [`Destination::for_output`], the path of another output, and stdout.
+    /// The errors of [`Destination::for_output`], the path of another output, or stdout.
     pub fn for_events(path: &Path, others: &[(&str, &Path)]) -> Result<Self> {
         const OPTION: &str = "--events";
         if path == Path::new("-") {
@@ -134,7 +134,7 @@ impl Destination {
         }
     }
 
-    /// Prints a summary, to stderr if the contents are on stdout.
+    /// Prints a summary: to stderr if the contents are written to stdout, otherwise to stdout.
     pub fn summarise(&self, summary: &str) -> Result {
         match self {
             Self::Stdout => {
@@ -146,7 +146,7 @@ impl Destination {
     }
 }
 
-/// Rejects an output with the path of another one.
+/// Rejects an output that has the same path as another output.
 fn check_distinct(option: &str, path: &Path, (other_option, other): (&str, &Path)) -> Result {
     let place = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     if place(other) != place(path) || is_device(path) {
@@ -158,7 +158,7 @@ fn check_distinct(option: &str, path: &Path, (other_option, other): (&str, &Path
     )))
 }
 
-/// Returns whether a path is a device such as `/dev/null`. Pipes are excluded, because they may never be read.
+/// Returns true if a path is a device such as `/dev/null`. Pipes are excluded, because they may never be read.
 #[cfg(unix)]
 fn is_device(path: &Path) -> bool {
     use std::os::unix::fs::FileTypeExt;
@@ -170,14 +170,14 @@ fn is_device(_path: &Path) -> bool {
     false
 }
 
-/// Writes a file and its parent folders. On an error an existing file is unchanged. A link at the path is replaced,
-/// and its file is unchanged.
+/// Writes a file and creates its parent folders. If an error occurs, an existing file is unchanged. A symbolic link is
+/// replaced, and the file that it refers to is unchanged.
 pub fn write_file(path: &Path, contents: &[u8]) -> Result {
     file_place(path)?;
     let failed = |error: &dyn std::fmt::Display| Error::file("write", path, error);
     let folder = folder_of(path);
     std::fs::create_dir_all(folder).map_err(|error| failed(&error))?;
-    // The message of the error itself has the path of the temporary file.
+    // The error's own message would contain the path of the temporary file.
     let mut file = NamedTempFile::new_in(folder)
         .map_err(|error| failed(&std::io::Error::from(error.kind())))?;
     file.write_all(contents).map_err(|error| failed(&error))?;
@@ -186,8 +186,8 @@ pub fn write_file(path: &Path, contents: &[u8]) -> Result {
     Ok(())
 }
 
-/// Resolves the path of an existing file, through links, or of a new one. Inputs of the command, devices and pipes are
-/// rejected, because the file would replace them.
+/// Returns the path to write to, with resolved symbolic links. Inputs of the command, devices and pipes are rejected,
+/// because the output would replace them.
 pub fn file_place(path: &Path) -> Result<PathBuf> {
     check_is_no_input(path)?;
     let failed = |error: &dyn std::fmt::Display| Error::file("write", path, error);
@@ -198,7 +198,7 @@ pub fn file_place(path: &Path) -> Result<PathBuf> {
         )),
         Err(_) if path.file_name().is_none() => Err(failed(&"give the name of a file")),
         Err(_) => {
-            // The first name in use, also that of a link to nothing.
+            // The first existing folder or link; the link may be broken.
             let mut folders = folder_of(path).ancestors();
             match folders.find(|folder| folder.symlink_metadata().is_ok()) {
                 Some(found) if !found.is_dir() => Err(failed(&describe_no_folder(found))),
@@ -226,7 +226,7 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Makes a temporary file, which is private, readable for others.
+/// Makes a file readable for other users, because temporary files are private.
 #[cfg(unix)]
 fn make_readable(file: &std::fs::File) -> std::io::Result<()> {
     use std::os::unix::fs::PermissionsExt;

@@ -12,7 +12,7 @@ use parquet::schema::types::Type;
 /// Encodes columns of equal length.
 ///
 /// # Errors
-/// Those of the Parquet writer.
+/// Errors of the Parquet writer.
 pub fn encode(names: &[String], columns: &[Vec<f64>]) -> Result<Vec<u8>, ParquetError> {
     let fields = names
         .iter()

@@ -1,4 +1,4 @@
-//! Progress on stderr, on a terminal only, for work longer than two seconds.
+//! Progress bars and notes on stderr, only on a terminal and after two seconds of work.
 
 use std::cell::Cell;
 use std::time::{Duration, Instant};
@@ -56,7 +56,7 @@ impl Drop for Bar {
     }
 }
 
-/// Line about the current work, on a terminal.
+/// Line that names the current work, on a terminal.
 pub struct Note {
     bar: ProgressBar,
 }

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::error::{Result, warn};
 
-/// Side of a switching surface.
+/// Side of a switching surface at a point.
 pub struct Side {
     /// Switching function.
     formula: String,
@@ -34,10 +34,11 @@ impl Side {
     }
 }
 
-/// Largest number of surfaces in a summary.
+/// Maximum number of surfaces in a summary.
 const MAX_SURFACES: usize = 12;
 
-/// Returns one text per surface, with counts for surfaces of a field. The last text counts omitted surfaces.
+/// Returns one text for each surface; for the surfaces of a field, the number of positions on each side. The last text
+/// is the number of omitted surfaces.
 pub fn summary(sides: &[Side]) -> Vec<String> {
     let surfaces: Vec<&[Side]> = sides
         .chunk_by(|one, next| one.formula == next.formula)
@@ -53,7 +54,7 @@ pub fn summary(sides: &[Side]) -> Vec<String> {
     texts
 }
 
-/// Returns the side of a surface, or the number of places on each side.
+/// Returns the side of a surface, or for a field the number of positions on each side.
 fn counts(surface: &[Side]) -> String {
     let [first, others @ ..] = surface else {
         return String::new();
@@ -72,7 +73,7 @@ fn counts(surface: &[Side]) -> String {
     format!("{} {} of {places} places", first.formula, counts.join(", "))
 }
 
-/// Returns the sides of all switching surfaces at a point; a surface over modes has one per mode.
+/// Returns the sides of all switching surfaces at a point; a surface of a sum over modes has one side for each mode.
 pub fn regime(run: &Instance<'_>, at: &OperatingPoint) -> Result<Vec<Side>> {
     let mut evaluator = run.interpreter()?;
     let mut values = vec![0.0; evaluator.guard_count()];
@@ -88,7 +89,7 @@ pub fn regime(run: &Instance<'_>, at: &OperatingPoint) -> Result<Vec<Side>> {
         .collect())
 }
 
-/// Prints a note on the surfaces of a regime that are zero, for a linearisation of one side.
+/// Prints a note if the point is on switching surfaces, because the linearisation is then one-sided.
 pub fn note_surfaces(regime: &[Side]) {
     let mut on: Vec<String> = (regime.iter())
         .filter(|side| side.sign() == '=')
@@ -97,8 +98,8 @@ pub fn note_surfaces(regime: &[Side]) {
     on.dedup();
     let listed: Vec<String> = on.iter().take(MAX_SURFACES).cloned().collect();
     warn(&format!(
-        "note: the state lies where {} {} zero: the linearisation there is that of one side. A state on either side, \
-         given with --state, selects its side",
+        "note: at this state {} {} zero: the linearisation uses one side of the switching surface; to select a side, give a \
+         state on this side with --state",
         listed.join(", "),
         if on.len() == 1 { "is" } else { "are" }
     ));

@@ -24,15 +24,15 @@ pub struct Statistics {
 /// Statistics of a column.
 struct ColumnStatistics {
     column: Column,
-    /// Title of its figure, if it has one.
+    /// Title of the figure; `None` if the column has no figure.
     drawn: Option<String>,
-    /// None if no sample has a number.
+    /// Distribution of the values; `None` if no sample has a number.
     summary: Option<Summary>,
     /// Rank correlation with each parameter.
     correlations: Vec<Option<f64>>,
 }
 
-/// Returns the statistics of a sweep, or none unless it is over random samples.
+/// Returns the statistics of a sweep over random samples; `None` for other sweeps.
 pub fn statistics(job: &Job, table: &Table) -> Option<Statistics> {
     let samples = job.points().samples()?;
     let mut measured = Vec::new();
@@ -92,7 +92,7 @@ impl Statistics {
         })
     }
 
-    /// Returns a line for every column with a figure.
+    /// Returns one line for each column that has a figure.
     pub fn text(&self) -> String {
         let drawn = self
             .measured

@@ -9,13 +9,14 @@ use crate::arguments::Simulate;
 use crate::error::{Error, Result, warn};
 use crate::input_file::register_input;
 
-/// Largest number of values in a table, rows times columns: a few GB of memory.
+/// Maximum number of values in a table (rows times columns); it needs a few GB of memory.
 const MAX_VALUES: f64 = 1e8;
 
-/// Number of intervals without `--interval`.
+/// Default number of intervals if `--interval` is missing.
 const DEFAULT_INTERVALS: f64 = 1000.0;
 
-/// Returns the inputs: from a record, or constant. `driven` are names of inputs that need no warning.
+/// Returns the inputs: from a record, or constant. `driven` contains the names of inputs that are driven otherwise and
+/// need no warning.
 pub fn inputs(options: &Simulate, model: &Model, driven: &[&str]) -> Result<HeldInputs> {
     match &options.inputs.record {
         Some(dataset) => {
@@ -73,7 +74,7 @@ fn span(options: &Simulate, inputs: &HeldInputs) -> Result<(f64, f64)> {
     )))
 }
 
-/// Returns the record's times up to `end`.
+/// Returns the times of the record's samples up to `end`.
 fn record_times(inputs: &HeldInputs, (_, end): (f64, f64)) -> Result<Vec<f64>> {
     let times: Vec<f64> = inputs
         .times()
@@ -95,7 +96,7 @@ fn record_times(inputs: &HeldInputs, (_, end): (f64, f64)) -> Result<Vec<f64>> {
     }
 }
 
-/// Returns evenly spaced times, in s. The default interval is a thousandth of the span.
+/// Returns evenly spaced times in s. The default interval is a thousandth of the simulated time.
 fn even_times((start, end): (f64, f64), step: Option<f64>) -> Result<Vec<f64>> {
     let whole = end - start;
     let step = step.unwrap_or(whole / DEFAULT_INTERVALS);
@@ -118,7 +119,8 @@ fn even_times((start, end): (f64, f64), step: Option<f64>) -> Result<Vec<f64>> {
         .collect())
 }
 
-/// Returns the rounding of a difference of two times of this size, and of their conversion from another unit.
+/// Returns a bound of the rounding error of the difference of two times of magnitude `t`, including their conversion
+/// from another unit.
 fn rounding(t: f64) -> f64 {
     2.0 * (t.abs().next_up() - t.abs())
 }
@@ -131,17 +133,17 @@ fn decimals(number: f64) -> i32 {
     })
 }
 
-/// Most decimals of times that are rounded; more are rounding errors.
+/// Maximum number of decimals to which times are rounded; further decimals are rounding errors.
 const MAX_DECIMALS: i32 = 15;
 
-/// Returns the double nearest to a time with this number of decimals, so that 7 times 0.05 s is 0.35 s.
+/// Rounds a time to this number of decimals, so that for example 7 times 0.05 s is 0.35 s.
 fn round_to_decimals(t: f64, decimals: i32) -> f64 {
     if decimals > MAX_DECIMALS {
         return t;
     }
     let scale = 10f64.powi(decimals);
     let whole = (t * scale).round();
-    // Larger integers are not exact.
+    // Integers of larger magnitude are not exact.
     match whole.abs() < 2f64.powi(53) {
         true => whole / scale,
         false => t,

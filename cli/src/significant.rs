@@ -1,4 +1,4 @@
-//! Numbers of tables in messages.
+//! Format of numbers in printed tables.
 
 /// Formats a value with six significant digits.
 pub fn significant(value: f64) -> String {

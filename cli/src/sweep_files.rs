@@ -20,16 +20,16 @@ pub struct FinalFiles {
     /// Number of points without a result, by measure.
     failed: Vec<(String, usize)>,
     statistics: Option<Statistics>,
-    /// Values of all points, if they are few.
+    /// Table of the values of all points as text; empty if there are many points.
     values: String,
-    /// True if no section has enough crossings, so that there is no number.
+    /// True if no point has enough crossings of the Poincaré section, so that no measure has a value.
     is_without_crossings: bool,
 }
 
 /// Maximum number of points whose values are printed.
 const MAX_PRINTED_POINTS: usize = 24;
 
-/// Writes the final files, with a warning for points without numbers.
+/// Writes the final files, with a warning for points without a result.
 ///
 /// # Errors
 /// Missing parts, or files that cannot be written.
@@ -90,8 +90,7 @@ pub fn finish(folder: &Folder) -> Result<FinalFiles> {
     Ok(finished)
 }
 
-/// Returns an aligned table of the values of all points, without the columns of status; empty if there
-/// are many points.
+/// Returns an aligned table of the values of all points without the status columns; empty if there are many points.
 fn print_values(table: &Table) -> String {
     let points = table.columns.first().map_or(0, Vec::len);
     if points > MAX_PRINTED_POINTS {
@@ -133,7 +132,8 @@ fn failures(job: &Job, table: &Table) -> Vec<(String, usize)> {
 }
 
 impl FinalFiles {
-    /// Returns an error if no section has enough crossings; its message is printed with the files.
+    /// Returns an error if no point has enough crossings of the Poincaré section. The message is printed together with
+    /// the files.
     pub fn check(&self) -> Result {
         match self.is_without_crossings {
             true => Err(Error::Failed),

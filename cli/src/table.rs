@@ -43,7 +43,8 @@ impl Table {
         Some(&self.columns[place])
     }
 
-    /// Returns columns with numbers that are not finite: the name, the first such row, and their number.
+    /// Returns the columns with numbers that are not finite: name, index of the first row with such a number, and their
+    /// count.
     pub fn not_finite(&self) -> impl Iterator<Item = (&str, usize, usize)> {
         let columns = self.names.iter().zip(&self.columns);
         columns.filter_map(|(name, column)| {
@@ -53,7 +54,7 @@ impl Table {
         })
     }
 
-    /// Encodes as Parquet if the name of the file ends in `.parquet`, else as CSV.
+    /// Encodes as Parquet if the name of the file ends in `.parquet`, otherwise as CSV.
     pub fn encode(&self, path: &Path) -> Result<Vec<u8>> {
         if is_parquet(path) {
             return parquet_file::encode(&self.names, &self.columns)

@@ -1,4 +1,5 @@
-//! Files of `--with baked` and `--with self_test`: constant coefficients, test vectors and their comparison.
+//! Files of `--with baked` and `--with self_test`: constant coefficients, test vectors and a function that compares
+//! them.
 
 use eomgen_codegen::program::Program;
 use eomgen_codegen::vectors::{Given, TestVector, TestVectors};
@@ -14,13 +15,13 @@ use crate::error::{Error, Result};
 
 /// Number of calls in the test vectors.
 const CALLS: usize = 8;
-/// Seed of the calls, which differ from those of the certificate.
+/// Seed of the calls. The calls differ from the calls of the certificate.
 const SEED: u64 = 0x7e57_7e57;
 
 /// Returns names and contents of the requested files for a target.
 ///
 /// # Errors
-/// Targets other than Rust and C, and models without a state in their domain.
+/// A target other than Rust and C, or a model for which no state in its domain was found.
 pub fn files(
     model: &Model,
     orders: &[usize],
@@ -56,7 +57,7 @@ pub fn files(
         .collect())
 }
 
-/// Draws the calls of the test vectors.
+/// Draws the arguments of the calls of the test vectors.
 fn calls(model: &Model, orders: &[usize]) -> Result<Vec<Given>> {
     let of_model =
         |error: eomgen_model_spec::variant::ModelError| Error::model(&model.source, error);

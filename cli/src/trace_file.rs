@@ -1,4 +1,5 @@
-//! `trace.json`: the lines of emitted files with unit and terms of the specification of their values.
+//! `trace.json`: for each line of an emitted file, the unit of its value and the terms of the specification from which
+//! it is derived.
 
 use eomgen_codegen::program::Program;
 use eomgen_codegen::trace::traced_lines;
@@ -7,7 +8,7 @@ use serde_json::{Map, Value, json};
 use crate::document::SCHEMA;
 use crate::error::{Error, Result};
 
-/// Name of the file.
+/// Name of the written file.
 pub const TRACE: &str = "trace.json";
 
 /// Returns the trace of the emitted Rust and C among `files`, given by name and content.

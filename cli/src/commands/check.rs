@@ -10,12 +10,12 @@ use crate::document::SCHEMA;
 use crate::error::{Error, Result, print_diagnostics, print_json, print_text};
 use crate::model::{note_redundancy, orders, read};
 
-/// Model without errors, orders of its fields, warnings and notes.
+/// Checked model with the orders of its fields, warnings and notes.
 struct CheckedModel {
     model: Model,
     orders: Vec<usize>,
     warnings: Diagnostics,
-    /// Notes about constraints that depend on each other.
+    /// Notes about dependent constraints.
     notes: Vec<String>,
 }
 

@@ -14,12 +14,13 @@ use crate::error::{Error, Result, print_json, print_text};
 use crate::output::{file_place, write_file};
 use crate::progress::Bar;
 
-/// Number of the best sets that are evaluated again with longer runs, and number of sets near the best of these. Both
-/// are limited to the number of sets.
+/// Maximum number of best parameter sets that are evaluated again with longer runs.
 const CONFIRMED: usize = 60;
+
+/// Maximum number of additional parameter sets near the best ones.
 const NEIGHBOURS: usize = 32;
 
-/// Maximum number of sets, a search of months.
+/// Maximum number of parameter sets; such a search takes months.
 const MAX_SETS: usize = 1_000_000;
 
 pub fn run(options: &Claims) -> Result {

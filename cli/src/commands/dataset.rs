@@ -25,7 +25,7 @@ pub fn run(options: &Dataset) -> Result {
         eomgen_records::propose_dataset(&options.record, &name, &model).map_err(Error::records)?;
     if let Some(out) = &options.out {
         write_file(out, text.as_bytes())?;
-        // Guesses may be wrong: report the errors that `compare` would report.
+        // Guesses may be wrong, so report the errors that `compare` would report.
         match eomgen_records::read_dataset(out, &model) {
             Ok(dataset) => dataset
                 .notes

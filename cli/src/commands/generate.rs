@@ -37,11 +37,14 @@ pub fn run(options: &Generate) -> Result {
     }
 }
 
-/// Folder of the variants that are part of the repository, and its family file.
+/// Folder of the variants in the repository.
 const CHECKED_IN: &str = "generated/src/variants";
+
+/// Family file of these variants.
 const CHECKED_IN_FAMILY: &str = "generated/family.toml";
 
-/// Runs `family` on the variants of the repository, all of them: its generator changes within one version.
+/// Runs `family` on all variants of the repository. Unchanged variants are generated too, because the generator can
+/// change within one version.
 fn checked_in_variants(check: bool, json: bool) -> Result {
     let current = std::env::current_dir()
         .map_err(|error| Error::input(format!("no current folder: {error}")))?;
@@ -94,7 +97,8 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
     let mut certificate = None;
     if options.certify {
         let instructions = instruction_bounds(&sources, &options.instructions)?;
-        // The check of functions for CasADi derives their outputs itself.
+        // The check of the functions for CasADi derives their outputs itself, so only the common outputs are derived
+        // for the other checks.
         let shared = match sources.casadi {
             Some(_) => &[][..],
             None => &outputs,
@@ -143,10 +147,10 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
     certificate.as_ref().map_or(Ok(()), judge)
 }
 
-/// Bounds the functions of emitted C with each of the compilers.
+/// Bounds the instructions and the stack of the functions of emitted C for each compiler.
 ///
 /// # Errors
-/// Another target, and a compiler that cannot compile the source.
+/// A target other than C, or a compiler that cannot compile the source.
 fn instruction_bounds(sources: &Sources, commands: &[String]) -> Result<Vec<InstructionBounds>> {
     if !commands.is_empty() && sources.c.is_empty() {
         return Err(Error::input(

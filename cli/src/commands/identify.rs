@@ -1,4 +1,5 @@
-//! `eomgen identify`: emitted variants in an object, a library or a firmware image, by their identities.
+//! `eomgen identify`: lists emitted variants in an object file, a library or a firmware image, by their identity
+//! symbols.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +12,7 @@ use crate::emitted_files::CERTIFICATE;
 use crate::error::{Error, Result, print_json, print_text, warn};
 use crate::input_file::read_file;
 
-/// Largest depth of folders that are searched for certificates.
+/// Maximum depth of folders that are searched for certificates.
 const MAX_DEPTH: usize = 8;
 
 pub fn run(options: &Identify) -> Result {

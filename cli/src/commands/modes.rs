@@ -14,7 +14,8 @@ use crate::operating_point::{head, is_equilibrium, model, point, values_by_name}
 use crate::output::Destination;
 use crate::regime::{Side, note_surfaces, regime, summary};
 
-/// Consequence of a state that is no equilibrium: other coordinates change the second derivatives of the motion there.
+/// Consequence for a state that is not an equilibrium. The modes depend on the choice of coordinates, because the
+/// gradient of the forces does.
 const OFF_EQUILIBRIUM: &str =
     "the modes hold for a short time only, and they depend on the choice of coordinates";
 
@@ -66,7 +67,7 @@ fn record(mode: &NaturalMode) -> Value {
     })
 }
 
-/// States the accuracy of the frequency 0.
+/// Describes the accuracy to which a frequency is 0.
 fn describe_rigid_motions(modes: &[NaturalMode]) -> String {
     let limits = modes.iter().filter_map(NaturalMode::frequency_limit);
     match limits.reduce(f64::max) {
@@ -124,8 +125,8 @@ fn frequency_in_words(frequency: f64) -> String {
     }
 }
 
-/// Returns the places of the largest amplitudes of a shape, largest first. Amplitudes in different units
-/// are compared relative to the largest one in their unit; one of each unit is listed.
+/// Returns the indices of the largest amplitudes of a shape, in descending order. Amplitudes in different units are
+/// compared relative to the largest amplitude in their unit. At least one amplitude of each unit is listed.
 fn largest(units: &[String], sizes: &[f64]) -> Vec<usize> {
     let mut most: HashMap<&String, f64> = HashMap::new();
     for (unit, size) in units.iter().zip(sizes) {
@@ -146,7 +147,7 @@ fn largest(units: &[String], sizes: &[f64]) -> Vec<usize> {
     places
 }
 
-/// Returns the unit of an amplitude if the amplitudes of the machine have several units.
+/// Returns the unit of an amplitude; `None` if all amplitudes have the same unit.
 fn unit_shown(units: &[String], place: usize) -> Option<&str> {
     let is_mixed = units.iter().any(|unit| *unit != units[0]);
     is_mixed.then(|| match &units[place][..] {
@@ -155,8 +156,8 @@ fn unit_shown(units: &[String], place: usize) -> Option<&str> {
     })
 }
 
-/// Formats an amplitude with its unit, and with its phase unless it is in phase or antiphase with the
-/// coordinate that is 1.
+/// Formats an amplitude with its unit, and with its phase unless it is in phase or antiphase with the reference
+/// coordinate of amplitude 1.
 fn part(name: &str, (real, imaginary): (f64, f64), unit: Option<&str>) -> String {
     let (size, phase) = (
         real.hypot(imaginary),

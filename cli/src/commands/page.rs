@@ -19,7 +19,7 @@ pub fn run(options: &Page) -> Result {
     let compiled = derive(model, &orders)?;
     let run = compiled.with_declared_parameters()?;
     let requested = initial_state(&run, &options.initial.state)?;
-    // The page moves the state again after a change of a slider.
+    // The page projects the state again after a slider was moved.
     let (initial, moved) = run.find_consistent_state(&requested, 0.0, &run.default_inputs())?;
     note_moved("initial state", &moved);
     let page = interactive_page(&compiled, &initial)?;

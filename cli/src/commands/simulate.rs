@@ -99,12 +99,13 @@ fn event_log_destination(options: &Simulate) -> Result<Option<Destination>> {
     Destination::for_events(path, &others).map(Some)
 }
 
-/// Returns the model, its inputs, and the library of `--controller`.
+/// Returns the compiled model, its inputs, and the library of `--controller`.
 fn driven_model(
     options: &Simulate,
 ) -> Result<(CompiledModel, HeldInputs, Option<ControllerLibrary>)> {
     let declared = load(&options.model.spec)?.model;
-    // Controllers measure the inputs, and fixed steps hold them, so that these remain inputs.
+    // Controllers measure inputs, and fixed steps hold inputs. In both cases, expressions of `--input` must not replace
+    // the inputs.
     let is_controlled = !declared.controllers.is_empty() || options.controller.is_some();
     let role = match options.integration.solver {
         Solver::Fixed => Some(InputRole::Held),
@@ -155,7 +156,7 @@ fn library(
     }
 }
 
-/// Reports columns with numbers that are not finite. Returns whether the states and the energy are finite; observables
+/// Reports columns with numbers that are not finite. Returns true if the states and the energy are finite. Observables
 /// may be undefined in some states.
 fn report_not_finite(table: &Table, states: &[String]) -> bool {
     let times = table.column("t").unwrap_or_default();

@@ -23,7 +23,7 @@ pub fn run(options: &Study) -> Result {
     };
     let bar = Mutex::new(Bar::new("simulating and measuring", 100.0, "%"));
     let found = make(&|share| {
-        // A poisoned lock only stops the bar.
+        // If the lock is poisoned, only the progress bar stops.
         if let Ok(bar) = bar.lock() {
             bar.set(100.0 * share);
         }
@@ -32,7 +32,7 @@ pub fn run(options: &Study) -> Result {
     let (study, arm) = found.map_err(|error: StudyError| Error::input(error.to_string()))?;
     let document = study.document(name, arm.model());
     write(&study, &options.out)?;
-    // Written last: a folder with this file is complete.
+    // `study.json` is written last, so a folder that contains it is complete.
     let text = format!("{document:#}\n");
     write_file(&document_path, text.as_bytes())?;
     match options.output.json {
@@ -52,7 +52,7 @@ fn write(study: &report::Study, out: &Path) -> Result {
     Ok(())
 }
 
-/// Returns a line for each case and the names of the files.
+/// Returns one line for each case, then the names of the files.
 fn summary(study: &report::Study, out: &Path) -> String {
     let text = |case: &Value, name: &str| case[name].as_str().unwrap_or_default().to_owned();
     let mut lines: Vec<String> = study

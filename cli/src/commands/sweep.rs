@@ -73,7 +73,7 @@ fn input_error(error: SweepError) -> Error {
     Error::input(error.to_string())
 }
 
-/// Returns the request of the command line.
+/// Returns the sweep request that the command line describes.
 fn request(options: &Sweep, declared: &Model) -> Result<SweepRequest> {
     Ok(SweepRequest {
         vary: options.vary.clone(),
@@ -96,7 +96,7 @@ fn request(options: &Sweep, declared: &Model) -> Result<SweepRequest> {
     })
 }
 
-/// Prints the result.
+/// Prints the counts and the document as JSON, or the text.
 fn end(options: &Sweep, mut counts: Value, document: Value, text: &str) -> Result {
     if !options.output.json {
         return print_text(text);

@@ -1,4 +1,4 @@
-//! `eomgen verify`: the checks of a certificate on the emitted source as it is.
+//! `eomgen verify`: repeats the checks of a certificate on an emitted source as it is.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -26,7 +26,7 @@ pub fn run(options: &Verify) -> Result {
     let contents = read_file(&options.file)?;
     let (sources, expected) = sources(options, &certificate, &contents)?;
     let found = sha256(&contents);
-    // A header with the functions is the file itself.
+    // In header-only packaging, the header with the functions is the file itself.
     let mut with_header = sources
         .c
         .iter()
@@ -74,20 +74,20 @@ pub fn run(options: &Verify) -> Result {
     }
 }
 
-/// Bounds of instructions and stack that were computed again.
+/// Recomputed bounds of instructions and stack.
 #[derive(Default)]
 struct RepeatedBounds {
-    /// Bounds that equal those of the certificate.
+    /// Recomputed bounds; they equal the bounds in the certificate.
     found: Vec<InstructionBounds>,
-    /// Line per compiler.
+    /// Text with one line for each compiler.
     text: String,
 }
 
-/// Content of a certificate that decides its checks.
+/// Certificate with the model that its checks need.
 struct Certificate {
     /// The whole certificate.
     document: Value,
-    /// Model with the values that were set.
+    /// Model with the parameter values of `settings`.
     model: Model,
     order: usize,
     outputs: Vec<Output>,
@@ -185,16 +185,17 @@ impl Certificate {
         })
     }
 
-    /// Returns the hashes of the C with this prefix.
+    /// Returns the hashes of the emitted C with this prefix.
     fn c_source(&self, name: &str) -> Option<&CSourceHashes> {
         self.c_sources.iter().find(|source| source.name == name)
     }
 
-    /// Compiles the C again with those of the `allowed` compilers with which the certificate states bounds of instructions
-    /// and stack, and compares. Other commands of the certificate are not run: it may be anybody's file.
+    /// Compiles the C again with each `allowed` command for which the certificate contains bounds of instructions and
+    /// stack, and compares the bounds. Other commands of the certificate are not run, because the file may be from an
+    /// untrusted source.
     ///
     /// # Errors
-    /// Bounds that differ although the compiler is the same, and a compiler without bounds in the certificate.
+    /// Bounds that differ although the compiler is the same, or a command without bounds in the certificate.
     fn repeat_bounds(&self, sources: &Sources, allowed: &[String]) -> Result<RepeatedBounds> {
         let mut repeated = RepeatedBounds::default();
         let stated = match &self.document["instructions"] {
@@ -251,7 +252,7 @@ impl Certificate {
         Ok(repeated)
     }
 
-    /// Returns true if the certificate is about a Rust file: its source is not one of the other files.
+    /// Returns true if the certificate covers a Rust file, because its source hash is not the hash of another file.
     fn covers_rust(&self) -> bool {
         let c = self.c_sources.iter().map(|c| &c.source_sha256);
         let casadi = self.casadi.iter().map(|c| &c.source_sha256);
@@ -272,7 +273,7 @@ impl Certificate {
         }
     }
 
-    /// Compares what the certificate states with the repeated certificate.
+    /// Compares the statements of the certificate with the repeated certificate.
     ///
     /// # Errors
     /// The first statement that differs.
@@ -327,12 +328,12 @@ fn casadi_hash(document: &Value) -> Option<CasadiHash> {
     })
 }
 
-/// Returns true if the specification reads tables, whose hashes are part of its hash.
+/// Returns true if the specification reads tables. In that case its hash includes the hashes of the tables.
 fn specification_has_tables(source: &Source) -> bool {
     source.text.contains("table")
 }
 
-/// Returns the source to check and the hash that the certificate states for its language.
+/// Returns the source to check and the hash that the certificate contains for this language.
 fn sources(
     options: &Verify,
     certificate: &Certificate,
@@ -426,7 +427,7 @@ fn sources(
     }
 }
 
-/// Returns functions for CasADi with the outputs of their certificate.
+/// Returns the emitted functions for CasADi with the outputs that their certificate lists.
 fn certified_casadi(
     certified: &CasadiHash,
     text: String,

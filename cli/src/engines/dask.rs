@@ -9,7 +9,7 @@ use super::shards::Commands;
 use crate::arguments::Sweep;
 use crate::error::{Error, Result};
 
-/// Runs the sweep and waits for its end.
+/// Runs the sweep and waits until it ends.
 pub fn run(options: &Sweep) -> Result<Submission> {
     let commands = Commands::new(options)?;
     let scheduler = options
@@ -24,7 +24,7 @@ pub fn run(options: &Sweep) -> Result<Submission> {
     })?;
     let count = commands.count.to_string();
     let threads = commands.threads.unwrap_or(1).to_string();
-    // Stdout is for the output of this program; messages of the module appear on stderr.
+    // Stdout is reserved for the output of this program, so messages of the module are printed to stderr.
     let status = Command::new("python3")
         .args([
             "-m",

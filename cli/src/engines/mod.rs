@@ -1,5 +1,5 @@
-//! Sweeps on several machines with a shared folder: each shard is a run of this program with `--shard`, followed by
-//! `merge`.
+//! Sweeps on several machines with a shared folder. Each shard is a run of this program with `--shard`; `merge`
+//! follows.
 
 mod dask;
 mod shards;
@@ -16,7 +16,7 @@ pub struct Submission {
     pub text: String,
 }
 
-/// Submits a sweep, whose folder exists, to an engine.
+/// Submits a sweep to an engine. Its output folder must exist.
 pub fn submit(engine: Engine, options: &Sweep) -> Result<Submission> {
     match engine {
         Engine::Slurm => slurm::submit(options),

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 /// Default number of shards, large enough that several machines finish at about the same time.
 const DEFAULT_SHARDS: u16 = 16;
 
-/// Commands of this program that run a sweep.
+/// Data for the command lines that run the shards of a sweep.
 pub struct Commands {
     /// Number of shards.
     pub count: u16,
@@ -25,7 +25,7 @@ pub struct Commands {
 }
 
 impl Commands {
-    /// Creates the commands of a sweep whose folder exists.
+    /// Creates the commands of a sweep. Its output folder must exist.
     pub fn new(options: &Sweep) -> Result<Self> {
         let folder = absolute(&options.out)?;
         let program = std::env::current_exe().map_err(|error| {
@@ -85,7 +85,7 @@ fn absolute(path: &Path) -> Result<PathBuf> {
         .map_err(|error| Error::file("find", path, &error))
 }
 
-/// Returns a path as text for scripts.
+/// Returns a path as text that is safe in scripts.
 fn text(path: &Path) -> Result<String> {
     let text = path
         .to_str()

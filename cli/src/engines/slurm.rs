@@ -1,7 +1,7 @@
 //! Slurm: an array job runs the shards, and a dependent job merges them.
 //!
-//! An array task restarts a killed program, which resumes its shard. Slurm requeues tasks of a lost node. The merge
-//! waits until all tasks have succeeded.
+//! An array task restarts a killed program, and the program resumes its shard. Slurm requeues the tasks of a failed
+//! node. The merge waits until all tasks have succeeded.
 
 use std::path::Path;
 use std::process::Command;
@@ -14,7 +14,7 @@ use crate::arguments::Sweep;
 use crate::error::{Error, Result};
 use crate::output::write_file;
 
-/// Maximum number of attempts of an array task to run a program that is killed.
+/// Maximum number of times that an array task starts a program that is killed.
 const ATTEMPTS: u8 = 5;
 
 /// Writes the scripts to the output folder and submits them.
@@ -52,7 +52,7 @@ pub fn submit(options: &Sweep) -> Result<Submission> {
     })
 }
 
-/// Submits a script and returns the number of its job.
+/// Submits a script and returns the job number.
 fn sbatch(folder: &Path, options: &[&str], script: &Path) -> Result<String> {
     let output = Command::new("sbatch")
         .args(["--parsable", "--job-name=eomgen_sweep"])
@@ -67,7 +67,7 @@ fn sbatch(folder: &Path, options: &[&str], script: &Path) -> Result<String> {
             ))
         })?;
     let said = String::from_utf8_lossy(&output.stdout);
-    // With several clusters, the cluster's name follows the number.
+    // If Slurm has several clusters, `;CLUSTER` follows the job number.
     let job = said.trim().split(';').next().unwrap_or_default();
     if output.status.success() && !job.is_empty() && job.bytes().all(|byte| byte.is_ascii_digit()) {
         return Ok(job.to_owned());

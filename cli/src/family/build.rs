@@ -31,11 +31,11 @@ pub struct Built {
     pub model: String,
     pub orders: Vec<usize>,
     pub states: usize,
-    /// Hashes of the files that the model was read from, by their paths relative to the family file.
+    /// Hashes of the files of the model, by their paths relative to the family file.
     pub inputs: BTreeMap<String, String>,
-    /// Contents by paths relative to the output folder, with the certificate.
+    /// Contents of the emitted files and the certificate, by paths relative to the output folder.
     pub files: BTreeMap<String, Vec<u8>>,
-    /// Operations of a call, by function.
+    /// Number of operations of one call, by function.
     pub operations: BTreeMap<&'static str, usize>,
     /// Verdict of the certificate.
     pub verdict: String,
@@ -44,8 +44,8 @@ pub struct Built {
     pub warnings: Vec<String>,
 }
 
-/// Derives, emits and certifies a variant. A comparison runs no checks of certificates: it reads the verdict of the
-/// certificate in the output folder if that belongs to the emitted sources.
+/// Derives, emits and certifies a variant. With `check`, no certificate checks are run. If the certificate in the
+/// output folder belongs to the emitted sources, its verdict is read.
 pub fn build(family: &Family, variant: &Variant, options: &Options<'_>) -> Result<Built> {
     let path = family.folder().join(&variant.spec);
     let checked = eomgen_model_spec::load(&path).map_err(Error::Specification)?;
@@ -105,7 +105,7 @@ impl Emitted {
             derived.program.name.clone_from(&variant.prefix);
             Ok::<Derived, Error>(derived)
         };
-        // Lanes are functions of emitted Rust only.
+        // Only emitted Rust has SIMD lanes.
         let outputs = Extra::outputs(&others);
         let derived = derive(&outputs)?;
         let program = &derived.program;
@@ -141,8 +141,8 @@ impl Emitted {
                 program.name.clone_from(&prefix);
                 let vectors = test_vectors::files(model, orders, &program, &others, Target::C99)?;
                 for (name, contents) in vectors {
-                    // `vectors.json` has both precisions. The variant's own prefix has `vectors.h`, that of another
-                    // precision `PREFIX_vectors.h`.
+                    // `vectors.json` contains both precisions. For the variant's own prefix, the header is `vectors.h`;
+                    // for the prefix of another precision, it is `PREFIX_vectors.h`.
                     match (prefix == variant.prefix, &*name) {
                         (false, "vectors.json") => {}
                         (false, "vectors.h") => files.push((format!("{prefix}_{name}"), contents)),
@@ -173,7 +173,7 @@ impl Emitted {
         Ok(this)
     }
 
-    /// Adds the source to certify, and returns the files.
+    /// Adds the C source to `sources` for certification and returns its files.
     fn emit_c(
         &mut self,
         derived: &Derived,
@@ -250,7 +250,7 @@ fn certificate(
     Ok(CertificateText {
         verdict: verdict.unwrap_or("stale").to_owned(),
         text,
-        // A comparison reports the verdict and writes nothing.
+        // A comparison reports the verdict separately and writes nothing.
         passed: true,
     })
 }

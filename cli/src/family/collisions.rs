@@ -1,4 +1,5 @@
-//! Names that two variants declare in C: the prefix of one variant can begin with that of another.
+//! Collisions of C names between variants. They are possible because the prefix of one variant can begin with the
+//! prefix of another.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -8,7 +9,8 @@ use super::description::{Family, Variant};
 use crate::arguments::Target;
 use crate::error::{Error, Result};
 
-/// Checks that no two variants declare the same name, given the variants generated now; the others are read from `out`.
+/// Checks that no two variants declare the same C name. `built` contains the variants generated in this run; headers of
+/// the others are read from `out`.
 ///
 /// # Errors
 /// A name that two variants declare.
@@ -55,7 +57,7 @@ fn read_header(variant: &Variant, prefix: &str, built: &[Built], out: &Path) -> 
     }
 }
 
-/// Returns the names in a header that begin with a prefix, in any case of letters.
+/// Returns the names in a header that begin with a prefix, ignoring case.
 fn find_names(header: &str, prefix: &str) -> BTreeSet<String> {
     let code = without_comments(header);
     let prefix = prefix.to_lowercase();
@@ -64,7 +66,7 @@ fn find_names(header: &str, prefix: &str) -> BTreeSet<String> {
     own.map(str::to_owned).collect()
 }
 
-/// Returns the text outside of comments between `/*` and `*/`, the only ones in emitted C.
+/// Removes comments between `/*` and `*/`. Emitted C has no other comments.
 fn without_comments(text: &str) -> String {
     let mut parts = text.split("/*");
     let first = parts.next().unwrap_or_default();

@@ -23,7 +23,7 @@ pub enum Kind {
     Different,
     /// The certificate did not pass.
     Certificate,
-    /// A function needs more operations.
+    /// A function needs more operations than the manifest permits.
     Operations,
 }
 
@@ -39,7 +39,7 @@ impl Kind {
         }
     }
 
-    /// Returns the name of the difference, or `written` if writing the files removed it.
+    /// Returns the name of the difference; `written` if writing the files removed the difference.
     fn after(self, is_written: bool) -> &'static str {
         match self {
             Self::Missing | Self::Edited | Self::Stale | Self::Different if is_written => "written",
@@ -88,7 +88,7 @@ impl Findings {
     }
 }
 
-/// Compares a variant with its entry in the manifest, without generating it.
+/// Compares the inputs and files of a variant with its entry in the manifest, without generating the variant.
 pub fn changes(
     variant: &Variant,
     manifest: &Manifest,
@@ -135,7 +135,7 @@ pub fn changes(
     found
 }
 
-/// Compares a generated variant with the output folder and with the counts of the manifest.
+/// Compares a generated variant with the output folder and with the operation counts in the manifest.
 pub fn compare_built(
     variant: &Variant,
     built: &Built,
@@ -172,7 +172,7 @@ pub fn compare_built(
     }
 }
 
-/// Returns a table of all variants if there are few or some differ, with the differences.
+/// Returns a table of the variants, with the differences. Unchanged variants are omitted if there are many.
 pub fn table(
     family: &Family,
     manifest: &Manifest,
@@ -221,5 +221,5 @@ pub fn table(
     text
 }
 
-/// Largest number of variants in a table that also lists unchanged ones.
+/// Maximum number of variants in a table that also lists unchanged variants.
 const MAX_ROWS: usize = 40;

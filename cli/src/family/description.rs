@@ -17,16 +17,16 @@ use serde_json::{Value, json};
 use crate::arguments::{Extra, Packaging, Target};
 use crate::error::{Error, Result};
 
-/// Largest family file, in bytes.
+/// Maximum size of a family file, in bytes.
 const MAX_SIZE: u64 = 1 << 20;
 
-/// Largest number of variants.
+/// Maximum number of variants.
 const MAX_VARIANTS: usize = 2000;
 
-/// Permitted rise of operation counts if the file states none.
+/// Default of the permitted increase of operation counts, as a fraction.
 const DEFAULT_GROWTH: f64 = 0.05;
 
-/// Prefixes whose names are in the common files: the type `eomgen_model` of C and the trait `Model` of Rust.
+/// Reserved prefixes: the common files declare the C type `eomgen_model` and the Rust trait `Model`.
 const FAMILY_NAMES: [&str; 2] = ["eomgen", "Model"];
 
 static FAMILY: Keys = Keys::new(&[
@@ -35,7 +35,7 @@ static FAMILY: Keys = Keys::new(&[
         "operation_growth",
         "fraction",
         "0.05",
-        "permitted rise of operation counts in `--check`",
+        "permitted increase of operation counts in `--check`",
     ),
 ]);
 
@@ -88,7 +88,7 @@ pub struct Family {
     /// Path of the family file.
     pub path: PathBuf,
     pub name: String,
-    /// Permitted rise of operation counts, as a share.
+    /// Permitted increase of operation counts, as a fraction.
     pub growth: f64,
     pub variants: Vec<Variant>,
 }
@@ -100,7 +100,7 @@ impl Family {
     }
 }
 
-/// Entry of a family.
+/// Variant in a family file.
 pub struct Variant {
     pub name: String,
     /// Line of the entry in the family file.
@@ -132,7 +132,7 @@ impl Variant {
         self.targets.contains(&target)
     }
 
-    /// Returns true if the Rust is a module, not the root of a crate.
+    /// Returns true if the emitted Rust is a module, not the root of a crate.
     pub fn is_module(&self) -> bool {
         self.packaging != Packaging::Crate
     }
@@ -146,7 +146,7 @@ impl Variant {
         self.precision.iter().map(prefix).collect()
     }
 
-    /// Returns everything in the family file that decides the emitted files.
+    /// Returns all entries of the variant in the family file that the emitted files depend on.
     pub fn definition(&self) -> Value {
         let target = |target: &Target| {
             target
@@ -190,7 +190,7 @@ pub fn read(path: &Path) -> Result<Family> {
     family.map_err(Error::Specification)
 }
 
-/// Returns true if a text has the table `model` of a specification and no table of a family file.
+/// Returns true if a text contains the table `[model]` of a specification and no table of a family file.
 fn is_specification(text: &str) -> bool {
     let has = |table: &str| text.lines().any(|line| line.trim_end().starts_with(table));
     has("[model]") && !has("[family]") && !has("[[variant]]")
@@ -291,7 +291,7 @@ impl Reader<'_> {
         );
         let targets = targets?;
         if packaging == Some(Packaging::HeaderOnly) && !targets.contains(&Target::C99) {
-            let message = "`header-only` is a form of C, and the variant has no C";
+            let message = "`packaging = \"header-only\"` needs the target \"c99\", which this variant does not have";
             let span = record.get("packaging").map_or(name.span, Entry::span);
             let error = Diagnostic::error(message).with_span(span, "expected `module` or `crate`");
             self.found
@@ -300,7 +300,7 @@ impl Reader<'_> {
         }
         let precision = precision?;
         if precision.contains(&Precision::Single) && !targets.contains(&Target::C99) {
-            let message = "`f32` is a number type of emitted C, and the variant has no C";
+            let message = "`precision = [\"f32\"]` needs the target \"c99\", which this variant does not have";
             let span = record.get("precision").map_or(name.span, Entry::span);
             let error = Diagnostic::error(message).with_span(span, "no target has this precision");
             self.found.push(error.with_help(
@@ -330,7 +330,7 @@ impl Reader<'_> {
         is_new.then_some(variant)
     }
 
-    /// Reports a name that is no name of a folder.
+    /// Reports a name that is invalid as the name of a folder.
     fn check_name(&mut self, name: &StringValue) -> Option<()> {
         if is_identifier(&name.text) {
             return Some(());
@@ -474,7 +474,7 @@ impl Reader<'_> {
     }
 }
 
-/// Names and prefixes of earlier variants, in lower case: some file systems ignore the case.
+/// Names and prefixes of earlier variants, in lower case because some file systems ignore the case.
 #[derive(Default)]
 struct Used {
     names: HashMap<String, StringValue>,

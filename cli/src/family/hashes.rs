@@ -12,7 +12,7 @@ pub struct Hashes {
 }
 
 impl Hashes {
-    /// `folder`: folder of the family file.
+    /// Creates an empty cache. `folder` is the folder of the family file.
     pub fn new(folder: &Path) -> Self {
         Self {
             folder: folder.to_owned(),

@@ -1,4 +1,4 @@
-//! `manifest.json`: hashes of specifications and emitted files, sizes, orders and operations. It contains no time
+//! `manifest.json`: hashes of specifications and emitted files, sizes, orders and operations. It contains no time stamp
 //! and no absolute path.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,7 +13,7 @@ use crate::document::SCHEMA;
 use crate::emitted_files::CERTIFICATE;
 use crate::error::{Error, Result};
 
-/// Name of the manifest.
+/// File name of the manifest.
 pub const FILE: &str = "manifest.json";
 
 const GENERATOR: &str = concat!("eomgen ", env!("CARGO_PKG_VERSION"));
@@ -25,7 +25,7 @@ pub struct Manifest {
     text: String,
     generator: String,
     family: String,
-    /// Entries by names of variants.
+    /// Entries by variant names.
     variants: BTreeMap<String, Value>,
     /// Names of the variants in the order of the family file.
     order: Vec<String>,
@@ -35,7 +35,7 @@ impl Manifest {
     /// Reads the manifest of a folder; empty if there is none.
     ///
     /// # Errors
-    /// A file that is no manifest, and the manifest of another family.
+    /// A file that is not a manifest, or the manifest of another family.
     pub fn read(out: &Path, family: &Family) -> Result<Self> {
         let path = out.join(FILE);
         let text = match std::fs::read_to_string(&path) {
@@ -118,7 +118,7 @@ impl Manifest {
         self.variants.insert(variant.name.clone(), entry);
     }
 
-    /// Takes hash and verdict from an earlier manifest, if `path` is a certificate.
+    /// Copies hash and verdict from an earlier manifest if `path` is a certificate.
     pub fn keep_certificate(&mut self, earlier: &Self, path: &str) {
         let Some((name, CERTIFICATE)) = path.split_once('/') else {
             return;
@@ -130,12 +130,12 @@ impl Manifest {
         }
     }
 
-    /// Returns the text as read; empty without a file.
+    /// Returns the text of the manifest file; empty if there is no file.
     pub fn read_text(&self) -> &str {
         &self.text
     }
 
-    /// Returns the text of the entries.
+    /// Returns the manifest as JSON text.
     pub fn text(&self) -> String {
         let entries = self.order.iter().filter_map(|name| self.variants.get(name));
         let document = json!({
@@ -162,7 +162,7 @@ impl Manifest {
         &self.generator
     }
 
-    /// Returns the operations of a variant by function.
+    /// Returns the operation counts of a variant, by function.
     pub fn operations(&self, name: &str) -> Value {
         self.entry(name)
             .map_or(Value::Null, |entry| entry["operations"].clone())
@@ -182,12 +182,12 @@ impl Manifest {
         files.flat_map(|files| files.keys().cloned()).collect()
     }
 
-    /// Returns the number of emitted files and certificates, with the manifest.
+    /// Returns the number of emitted files and certificates, including the manifest.
     pub fn file_count(&self) -> usize {
         self.files().len() + 1
     }
 
-    /// Returns the files that a later manifest lacks.
+    /// Returns the files that a later manifest does not contain.
     pub fn files_not_in(&self, later: &Self, root: &BTreeMap<String, Vec<u8>>) -> Vec<String> {
         let kept = later.files();
         let is_gone = |path: &String| !kept.contains(path) && !root.contains_key(path);

@@ -1,7 +1,7 @@
 //! `eomgen family`: all variants of a family file, with certificates and a manifest.
 //!
-//! `description` reads the family file, `build` emits and certifies one variant, `manifest` records `hashes` and
-//! counts, `comparison` lists differences, `write` replaces files.
+//! `description` reads the family file, `build` emits and certifies one variant, `manifest` stores `hashes` and
+//! operation counts, `comparison` lists differences, `write` replaces files.
 
 mod build;
 mod collisions;
@@ -31,7 +31,7 @@ use manifest::Manifest;
 
 pub use options::Options;
 
-/// Largest number of variants that are generated at the same time.
+/// Maximum number of variants that are generated in parallel.
 const MAX_THREADS: usize = 8;
 
 /// Writes or compares the variants of a family.
@@ -74,7 +74,7 @@ pub fn run(options: &Options<'_>) -> Result {
     }
     different.extend(findings.iter().flat_map(Findings::edited_files));
     let text = result.text();
-    // An edited certificate changes its hash and its verdict, but not the manifest of a new run.
+    // An edited certificate changes its own hash and verdict, but not the manifest of a new run.
     let mut expected = result.clone();
     for path in different.iter().filter(|_| options.check) {
         expected.keep_certificate(&manifest, path);
@@ -119,12 +119,12 @@ pub fn run(options: &Options<'_>) -> Result {
     Ok(())
 }
 
-/// Returns the verb for a number of files.
+/// Returns the verb form for a number of files.
 fn differ(count: usize) -> &'static str {
     if count == 1 { "differs" } else { "differ" }
 }
 
-/// Generates the chosen variants in parallel, in their order.
+/// Generates the chosen variants in parallel and returns them in the order of `chosen`.
 fn build_all(family: &Family, chosen: &[usize], options: &Options<'_>) -> Result<Vec<Built>> {
     let _note = (!chosen.is_empty())
         .then(|| Note::new(format!("generating {}", count(chosen.len(), "variant"))));

@@ -1,8 +1,8 @@
-//! Options of a run.
+//! Options of `eomgen family`.
 
 use std::path::Path;
 
-/// Options of a run.
+/// Options of `eomgen family`.
 pub struct Options<'o> {
     /// Family file.
     pub file: &'o Path,
@@ -10,7 +10,7 @@ pub struct Options<'o> {
     pub out: &'o Path,
     /// Compare instead of writing.
     pub check: bool,
-    /// Also generate variants without a change.
+    /// Also generate unchanged variants.
     pub force: bool,
     /// Print a JSON document.
     pub json: bool,

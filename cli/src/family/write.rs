@@ -1,4 +1,4 @@
-//! Writes the files of a family. Every file replaces the present one when it is complete; the manifest is last.
+//! Writes the files of a family. Each file is replaced only by a complete file. The manifest is written last.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -12,7 +12,8 @@ use crate::arguments::Target;
 use crate::error::{Error, Result, warn};
 use crate::output::write_file;
 
-/// Returns the files of the whole family: the modules with their trait, and the tables of the C in double precision.
+/// Returns the common files of the family: the list of Rust modules with their trait, and the C tables of the variants
+/// in double precision.
 pub fn root_files(family: &Family) -> BTreeMap<String, Vec<u8>> {
     let mut files = BTreeMap::new();
     let variants = family.variants.iter();
@@ -81,7 +82,7 @@ pub fn write(built: &[Built], root: &BTreeMap<String, Vec<u8>>, out: &Path) -> R
     Ok(())
 }
 
-/// Removes files of an earlier run that no variant has. Edited files stay.
+/// Removes files of an earlier run that belong to no variant. Edited files are kept.
 pub fn remove(paths: &[String], manifest: &Manifest, out: &Path) -> Result {
     for path in paths {
         let place = out.join(path);
@@ -90,7 +91,7 @@ pub fn remove(paths: &[String], manifest: &Manifest, out: &Path) -> Result {
             Some(hash) if manifest.file_hash(path) == Some(&*hash) => {
                 std::fs::remove_file(&place)
                     .map_err(|error| Error::file("remove", &place, &error))?;
-                // Succeeds only if the folder of the variant is empty.
+                // Removing the folder succeeds only if it is empty.
                 let _ = place.parent().map(std::fs::remove_dir);
             }
             Some(_) => warn(&format!(

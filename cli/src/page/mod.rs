@@ -1,5 +1,5 @@
-//! HTML pages. `play` is the interactive page of a model. [`Tour`] is the page of the tour: the moving arm, specification,
-//! equations, emitted source, certificate, simulation and discovery.
+//! HTML pages. `play` renders the interactive page of a model. [`Tour`] renders the page of the tour: the moving arm,
+//! specification, equations, emitted source, certificate, simulation and discovery.
 //!
 //! The page of the tour is self-contained. The reports are in separate frames, because each has a script. Text
 //! of a specification is escaped.
@@ -20,9 +20,9 @@ use maud::{Markup, html};
 pub struct Tour<'a> {
     /// Title of the model.
     pub title: &'a str,
-    /// What the discovery found, in one sentence.
+    /// Result of the discovery in one sentence.
     pub found: &'a str,
-    /// The moving arm.
+    /// Interactive drawing of the arm.
     pub arm: &'a InteractivePart,
     /// Name and version of the program.
     pub generated_by: &'a str,
@@ -64,7 +64,7 @@ pub struct CheckRow {
     pub tolerance: f64,
     pub passed: bool,
     pub skipped: bool,
-    /// Place of the deviation of a failed check, or the reason for skipping it; empty if it passed.
+    /// Location of the deviation of a failed check, or the reason for skipping a check; empty for a passed check.
     pub detail: String,
 }
 
@@ -72,7 +72,7 @@ pub struct CheckRow {
 pub struct Simulation<'a> {
     /// Sentence about time span, solver, samples and switches.
     pub summary: &'a str,
-    /// Path of the samples.
+    /// Path of the trajectory file.
     pub path: &'a str,
     pub figures: Vec<Figure<'a>>,
 }
@@ -80,7 +80,7 @@ pub struct Simulation<'a> {
 /// Discovery of a hidden effect.
 #[derive(Clone, Debug)]
 pub struct Hidden<'a> {
-    /// Facts about the hidden effect and the result, each with its name.
+    /// Names and values of facts about the hidden effect and the result.
     pub facts: Vec<(&'a str, String)>,
     /// Folder of the records and results.
     pub path: &'a str,

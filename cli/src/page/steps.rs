@@ -113,7 +113,7 @@ pub(super) fn simulation(simulation: &Simulation<'_>) -> Markup {
 
 pub(super) fn hidden(hidden: &Hidden<'_>) -> Markup {
     let [before, after] = hidden.reports;
-    // A report runs a script; the sandbox isolates it from this page.
+    // A report runs a script, so a sandboxed frame isolates it from this page.
     let page = |summary: &str, report: &str, is_open: bool| {
         html! {
             details open[is_open] {
@@ -165,7 +165,7 @@ pub(super) fn next(commands: &[NextCommand<'_>]) -> Markup {
             @for next in commands {
                 dt { (next.purpose) }
                 dd { pre { code {
-                    // Words do not break at their hyphens.
+                    // Each word is an element of its own, to prevent line breaks at hyphens.
                     @for (place, word) in next.command.split(' ').enumerate() {
                         @if place > 0 { " " }
                         span.word { (word) }

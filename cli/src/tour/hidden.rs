@@ -1,5 +1,5 @@
-//! Last chapter of the tour: `compare` and `discover` examine records of a simulated stage with a specification that
-//! lacks its dry friction.
+//! Last chapter of the tour: `compare` and `discover` are applied to records of a simulated stage. The stage has dry
+//! friction that the specification lacks.
 
 use std::path::{Path, PathBuf};
 
@@ -19,20 +19,26 @@ use crate::output::write_file;
 use crate::page;
 use crate::table::Table;
 
-/// Specification without the friction.
+/// Specification of the stage without dry friction.
 const SPECIFICATION: &str = models::EMPS.text;
 
-/// Hidden dry friction, N, and the speed, m/s, over which it changes sign. It is smooth, unlike the effect in the
-/// catalogue.
+/// Hidden dry friction in N. The force is a smooth function of the
+/// speed, unlike the effect in the catalogue.
 const FRICTION: f64 = 12.0;
+
+/// Speed range in which the friction changes sign, in m/s.
 const TRANSITION_SPEED: f64 = 2e-4;
 
-/// Number of samples of a record, sample time (s) and standard deviation of the sensor noise (m).
+/// Number of samples of a record.
 const SAMPLES: usize = 750;
+
+/// Time between samples, in s.
 const SAMPLE_TIME: f64 = 0.002;
+
+/// Standard deviation of the sensor noise, in m.
 const NOISE: f64 = 2e-6;
 
-/// Relative tolerance of the simulation.
+/// Relative tolerance of the simulations.
 const TOLERANCE: f64 = 1e-9;
 
 /// Result of the discovery, and the reports of comparison and discovery.
@@ -42,7 +48,7 @@ pub struct Rediscovery {
     extended: String,
 }
 
-/// Writes records to `out`, compares and discovers.
+/// Writes the records to `out`, then runs the comparison and the discovery.
 pub fn rediscover(out: &Path) -> Result<Rediscovery> {
     let folder = out.join("hidden");
     let specification = folder.join("stage.toml");
@@ -78,7 +84,7 @@ fn text(path: PathBuf) -> Result<String> {
     std::fs::read_to_string(&path).map_err(|error| Error::file("read", &path, &error))
 }
 
-/// Returns the specification with the friction.
+/// Returns the specification with the hidden friction.
 fn truth() -> Result<String> {
     let parameter = |name: &str, value: f64, unit: &str| {
         Edit::AddParameter(NewParameter {
@@ -132,7 +138,7 @@ fn record(truth: &str, turn: f64) -> Result<Table> {
     let positions = motion
         .column("q")
         .ok_or_else(|| Error::input("the stage has no position"))?;
-    // Fractions of n^2 times the golden ratio are evenly distributed without a visible pattern.
+    // The fractional parts of n^2 times the golden ratio are evenly distributed without a visible pattern.
     let noise = |sample: usize| {
         let turns = (sample * sample) as f64 * 0.618_033_988_749_895;
         NOISE * 12f64.sqrt() * (turns.fract() - 0.5)
@@ -224,7 +230,7 @@ impl Rediscovery {
         micrometres(&self.discovery["gap"]["q"][when]["test"])
     }
 
-    /// Returns the same as a multiple of the noise floor.
+    /// Returns the RMS residual on held-out data as a multiple of the noise floor.
     fn multiple(&self, when: &str) -> String {
         let gap = &self.discovery["gap"]["q"];
         let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);

@@ -1,4 +1,4 @@
-//! The tour: every step on the paper's arm, and a discovery on a positioning stage. It writes one HTML page and the
+//! Tour: runs every step on the paper's arm and a discovery on a positioning stage. It writes one HTML page and the
 //! files that the page shows.
 
 mod hidden;
@@ -32,7 +32,7 @@ use hidden::{Rediscovery, rediscover};
 
 const SPECIFICATION: &str = models::PLANETARY_ARM.text;
 
-/// Path in the project.
+/// Path of the specification in the project.
 const SPECIFICATION_PATH: &str = "model-spec/models/planetary_arm.toml";
 
 /// Truncation order of the paper.
@@ -42,7 +42,7 @@ const ORDER: usize = 4;
 const UNTIL: f64 = 2.0;
 const INTERVAL: f64 = 0.0005;
 
-/// Relative tolerance; without effect while the arm is linear between its switches.
+/// Relative tolerance. It has no effect on the exact solver, which is used if the arm is linear between its switches.
 const TOLERANCE: f64 = 1e-10;
 
 /// Durations of the steps, s.
@@ -204,7 +204,7 @@ fn figure(run: &Instance<'_>, table: &Table, width: FigureWidth) -> Result<Strin
     time_history_at(&history, width).map_err(|error| Error::input(error.to_string()))
 }
 
-/// Results that the page shows.
+/// Results that are shown on the page.
 struct Parts<'a> {
     rust: &'a str,
     /// Wide and narrow figure of the simulation.
@@ -276,7 +276,7 @@ fn page_text(compiled: &CompiledModel, parts: &Parts<'_>, watch: &Stopwatch) -> 
     Ok(tour.render())
 }
 
-/// Returns a row for each kind of check: checks of the same kind in different regimes have one row with the largest
+/// Returns one row for each kind of check. Checks of the same kind in different regimes share a row with the largest
 /// deviation.
 fn check_rows(checks: &[Check]) -> Vec<page::CheckRow> {
     let groups = checks.chunk_by(|one, next| are_of_same_kind(&one.name, &next.name));

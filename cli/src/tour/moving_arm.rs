@@ -1,4 +1,4 @@
-//! The paper's arm with a drawing, for the moving picture at the top of the tour's page.
+//! The paper's arm with a drawing, for the animation at the top of the tour's page.
 
 use eomgen_compiled_model::CompiledModel;
 use eomgen_model_spec::models;
@@ -7,13 +7,13 @@ use eomgen_model_spec::source::Source;
 use crate::error::{Error, Result};
 use crate::model::derive;
 
-/// Name of the file.
+/// Name of the written file.
 pub const PATH: &str = "moving_arm.toml";
 
-/// Parameters with sliders.
+/// Parameters that have sliders.
 pub const MOVED: [&str; 6] = ["enlarged", "b_sp", "b_pr", "a_m", "F_w", "omega"];
 
-/// Sections of the specification with the entries that the drawing adds at their beginnings.
+/// Entries that the drawing needs: name of a section, and entries to insert at its beginning.
 const ENTRIES: [(&str, &str); 2] = [
     ("[parameters]\n", PARAMETERS),
     ("[observables]\n", OBSERVABLES),
@@ -52,7 +52,7 @@ sun = ["origin", "sun"]
 planet = ["planet", "tooth"]
 "#;
 
-/// Declarations of the backlashes, for readable numbers on sliders.
+/// Replaced declarations of the backlashes with other units, for readable numbers on sliders.
 const UNITS: [(&str, &str); 2] = [
     (
         "b_sp = { value = 25e-6, unit = \"m\",",

@@ -60,7 +60,8 @@ impl InstructionBounds {
     /// Compiles a C file with a command and computes the bounds of its functions. Headers are searched in the folder of
     /// the file.
     ///
-    /// # Errors A compiler that cannot be run, a source that does not compile, or an object file for another processor.
+    /// # Errors
+    /// A compiler that cannot be run, a source that does not compile, or an object file for another processor.
     pub fn of_file(file: &Path, command: &str) -> Result<Self, String> {
         let words: Vec<&str> = command.split_whitespace().collect();
         let (program, options) = words.split_first().ok_or("the command is blank")?;

@@ -31,7 +31,8 @@ use eomgen_sim::piecewise_linear::Propagator;
 /// Certifies a model with the requested outputs `outputs`. It is compared with an oracle and with the hand-written
 /// equations that apply to it. `orders` must be equal for all fields.
 ///
-/// # Errors A model that cannot be derived or emitted, or fields with different orders.
+/// # Errors
+/// A model that cannot be derived or emitted, or fields with different orders.
 pub fn certify_model(
     model: &Model,
     orders: &[usize],

@@ -395,7 +395,7 @@ fn wrong_families_are_rejected_with_their_place() {
         (variant("precision = [\"f32\"]\n"), "family.toml:6:13"),
         (
             variant("precision = [\"f64\", \"f32\"]\ntargets = [\"rust\", \"cuda\"]\n"),
-            "`f32` is a number type of emitted C, and the variant has no C",
+            "`precision = [\"f32\"]` needs the target \"c99\", which this variant does not have",
         ),
         (
             variant("targets = [\"casadi\"]\nprecision = [\"f32\"]\n"),

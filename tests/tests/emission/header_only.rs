@@ -176,6 +176,9 @@ fn header_without_c_is_rejected_with_line() {
     let folder = folder.path();
     std::fs::write(folder.join("family.toml"), family("[\"rust\"]")).expect("written");
     let said = expect(folder, 2, &["family", "family.toml", "--out", "models"]);
-    assert!(said.contains("`header-only` is a form of C"), "{said}");
+    assert!(
+        said.contains("`packaging = \"header-only\"` needs the target \"c99\""),
+        "{said}"
+    );
     assert!(said.contains("family.toml:7"), "{said}");
 }

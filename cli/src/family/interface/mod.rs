@@ -1,6 +1,6 @@
-//! Interface that all variants of a family share: a trait in Rust, tables of function pointers in C.
+//! Common interface of all variants of a family: a trait in Rust, tables of function pointers in C.
 
-/// Returns the trait and its implementation for these modules.
+/// Returns the Rust source of the trait and its implementations for these modules.
 pub fn rust<'n>(modules: impl Iterator<Item = &'n str>) -> String {
     let lines = modules.map(|module| format!("implement_model!({module});\n"));
     format!(
@@ -14,11 +14,11 @@ pub fn rust<'n>(modules: impl Iterator<Item = &'n str>) -> String {
 pub struct CVariant<'n> {
     /// Folder of the variant.
     pub folder: &'n str,
-    /// Prefix of its names.
+    /// Prefix of the C names.
     pub prefix: String,
 }
 
-/// Returns header and source with the tables of these variants.
+/// Returns the C header and source with the tables of these variants.
 pub fn c(family: &str, variants: &[CVariant<'_>]) -> [String; 2] {
     let lines = |line: &dyn Fn(&CVariant<'_>) -> String| -> String {
         variants

@@ -1,27 +1,29 @@
-//! Controls: a slider and a number field for each quantity, and the form of each input over time.
+//! Controls of a page: a slider and a number field for each quantity, and the signal form of each input.
 
 use eomgen_page::play::Slider;
 use maud::{Markup, html};
 
 use super::quantities::{Quantities, Signal};
 
-/// Change of an input in a sine or a step, as a fraction of half its range.
+/// Default amplitude of a sine or a step, as a fraction of half the input's range.
 const CHANGE_FRACTION: f64 = 0.2;
 
-/// Smallest and largest period of a sine, as multiples of its default.
+/// Smallest and largest period of a sine, as multiples of the default period.
 const PERIOD_RANGE: (f64, f64) = (0.05, 5.0);
 
 /// Default, smallest and largest duration of a step, s.
 const RISE_S: (f64, f64, f64) = (0.5, 0.05, 5.0);
 
-/// Change of an input that starts as a sine, as a fraction of half its range.
+/// Amplitude of an input that is a sine when the page opens, as a fraction of half its range.
 const FIRST_CHANGE_FRACTION: f64 = 0.5;
 
-/// The same for a prescribed motion, and its period as a multiple of the default: large accelerations break the machine.
+/// Amplitude and period of a prescribed motion that is a sine when the page opens. They avoid unrealistically large
+/// accelerations.
 const FIRST_MOTION_FRACTION: f64 = 0.1;
 const FIRST_MOTION_PERIODS: f64 = 5.0;
 
-/// Returns the controls. If `is_driven`, the first input starts as a sine. `period`: that of a sine, s.
+/// Returns the controls. If `is_driven`, the first input is a sine when the page opens. `period` is the default period
+/// of sines, in s.
 pub(super) fn panel(quantities: &Quantities<'_>, is_driven: bool, period: f64) -> Markup {
     let inputs = quantities.inputs.iter().enumerate();
     let inputs: Vec<Markup> = inputs
@@ -53,8 +55,8 @@ fn group(heading: &str, controls: &[Markup]) -> Markup {
     }
 }
 
-/// Returns the controls of an input: its value, and the form of its course with the numbers of that form. If
-/// `is_sine`, the course starts as a sine. `period`: that of a sine, s.
+/// Returns the controls of an input: its value and its signal form (constant, sine or step) with the numbers of this
+/// form. If `is_sine`, the input is a sine when the page opens. `period` is the default period of a sine, in s.
 fn signal(signal: &Signal<'_>, is_sine: bool, period: f64) -> Markup {
     let Signal { value, rates } = signal;
     let rates: Vec<String> = rates.iter().map(ToString::to_string).collect();

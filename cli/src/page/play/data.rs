@@ -1,4 +1,4 @@
-//! Input of the script, as JSON.
+//! Data for the script of the page, as JSON.
 
 use eomgen_compiled_model::CompiledModel;
 use eomgen_model_spec::model::{Drawing, Ordinate};
@@ -13,7 +13,7 @@ use crate::field_shapes::{FieldShapes, field_shapes};
 /// Number of intervals along a field.
 const INTERVALS: usize = 40;
 
-/// Returns the data of a model with an initial state; `moving` is for its motion.
+/// Returns the data of a model with an initial state; `moving` is the data for simulating it.
 pub(super) fn json(
     compiled: &CompiledModel,
     quantities: &Quantities<'_>,
@@ -57,7 +57,7 @@ pub(super) fn json(
     serde_json::to_string(&document).map_err(|error| Error::input(error.to_string()))
 }
 
-/// Returns a field with its shape functions, a row per position.
+/// Returns a field with its mode shapes, one row for each position.
 fn field(shapes: &FieldShapes<'_>) -> Value {
     let ends = shapes.positions.first().zip(shapes.positions.last());
     json!({
@@ -70,7 +70,7 @@ fn field(shapes: &FieldShapes<'_>) -> Value {
     })
 }
 
-/// Returns points with their coordinates, and lines with the indices of their points.
+/// Returns the points of a drawing with their coordinates, and its lines with the indices of their points.
 fn drawing(drawing: &Drawing) -> Value {
     let points = drawing.points.iter();
     let points: Vec<Value> = points

@@ -1,14 +1,14 @@
-//! First motion of a page: a machine that stays at rest without inputs is driven by one of them, and a fast one is slowed
-//! down.
+//! Motion when a page opens. If the machine would stay at rest, an input drives it. If the motion is too fast to be
+//! visible, the clock is slowed down.
 
 use eomgen_compiled_model::{CompiledModel, OperatingPoint};
 
 use crate::error::Result;
 
-/// Times at which the rates are evaluated, s; a forcing is not zero at all of them.
+/// Times at which the rates are evaluated, in s. A periodic forcing is unlikely to be zero at all of them.
 const TIMES_S: [f64; 3] = [0.0, 0.37, 1.3];
 
-/// Returns true if the machine stays at the initial state with its default inputs. One with controllers may move.
+/// Returns true if the machine stays at the initial state with its default inputs; false if it has controllers.
 pub(super) fn is_at_rest(compiled: &CompiledModel, initial: &[f64]) -> Result<bool> {
     let degrees = compiled.program().degrees_of_freedom();
     if !compiled.model().controllers.is_empty() {
@@ -27,7 +27,7 @@ pub(super) fn is_at_rest(compiled: &CompiledModel, initial: &[f64]) -> Result<bo
             state: initial.to_vec(),
             inputs: compiled.default_inputs(),
         };
-        // A model without a Jacobian there is not judged.
+        // If the Jacobian does not exist, the state is not treated as an equilibrium.
         run.is_equilibrium(&at).unwrap_or(false)
     };
     Ok(TIMES_S.into_iter().all(is_equilibrium))
@@ -36,8 +36,8 @@ pub(super) fn is_at_rest(compiled: &CompiledModel, initial: &[f64]) -> Result<bo
 /// Shortest period of an oscillation that is visible in real time, s.
 const SHORTEST_VISIBLE_S: f64 = 0.05;
 
-/// Returns the period of the lowest mode at the initial state, s, if it is too short to be visible. A machine without
-/// modes there is not judged.
+/// Returns the period of the lowest mode at the initial state, in s, if it is too short to be visible. Returns `None`
+/// if the modes cannot be computed.
 pub(super) fn invisible_period(compiled: &CompiledModel, initial: &[f64]) -> Option<f64> {
     let run = compiled.with_declared_parameters().ok()?;
     let at = OperatingPoint {

@@ -1,10 +1,10 @@
-//! Interactive page of a model: sliders, an animated drawing, curves, and the equations. The page is self-contained and
-//! computes with the engine and the emitted WebAssembly modules of the model.
+//! Interactive page of a model: sliders, an animated drawing, curves, and the equations. The page is self-contained. It
+//! simulates with the emitted WebAssembly modules of the model.
 //!
-//! `quantities` selects the sliders and their ranges, `controls` renders them, `first_motion` decides whether an input
-//! starts as a sine, `data` is the input of the script. The
-//! script is the common one of `eomgen_page::play`, followed by `drawing.js`, `curves.js`, `signals.js` (controls of
-//! inputs) and `controls.js`.
+//! `quantities` selects the sliders and their ranges, and `controls` renders them. `first_motion` determines whether an
+//! input is a sine when the page opens. `data` contains the data of the script. The script consists of the common
+//! script of `eomgen_page::play`, followed by `drawing.js`, `curves.js`, `signals.js` (controls of inputs) and
+//! `controls.js`.
 
 mod controls;
 mod data;
@@ -19,10 +19,10 @@ use maud::{Markup, html};
 use crate::error::Result;
 use quantities::Quantities;
 
-/// Style, in addition to the common one.
+/// Style sheet, in addition to the common style sheet.
 const STYLE: &str = include_str!("play.css");
 
-/// Script, in addition to the common one.
+/// Scripts, in addition to the common script.
 const SCRIPT: [&str; 4] = [
     include_str!("drawing.js"),
     include_str!("curves.js"),
@@ -30,27 +30,30 @@ const SCRIPT: [&str; 4] = [
     include_str!("controls.js"),
 ];
 
-/// Initial speeds of the clock, as logarithms to the base 10.
+/// Initial speed of the clock (real time), as a logarithm to the base 10.
 const REAL_TIME: f64 = 0.0;
+
+/// Initial speed of the clock with controls for some parameters, as a logarithm to the base 10.
 const SLOW_MOTION: f64 = -1.0;
 
-/// Usual period of an input that is a sine, s.
+/// Default period of a sine, in s.
 const DRIVING_PERIOD_S: f64 = 2.0;
 
-/// The same for a fast machine, in periods of its lowest mode: it follows the input without resonance.
+/// Default period of a sine for a fast machine, in periods of its lowest mode. The machine follows such an input
+/// without resonance.
 const DRIVING_PERIODS: f64 = 5.0;
 
-/// Initial speed of a page.
+/// Initial speed of the clock and default period of sines.
 #[derive(Clone, Copy, Debug)]
 struct Pace {
     /// Speed of the clock, as a logarithm to the base 10.
     speed: f64,
-    /// Period of an input that is a sine, s.
+    /// Default period of sines, in s.
     period: f64,
 }
 
 impl Pace {
-    /// Returns the pace at which a short period of a machine, s, takes about a second.
+    /// Returns the pace at which the short period `period` (in s) of a machine takes about a second.
     fn of_period(period: f64) -> Self {
         Self {
             speed: (10.0 * period.log10()).round() / 10.0,
@@ -59,28 +62,28 @@ impl Pace {
     }
 }
 
-/// Rounds a positive number to two digits.
+/// Rounds a positive number to two significant digits.
 fn rounded(value: f64) -> f64 {
     let text = format!("{value:.1e}");
     text.parse().unwrap_or(value)
 }
 
-/// Slowest speed of the clock, as a logarithm to the base 10, unless a machine needs a slower one.
+/// Lower end of the speed slider, as a logarithm to the base 10. A fast machine extends it.
 const SLOWEST: f64 = -4.0;
 
 /// Interactive part of a page. A page has at most one.
 pub struct InteractivePart {
     /// Drawing, curves and controls.
     pub body: Markup,
-    /// Input of the script, as JSON.
+    /// Data for the script of the page, as JSON.
     pub data: String,
 }
 
 impl InteractivePart {
-    /// Builds the part of a model with an initial state, with controls for all quantities.
+    /// Builds the interactive part of a model with an initial state, with controls for all quantities.
     ///
     /// # Errors
-    /// Declared parameters without a motion, or a module that cannot be emitted.
+    /// A model that cannot be simulated with its parameters, or a module that cannot be emitted.
     pub fn new(compiled: &CompiledModel, initial: &[f64]) -> Result<Self> {
         let quantities = Quantities::new(compiled, initial)?;
         let pace = match first_motion::invisible_period(compiled, initial) {
@@ -93,8 +96,8 @@ impl InteractivePart {
         Self::with_quantities(compiled, initial, &quantities, pace)
     }
 
-    /// Builds the part of a model with controls for some of its parameters only. Its clock starts at a tenth of
-    /// real time.
+    /// Builds the interactive part of a model with controls for some of its parameters only. The clock starts at a
+    /// tenth of real time.
     ///
     /// # Errors
     /// Same as [`InteractivePart::new`].
@@ -148,7 +151,7 @@ impl InteractivePart {
         })
     }
 
-    /// Renders a document with this part as its interactive part; `body` contains its markup.
+    /// Renders a document that contains this interactive part; `body` must include its markup.
     pub fn document(&self, title: &str, body: &Markup) -> String {
         scripted_document(&ScriptedDocument {
             title,
@@ -170,7 +173,7 @@ pub fn interactive_page(compiled: &CompiledModel, initial: &[f64]) -> Result<Str
     let report = Report::new(compiled.model(), compiled.equations(), &evaluator);
     let part = InteractivePart::new(compiled, initial)?;
     let model = compiled.model();
-    // A model without a title has its name as the title.
+    // The title of a model without a title is its name.
     let title = match model.title == model.name {
         true => model.name.replace('_', " "),
         false => model.title.clone(),
@@ -200,7 +203,7 @@ pub fn interactive_page(compiled: &CompiledModel, initial: &[f64]) -> Result<Str
     Ok(part.document(&title, &body))
 }
 
-/// Returns a note on the first motion of a machine that stays at rest without inputs.
+/// Returns a note for a machine that stays at rest without inputs.
 fn note_of_rest(quantities: &Quantities<'_>) -> Markup {
     match quantities.inputs.first() {
         Some(signal) => {
@@ -235,14 +238,14 @@ fn drawing(title: &str, speed: f64) -> Markup {
                 }
                 output #clock aria-label="Time" { "0.00 s" }
             }
-            // Screen readers read the first only; the second changes in every frame.
+            // Screen readers read only the first line; the second line changes in every frame.
             p #status role="status" {}
             p #note {}
         }
     }
 }
 
-/// Largest number of quantities whose list is open at first.
+/// Maximum number of quantities for which the list is open initially.
 const MAX_OPEN_LIST: usize = 16;
 
 fn curves(quantities: &Quantities<'_>) -> Markup {

@@ -1,4 +1,4 @@
-//! Quantities with sliders, and their ranges: declared ones, or typical ranges for the unit.
+//! Quantities with sliders, and the ranges of the sliders: declared ranges, or typical ranges for the unit.
 
 use eomgen_compiled_model::CompiledModel;
 use eomgen_model_spec::ids::StateId;
@@ -7,7 +7,7 @@ use eomgen_page::play::{Slider, format_unit};
 
 use crate::error::{Error, Result};
 
-/// Number of modes of a field with controls; higher modes hardly move.
+/// Number of modes of a field that have controls; higher modes have small amplitudes.
 const MAX_MODES: usize = 4;
 
 /// Maximum number of curves shown initially.
@@ -22,12 +22,12 @@ pub(super) struct CurveQuantity {
     pub(super) at_first: bool,
 }
 
-/// Input that a page drives, with its rates.
+/// Input that the page drives, with its rates.
 #[derive(Debug)]
 pub(super) struct Signal<'m> {
-    /// Value of the input, or its middle or start.
+    /// Constant value of the input, mean value of a sine, or start value of a step.
     pub(super) value: Slider<'m>,
-    /// Indices of its first and second rate, as far as they are inputs.
+    /// Indices of the input's first and second rate, if they are inputs.
     pub(super) rates: Vec<usize>,
 }
 
@@ -63,14 +63,15 @@ impl<'m> Quantities<'m> {
             .zip(input_ranges)
             .zip(typical)
             .enumerate();
-        // A rate follows from the signal of its input, and a controller drives its outputs.
+        // Rates of inputs are computed from the signals, and outputs of controllers are driven by them, so neither has
+        // a control.
         let inputs = inputs.filter(|(place, ((input, _), _))| {
             input.rate_of.is_none() && !model.is_controlled(*place)
         });
         let inputs = inputs.map(|(place, ((input, range), value))| {
             let rates = std::iter::successors(input.rate, |rate| model.inputs[*rate].rate);
             let (low, high) = range.unwrap_or_else(|| match input.rate {
-                // A prescribed motion has the size of the machine.
+                // The range of a prescribed motion is the size of the machine.
                 Some(_) => around_zero(reach(&input.unit.to_string(), machine_size(compiled))),
                 None => around_zero(10.0),
             });
@@ -130,7 +131,7 @@ fn movable_places(model: &Model, orders: &[usize]) -> Vec<usize> {
     places
 }
 
-/// Returns sliders of coordinates and modes, their rates, and first-order states.
+/// Returns sliders for coordinates and modes, their rates, and first-order states.
 fn initial_state<'m>(
     compiled: &'m CompiledModel,
     units: &[String],
@@ -182,7 +183,7 @@ pub(super) fn machine_size(compiled: &CompiledModel) -> f64 {
     if size > 0.0 { size } else { 1.0 }
 }
 
-/// Returns the default half-range of a slider for a unit. `size` is the length of the machine, m.
+/// Returns the default of half the range of a slider for a unit. `size` is the size of the machine, in m.
 fn reach(unit: &str, size: f64) -> f64 {
     match unit {
         "rad" => std::f64::consts::PI,
@@ -193,10 +194,10 @@ fn reach(unit: &str, size: f64) -> f64 {
     }
 }
 
-/// Largest rounding error, as a fraction of the size of a motion.
+/// Largest rounding error, as a fraction of the amplitude of a motion.
 const ROUNDING: f64 = 1e-14;
 
-/// Returns the largest value of a unit that is a rounding error; 0 for units of unknown size.
+/// Returns the largest value in a unit that is treated as rounding error; 0 for units without a typical size.
 pub(super) fn rounding_error(unit: &str, size: f64) -> f64 {
     match unit {
         "rad" | "rad/s" | "m" | "m/s" => ROUNDING * reach(unit, size),
@@ -204,7 +205,7 @@ pub(super) fn rounding_error(unit: &str, size: f64) -> f64 {
     }
 }
 
-/// Returns states and observables as curves; coordinates and energy are shown initially.
+/// Returns states and observables as curves; curves of coordinates and energy are shown initially.
 fn shown(compiled: &CompiledModel, units: &[String]) -> Vec<CurveQuantity> {
     let states = compiled.state_names().into_iter().zip(units.to_vec());
     let observables = &compiled.program().observables;

@@ -80,7 +80,8 @@ impl VariableRanges {
 
     /// Sets the range of a variable, in SI.
     ///
-    /// # Errors An unknown name, an end that is not finite, or a lower end above the upper end.
+    /// # Errors
+    /// An unknown name, an end that is not finite, or a lower end above the upper end.
     pub fn set(&mut self, name: &str, low: f64, high: f64) -> Result<(), String> {
         let Some(place) = self.names.iter().position(|known| known == name) else {
             let known = self.names.join(", ");

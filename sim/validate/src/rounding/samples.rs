@@ -74,7 +74,8 @@ impl ErrorSampler {
     /// Draws a point and compares all quantities at this point. Each component is an end of its range with probability
     /// 1/2.
     ///
-    /// # Errors A quantity whose recorded operations are not bit-identical to the evaluator.
+    /// # Errors
+    /// A quantity whose recorded operations are not bit-identical to the evaluator.
     pub fn draw(&mut self, random: &mut Random) -> Result<(), String> {
         let first_parameter = self.ranges.len() - self.program.parameters.len();
         self.point.clear();

@@ -32,7 +32,8 @@ pub struct Measure {
 impl Description {
     /// Parses a model description.
     ///
-    /// # Errors Invalid XML.
+    /// # Errors
+    /// Invalid XML.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut found = Self::default();
         let mut reader = Reader::from_str(text);
