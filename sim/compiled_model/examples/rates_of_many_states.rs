@@ -1,9 +1,9 @@
-//! Measures the time of the machine code for the rates of many states, for comparison with one
-//! call from Python in `python/benches/many_states.py`.
+//! Measures the time of the machine code for the rates of many states, for comparison with one call from Python in
+//! `python/benches/many_states.py`.
 //!
-//! Arguments: a specification, a file of states (f64 in native byte order, one row per state), and
-//! the number of passes. Writes the rates to standard output in the same format, and the shortest
-//! time of a pass, in ns per state, to standard error.
+//! Arguments: a specification, a file of states (f64 in native byte order, one row per state), and the number of
+//! passes. Writes the rates to standard output in the same format. Writes the shortest time of a pass, in ns per state,
+//! to standard error.
 
 use std::io::Write;
 use std::time::Instant;

@@ -21,11 +21,11 @@ use crate::projection::Projection;
 use crate::statistics::{Meters, Observables};
 use crate::sticking::{SidedModel, SurfaceStates};
 
-/// Largest number of alternating decisions of surfaces and contacts at an event.
+/// Maximum number of alternating decisions of surfaces and contacts at an event.
 const MAX_REVISIONS: usize = 20;
 
-/// A compiled model with its inputs, as the solvers' system; it owns or borrows both. The mass
-/// matrix must be positive definite at the evaluator's parameters.
+/// Compiled model with its inputs, as the system of a solver; it owns or borrows both. The mass matrix must be positive
+/// definite at the evaluator's parameters.
 pub struct DrivenModel<E, I> {
     evaluator: E,
     inputs: I,
@@ -65,7 +65,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         self
     }
 
-    /// Sets the observers of the motion, and returns those before.
+    /// Sets the observers of the motion and returns the previous ones.
     pub(crate) fn replace_observers(&mut self, observers: Observers) -> Observers {
         let auditor = observers.auditor.map(RefCell::new);
         let before = std::mem::replace(&mut self.auditor, auditor);
@@ -127,9 +127,9 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         self
     }
 
-    /// Sets the model with the sides of switching surfaces, at the same parameters: rates continue smoothly over
-    /// surfaces, and these hold the motion, as under dry friction. `tolerance` is the relative one of the states. The
-    /// system keeps the state of the surfaces, so use it for one motion only.
+    /// Sets the model with the sides of switching surfaces, at the same parameters. Its rates are smooth across
+    /// surfaces, and surfaces can hold the motion, as dry friction does. `tolerance` is the relative tolerance of the
+    /// states. The system keeps the state of the surfaces, so use it for one motion only.
     pub fn with_sides(mut self, sided: Option<SidedModel>, tolerance: f64) -> Self {
         let contact_guards = self.contacts.as_ref();
         let contact_guards = contact_guards.map_or(0, |contacts| contacts.borrow().guard_count());
@@ -141,7 +141,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         self
     }
 
-    /// Lets the motion cross the surfaces that could hold it.
+    /// Lets the motion cross the surfaces that could otherwise hold it.
     pub fn without_holding(mut self) -> Self {
         if let Some(sliding) = &mut self.sliding {
             sliding.get_mut().disable_holding();
@@ -157,8 +157,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         (sided, self.projection)
     }
 
-    /// Returns time (s) and reason if the motion ended at a singular position of its constraints, where it
-    /// reached a time and a state.
+    /// Returns time (s) and reason if the motion ended at a singular position of its constraints. `at` is the time and
+    /// the state at the end of the motion.
     pub(crate) fn find_singular_position(
         &self,
         (t, state): (f64, &[f64]),
@@ -182,18 +182,18 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         ))
     }
 
-    /// Returns cause and cure if the motion stopped because bodies overlap at an impact.
+    /// Returns cause and remedy if the motion stopped because bodies overlap at an impact.
     pub(crate) fn overlap_message(&self) -> Option<String> {
         self.contacts.as_ref()?.borrow().overlap()
     }
 
-    /// Returns the instants at which contact friction admitted several motions.
+    /// Returns the times at which contact friction admits several motions.
     pub fn friction_choices(&self) -> Vec<FrictionChoice> {
         let contacts = self.contacts.as_ref();
         contacts.map_or_else(Vec::new, |contacts| contacts.borrow().choices().to_vec())
     }
 
-    /// Returns cause and cure if the motion stopped at a corner.
+    /// Returns cause and remedy if the motion stopped at a corner.
     pub(crate) fn corner_message(&self) -> Option<String> {
         let corners = self.corners.as_ref()?.borrow();
         corners.failure().map(str::to_owned)
@@ -217,8 +217,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
             .crosses(before, at, [&inputs[0], &inputs[1]])
     }
 
-    /// Applies the corner of the motion between a state on the near side of a surface and one just beyond
-    /// it. Returns true if the state changed.
+    /// Applies the corner conditions between a state on the near side of a surface and a state just beyond it. Returns
+    /// true if the state changed.
     fn apply_corner(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) -> bool {
         let Some(corners) = &self.corners else {
             return false;
@@ -242,7 +242,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         arrived != y
     }
 
-    /// Returns the contacts at which bodies touch at rest, which act where the rates jump.
+    /// Returns the contacts at which bodies touch at rest; they act when the rates jump.
     fn touching_contacts(&self, (t, state): (f64, &[f64])) -> Vec<TouchingContact> {
         let Some(contacts) = &self.contacts else {
             return Vec::new();
@@ -252,7 +252,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         })
     }
 
-    /// Releases surfaces and decides contacts after a jump of the rates where energies or inputs jump.
+    /// Releases surfaces and determines the modes of contacts after a jump of the rates at which energies or inputs
+    /// jump.
     fn decide_contacts_after_jump(&self, (t, state): (f64, &[f64])) {
         if let Some(sliding) = &self.sliding {
             let inputs = &self.inputs.borrow().evaluate(t);
@@ -265,7 +266,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         }
     }
 
-    /// Returns cause and cure if the motion stopped because bodies overlap or at a corner.
+    /// Returns cause and remedy if the motion stopped because bodies overlap, or at a corner.
     pub fn stop_message(&self) -> Option<String> {
         self.overlap_message().or_else(|| self.corner_message())
     }
@@ -281,7 +282,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         contacts.is_some_and(|contacts| !contacts.borrow().closed().is_empty())
     }
 
-    /// Passes the closed contacts to the surfaces. Returns true if they changed.
+    /// Passes the closed contacts to the surfaces. Returns true if the closed contacts changed.
     fn update_closed_contacts(&self) -> bool {
         let (Some(sliding), Some(contacts)) = (&self.sliding, &self.contacts) else {
             return false;
@@ -291,8 +292,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         sliding.set_closed_contacts(&closed)
     }
 
-    /// Decides the effect of the surfaces anew if the closed contacts or their modes changed, and revises the modes of the
-    /// contacts after each decision, until both agree.
+    /// Determines the effect of the surfaces if the closed contacts or their modes changed, then revises the modes of
+    /// the contacts. Repeats both until they agree.
     fn settle_modes(&self, (t, state): (f64, &[f64]), inputs: &[f64]) {
         let (Some(sliding), Some(contacts)) = (&self.sliding, &self.contacts) else {
             return;
@@ -312,8 +313,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         contacts.borrow_mut().refuse_modes();
     }
 
-    /// Closes the open contacts at bodies that decided surfaces no longer hold, if they then push: the bodies touch at rest,
-    /// so there is no impact. The force of a surface that a closed contact stops passes to the contact.
+    /// Closes the open contacts at bodies that the surfaces no longer hold, if they then push. The bodies touch at
+    /// rest, so there is no impact. If a closed contact stops a surface, the contact takes over its force.
     fn close_released(&self, (t, state): (f64, &[f64]), inputs: &[f64]) {
         let (Some(sliding), Some(contacts)) = (&self.sliding, &self.contacts) else {
             return;
@@ -343,7 +344,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         }
     }
 
-    /// Notes the directions in which surfaces hold bodies that touch open contacts.
+    /// Records the directions in which surfaces hold bodies that touch open contacts.
     fn note_drifts(&self, at: (f64, &[f64])) {
         let (Some(sliding), Some(contacts)) = (&self.sliding, &self.contacts) else {
             return;
@@ -355,7 +356,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         });
     }
 
-    /// Calls `act` with the contacts, the evaluator that determines the rates at a time and a state, and its inputs.
+    /// Calls `act` with the contacts, the evaluator that determines the rates at a time and a state, and the inputs of
+    /// this evaluator.
     fn with_contacts<T>(
         &self,
         contacts: &RefCell<Contacts>,
@@ -366,7 +368,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         self.with_contacts_under(contacts, (t, state), inputs, act)
     }
 
-    /// Calls `act` as [`DrivenModel::with_contacts`], with these inputs of the model.
+    /// Calls `act` like [`DrivenModel::with_contacts`], with the given inputs of the model.
     fn with_contacts_under<T>(
         &self,
         contacts: &RefCell<Contacts>,
@@ -390,8 +392,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         self.sliding.as_ref().filter(|_| self.is_sticking_active())
     }
 
-    /// Returns true if sides are fixed or surfaces hold the motion, so that the signs of the switching functions do
-    /// not determine the rates.
+    /// Returns true if sides are fixed or surfaces hold the motion, so that the signs of the switching functions do not
+    /// determine the rates.
     fn is_sticking_active(&self) -> bool {
         let sliding = self.sliding.as_ref();
         sliding.is_some_and(|sliding| sliding.borrow().is_active())
@@ -411,8 +413,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         self.evaluator.borrow().borrow_mut()
     }
 
-    /// Calls `of` with the evaluator and the point of a time and a state, with the inputs at that
-    /// time.
+    /// Calls `of` with the evaluator and the point of a time and a state; the inputs are those at this time.
     fn evaluate_at<T>(
         &self,
         t: f64,
@@ -423,8 +424,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         of(&mut self.evaluator(), Point { t, state, inputs })
     }
 
-    /// Returns the switching functions, one per mode for those over modes. A function counts as a
-    /// speed if it depends on rates, and not on coordinates at zero rates.
+    /// Returns the switching functions; a function over modes gives one per mode. A function counts as a speed if it
+    /// depends on rates and is constant at zero rates.
     pub fn surfaces(&self) -> Vec<Surface> {
         let (here, there) = (self.guards_at_rest(0.11), self.guards_at_rest(0.17));
         let evaluator = self.evaluator();
@@ -464,7 +465,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         own.chain(impacts).chain(discs).collect()
     }
 
-    /// Evaluates the switching functions at zero rates, with coordinates of this size.
+    /// Evaluates the switching functions at zero rates, with coordinates of the given size.
     fn guards_at_rest(&self, size: f64) -> Vec<f64> {
         let mut values = vec![0.0; self.evaluator().guard_count()];
         let mut state = vec![0.0; self.state_count()];
@@ -576,7 +577,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             let inputs = &self.inputs.borrow().evaluate(t);
             sliding.borrow_mut().write_guards((t, y), inputs, out);
             if self.contacts.is_some() && sliding.borrow().has_decided() {
-                // The motion has started.
+                // The surfaces can only hold the motion after its first evaluation.
                 self.settle_modes((t, y), inputs);
                 self.note_drifts((t, y));
                 self.guards(t, y, out);
@@ -680,8 +681,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             let arrived = y.to_vec();
             let given = self.inputs.borrow();
             let inputs_before = &given.evaluate(before.0);
-            // The forces, with those that hold the motion, are those at the point of the impact, before inputs jump there.
-            // Other inputs are those at its time, as in the distances that stop a step.
+            // The contact forces and the forces that hold the motion are evaluated at the point of the impact, before
+            // inputs jump. Other inputs are evaluated at the time of the impact, as are the distances that stop a step.
             let reached = (before.0.max(t.next_down()), &arrived[..]);
             let inputs = &given.evaluate_before(t, given.last_sample(reached.0));
             let is_hit =
@@ -716,7 +717,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         if let Some((sliding, others)) = sliding.zip(others) {
             let inputs = &self.inputs.borrow().evaluate(t);
             let mut states = sliding.borrow_mut();
-            // Rates that jump over a surface do not arrive on it.
+            // If the rates jump over a surface, the motion does not reach the surface.
             if !jumps {
                 states.apply_crossing(inputs, before, t, y);
             }
@@ -778,7 +779,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             corners.borrow_mut().update((t, y), &given.evaluate(t));
         }
         if let Some(sliding) = &self.sliding {
-            // The caller fixes them again in the new regime.
+            // The caller fixes the sides again in the new regime.
             sliding.borrow_mut().release_other_sides();
         }
         if let Some(contacts) = &self.contacts {
@@ -875,8 +876,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         }
     }
 
-    /// Returns the errors of a step of `length` s across a surface to this time (s) and state: it extrapolates along the
-    /// rates of the near side.
+    /// Returns the errors of a step of `length` s across a surface to the given time (s) and state. The step
+    /// extrapolates the rates of the near side.
     fn find_errors_of_crossing(&self, length: f64, (t, state): (f64, &[f64])) -> Vec<f64> {
         let mut errors = vec![0.0; state.len()];
         self.rates(t, state, &mut errors);
@@ -890,14 +891,14 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
 /// Pivots below this fraction of their diagonal entry count as rounding.
 const PIVOT_ROUNDING: f64 = 1e-14;
 
-/// Returns the first row of a symmetric matrix of finite entries whose pivot is not positive.
+/// Returns the first row of a symmetric matrix with finite entries whose pivot is not positive.
 fn first_indefinite_row(matrix: &mut [f64], size: usize) -> Option<usize> {
     if matrix.iter().any(|entry| !entry.is_finite()) {
         return None;
     }
     for row in 0..size {
         let diagonal = matrix[row * size + row];
-        // Cholesky factorisation L L^T = matrix, into the lower part.
+        // Cholesky factorisation L L^T = matrix, written to the lower triangle.
         for column in 0..=row {
             let products = (0..column)
                 .map(|k| matrix[row * size + k] * matrix[column * size + k])
@@ -916,7 +917,7 @@ fn first_indefinite_row(matrix: &mut [f64], size: usize) -> Option<usize> {
     None
 }
 
-/// Energy and power of a motion of the model, with the forces during sticking and those of contacts at rest.
+/// Energy and power of a motion of the model, with the forces of sticking surfaces and of contacts at rest.
 struct DrivenEnergies<'m, E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>>(
     &'m DrivenModel<E, I>,
 );
@@ -949,7 +950,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Energies for DrivenEn
     }
 }
 
-/// Energies of a motion of the model just before the energies jump, if they do at the same instant.
+/// Energies of a motion of the model, from just before the energies jump if they jump at the same instant.
 struct EnergiesBeforeCorner<'m, E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>>(
     DrivenEnergies<'m, E, I>,
 );

@@ -14,15 +14,15 @@ use eomgen_sim::piecewise_linear::ExactError;
 pub enum Error {
     #[cfg(feature = "derive")]
     #[error(transparent)]
-    /// Errors of the specification or of a parameter value, each with its place and cure.
+    /// Errors of the specification or of a parameter value, each with its location and remedy.
     Specification(#[from] Diagnostics),
     #[error("{0}")]
     /// A solver that does not support the model, or an invalid request.
     Request(String),
     #[error("{reason}")]
-    /// A simulation or search that stopped early, with the cause and the cure.
+    /// Simulation or search that stopped early, with cause and remedy.
     Stopped {
-        /// Time reached, s; `None` if the simulation had not started.
+        /// Current time, s; `None` if the simulation had not started.
         t: Option<f64>,
         /// Cause, with the names of the states or surfaces involved.
         reason: String,
@@ -31,7 +31,7 @@ pub enum Error {
 
 #[cfg(feature = "derive")]
 impl Error {
-    /// Converts an error of the model into an error at its place in the specification.
+    /// Converts an error of the model into an error at its location in the specification.
     pub(crate) fn from_model_error(model: &Model, error: ModelError) -> Self {
         Self::Specification(Diagnostics::from_one(
             model.source.clone(),

@@ -1,4 +1,4 @@
-//! Evaluators of programs at parameter values.
+//! Evaluators of programs at given parameter values.
 
 use std::sync::Arc;
 
@@ -8,8 +8,8 @@ use eomgen_sim::ode::NOT_POSITIVE_DEFINITE_MESSAGE;
 
 use crate::error::Error;
 
-/// Returns an evaluator of a program at these values of the independent parameters, SI. It runs
-/// `code` if given, and otherwise interprets.
+/// Returns an evaluator of a program at the given values of the independent parameters, SI. It runs `code` if given,
+/// and interprets the program otherwise.
 pub(crate) fn prepare_evaluator(
     program: &Program,
     code: Option<&Arc<dyn MachineCode>>,
@@ -24,7 +24,7 @@ pub(crate) fn prepare_evaluator(
     evaluator
 }
 
-/// Returns the evaluator if its mass matrix is positive definite.
+/// Returns the evaluator, or an error if its mass matrix is not positive definite.
 pub(crate) fn require_positive_pivots(evaluator: Evaluator) -> Result<Evaluator, Error> {
     match evaluator.pivots_are_positive() {
         true => Ok(evaluator),

@@ -1,4 +1,4 @@
-//! The event log of a motion: surface, kind, modes before and after, and jumps of the rates.
+//! Event log of a motion: surface, kind, modes before and after, and jumps of the rates.
 
 use eomgen_sim::ode::{Event, Surface, SurfaceKind, SurfaceMode, Trajectory};
 
@@ -9,21 +9,21 @@ use crate::motion::Motion;
 pub enum EventKind {
     /// The motion crosses the surface.
     Crossing,
-    /// The surface begins to hold the motion, as friction at rest does.
+    /// The surface begins to hold the motion, for example at the start of sticking.
     Stick,
-    /// The surface ceases to hold the motion.
+    /// The surface stops holding the motion.
     Slip,
     /// Bodies touch, and their rates jump.
     Impact,
     /// Bodies touch and stay together.
     Contact,
-    /// Bodies that touched part.
+    /// Bodies that touched separate.
     Separation,
-    /// The rates jump where the motion crosses a surface at which the energies jump.
+    /// The rates jump because the motion crosses a surface at which the energies jump.
     Corner,
-    /// The motion returns from a surface at which the energies jump.
+    /// The motion is reflected from a surface at which the energies jump.
     Reflection,
-    /// The rates jump with an input.
+    /// The rates jump because an input jumps.
     Input,
 }
 
@@ -69,18 +69,18 @@ pub struct LoggedEvent<'m> {
     pub kind: EventKind,
     /// Modes of the surface before and after; `None` without a surface.
     pub modes: Option<(SurfaceMode, SurfaceMode)>,
-    /// Jump of each rate, in its SI unit; events at one instant share it. Empty without a jump.
+    /// Jump of each rate, in its SI unit; simultaneous events share it. Empty without a jump.
     pub jump: &'m [f64],
 }
 
 impl Motion {
-    /// Returns the events of the motion in order of time. Its model has so many `degrees` of freedom.
+    /// Returns the events of the motion in order of time. `degrees` is the number of degrees of freedom.
     pub fn event_log(&self, degrees: usize) -> Vec<LoggedEvent<'_>> {
         log_events(&self.trajectory, &self.surfaces, degrees)
     }
 }
 
-/// Returns the events of a trajectory over these surfaces in order of time.
+/// Returns the events of a trajectory at the given surfaces in order of time.
 pub(crate) fn log_events<'m>(
     trajectory: &'m Trajectory,
     surfaces: &'m [Surface],

@@ -15,12 +15,12 @@ use crate::sticking::ObservedMotion;
 const STICKING_EXCLUSION: &str =
     "during sticking, the model does not give the power of the force that holds the motion";
 
-/// Observers of an exact motion with the energies and observables of its states.
+/// Observers of an exact motion, with the sources of energies and observables.
 pub(crate) struct ExactObservers {
     observers: Observers,
-    /// Energies; `None` without audit.
+    /// Source of energies; `None` without audit.
     energies: Option<ExactEnergies>,
-    /// Observables of the measured motion; `None` without meters.
+    /// Source of observables for the meters; `None` without meters.
     observed: Option<ObservedMotion>,
 }
 
@@ -56,7 +56,7 @@ impl Instance<'_> {
 }
 
 impl ExactObservers {
-    /// Observes a step, during which the inputs are constant. `is_held` is true if a surface holds the motion.
+    /// Observes a step with constant inputs. `is_held` is true if a surface holds the motion.
     pub fn observe_step(
         &mut self,
         step: &mut ObservedStep<'_>,

@@ -1,4 +1,4 @@
-//! Models as bytes: the programs that motions need, without their derivation.
+//! Serialised models: the programs that motions need, without their derivation.
 
 use std::sync::Arc;
 
@@ -18,18 +18,18 @@ use crate::labels::Labels;
 use crate::motion_model::MotionModel;
 use crate::sticking::SidedModel;
 
-/// Programs of a model that its motions need, with names, units and sizes. A host without the derivation simulates it with
-/// the general solvers.
+/// Programs that motions of a model need, with names, units and sizes. A host program without the derivation simulates
+/// them with the general solvers.
 pub struct ExportedModel {
     labels: Labels,
     program: Program,
     sided: Option<Program>,
     corners: Option<Program>,
-    /// Program of the constraint derivatives and indices of the residuals among its observables.
+    /// Program of the constraint derivatives, and the indices of the constraint residuals among its observables.
     constraints: Option<(Program, Vec<usize>)>,
     /// Index of the stabilisation rate among the parameters.
     stabilisation: Option<usize>,
-    /// Largest parameter with the dimension of each impact's distance, SI.
+    /// For each impact, the largest parameter with the dimension of its distance, SI.
     lengths: Vec<f64>,
 }
 
@@ -38,7 +38,7 @@ encode_structures! {
 }
 
 impl ExportedModel {
-    /// Exports the model of an instance; its parameters are the default ones.
+    /// Exports the model of an instance; the instance's parameters become its defaults.
     ///
     /// # Errors
     /// Terms that cannot be derived.
@@ -73,14 +73,14 @@ impl ExportedModel {
         })
     }
 
-    /// Returns the bytes of the model.
+    /// Serialises the model.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         self.encode(&mut bytes);
         bytes
     }
 
-    /// Reads a model; `None` if the bytes are damaged.
+    /// Reads a serialised model; `None` if the bytes are damaged.
     pub fn from_bytes(mut bytes: &[u8]) -> Option<Self> {
         Self::decode(&mut bytes).filter(|_| bytes.is_empty())
     }
@@ -96,7 +96,7 @@ impl ExportedModel {
     }
 }
 
-/// Machine code of the programs of an exported model, for its own parameters only.
+/// Machine code of the programs of an exported model, valid for its own parameters only.
 #[derive(Clone, Default)]
 pub struct ExportedCode {
     /// Code of [`ExportedModel::program`].

@@ -13,15 +13,15 @@ use crate::motion::EarlyStop;
 use crate::projection::InitialChange;
 use crate::solver_options::{SolverOptions, general_method};
 
-/// A motion of an exported model that continues from call to call. Parameters and inputs may change in between. The
+/// Motion of an exported model that continues over several calls. Parameters and inputs may change between calls. The
 /// controllers of the model run; the start and each call include the samples at their last time.
 pub struct ExportedMotion {
     instance: ExportedInstance,
     options: SolverOptions,
     inputs: HeldInputs,
-    /// `None` before the start and after one that failed.
+    /// Motion; `None` before the start and after a failed start.
     motion: Option<GeneralMotion>,
-    /// Time reached, s.
+    /// Current time, s.
     t: f64,
     state: Vec<f64>,
     event_count: usize,
@@ -61,8 +61,8 @@ impl ExportedMotion {
         self.instance.code = code;
     }
 
-    /// Starts at a time (s) and a state (SI) with these inputs. Returns the changes of the state that made the constraints
-    /// hold.
+    /// Starts at a time (s) and a state (SI) with the given inputs. Returns the corrections that projected the state
+    /// onto the constraints.
     ///
     /// # Errors
     /// No consistent state near the given one, rates there that are not finite, or a controller that cannot start.
@@ -79,10 +79,11 @@ impl ExportedMotion {
         self.restart()
     }
 
-    /// Continues with other independent parameters, SI. Surfaces hold or close anew; controllers keep their states.
+    /// Continues with other independent parameters, SI. Sticking surfaces and closed contacts are determined again;
+    /// controllers keep their states.
     ///
     /// # Errors
-    /// Same as [`ExportedMotion::start`].
+    /// See [`ExportedMotion::start`].
     pub fn set_parameters(&mut self, parameters: &[f64]) -> Result<Vec<InitialChange>, Error> {
         self.instance.parameters.copy_from_slice(parameters);
         self.restart()
@@ -107,7 +108,7 @@ impl ExportedMotion {
         Ok(changes)
     }
 
-    /// Starts the controllers at the time reached, or continues with their memory.
+    /// Starts the controllers at the current time, or continues with their memory.
     fn restart_controls(&mut self, controllers: Vec<DeclaredController>) -> Result<(), Error> {
         let program = self.model().program();
         let counts = (program.inputs.len(), program.observables.len());
@@ -122,11 +123,11 @@ impl ExportedMotion {
         Ok(())
     }
 
-    /// Changes the inputs from the time reached on. They may jump there if they give the inputs before that time, too.
-    /// Controllers keep the inputs that they drive.
+    /// Changes the inputs from the current time on. Inputs may jump at this time if `inputs` also has their values
+    /// before it. Controllers keep the inputs that they drive.
     ///
     /// # Errors
-    /// A motion that cannot follow the jump.
+    /// The motion cannot follow the jump.
     pub fn set_inputs(&mut self, inputs: HeldInputs) -> Result<(), Error> {
         let inputs = match &mut self.controls {
             Some(controls) => controls.give(self.t, inputs),
@@ -150,7 +151,7 @@ impl ExportedMotion {
     /// Continues to the time `until` (s). A stiff motion continues with an implicit solver.
     ///
     /// # Errors
-    /// A motion that has not started, and [`Error::Stopped`] if the solver stops early, at the time that it reached.
+    /// A motion that has not started; [`Error::Stopped`] with the last time if the solver stops early.
     pub fn advance(&mut self, until: f64) -> Result<(), Error> {
         let stop = match self.controls.take() {
             None => self.advance_plant(until)?,
@@ -190,12 +191,12 @@ impl ExportedMotion {
         }
     }
 
-    /// Returns the time reached, s.
+    /// Returns the current time, s.
     pub fn time(&self) -> f64 {
         self.t
     }
 
-    /// Returns the state at that time, SI.
+    /// Returns the state at the current time, SI.
     pub fn state(&self) -> &[f64] {
         &self.state
     }
@@ -221,7 +222,7 @@ impl ExportedMotion {
         self.step_count
     }
 
-    /// Writes the observables at the time reached to `out`; NaN if the motion has not started. During sticking they use
+    /// Writes the observables at the current time to `out`; NaN if the motion has not started. During sticking they use
     /// the friction force that holds the motion.
     pub fn write_observables(&self, out: &mut [f64]) {
         match &self.motion {

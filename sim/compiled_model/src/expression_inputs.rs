@@ -1,5 +1,5 @@
-//! Inputs given by expressions of time and parameters. Those that are constant between steps, such as
-//! `0.2*above(t - 0.1)`, are held between these times by every solver.
+//! Inputs given by expressions of time and parameters. Some are constant between their steps, such as `0.2*above(t -
+//! 0.1)`. Every solver holds these inputs between the times of their steps.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use crate::fixed_steps::describe_prescribed_motion;
 use crate::model::CompiledModel;
 use crate::prescribed_inputs::{with_one_prescribed_input, with_prescribed_inputs};
 
-/// Inputs that are constant between the times of their steps, at any parameter values.
+/// Piecewise constant inputs, at any parameter values.
 pub struct StepInputs {
     /// One entry per input of the model, in its order; `None` if no expression with steps drives it.
     inputs: Vec<Option<ExpressionInput>>,
@@ -29,7 +29,7 @@ struct ExpressionInput {
 }
 
 impl ExpressionInput {
-    /// Returns an input with its place among those of the model; `None` if its name is no longer that of a definition.
+    /// Returns an input with its index among the inputs of the model; `None` if its name is no longer a definition.
     fn new(model: &Model, given: &Assignment) -> Result<Option<(usize, Self)>, Error> {
         let driven = with_one_prescribed_input(model, given)?;
         let name = given.name();
@@ -42,7 +42,7 @@ impl ExpressionInput {
         Ok(Some((place, Self { driven, value })))
     }
 
-    /// Returns the values of the parameters of the function, SI.
+    /// Returns the parameter values of the function, SI.
     fn parameters(&self, settings: &[(&str, f64)]) -> Result<Vec<f64>, Error> {
         let refused = |error| Error::from_model_error(&self.driven, error);
         let valued = self.driven.with_parameters(settings).map_err(refused)?;
@@ -51,11 +51,11 @@ impl ExpressionInput {
 }
 
 impl StepInputs {
-    /// Returns the model, and the inputs that `given` holds between steps. Other inputs of `given` become definitions of
-    /// the model. Returns `None` if nothing is to be held, because no input steps at these parameter values.
+    /// Returns the model and the inputs that `given` holds between steps. Other inputs of `given` become definitions of
+    /// the model. Returns `None` if no input is piecewise constant at these parameter values.
     ///
     /// # Errors
-    /// Same as [`with_prescribed_inputs`](crate::with_prescribed_inputs).
+    /// See [`with_prescribed_inputs`](crate::with_prescribed_inputs).
     pub fn find(
         model: &Model,
         given: &[Assignment],
@@ -80,7 +80,7 @@ impl StepInputs {
             has_step |= !times.is_empty();
             found[place] = Some(input);
         }
-        // Controllers measure inputs, so that constant ones remain inputs too.
+        // Controllers measure inputs, so constant inputs remain inputs too.
         let is_held = has_step || (!model.controllers.is_empty() && others.is_empty());
         if !is_held {
             return Ok(None);
@@ -103,8 +103,8 @@ impl StepInputs {
             && places.all(|(place, input)| input.is_some() || model.is_controlled(place))
     }
 
-    /// Returns the inputs at parameter values in declared units, held between all steps. `others` holds the inputs that no
-    /// expression gives, which are constant.
+    /// Returns the inputs at parameter values in declared units, held between all steps. `others` has the inputs that
+    /// no expression gives; they are constant.
     ///
     /// # Errors
     /// Inadmissible parameter values.
@@ -129,7 +129,7 @@ impl StepInputs {
         let (Some(first), Some(last)) = (times.first().copied(), times.last().copied()) else {
             return Ok(HeldInputs::constant(values(0.0).collect()));
         };
-        // A time between two steps, and one before the first.
+        // Evaluation times: one between two steps, and one before the first step.
         let next = times.iter().skip(1).copied().chain([last + 2.0]);
         let between = times.iter().zip(next);
         let between = between.map(|(time, next)| 0.5 * (time + next));
@@ -141,11 +141,11 @@ impl StepInputs {
     }
 }
 
-/// Input given by an expression of time, at parameter values.
+/// Input given by an expression of time, at fixed parameter values.
 #[derive(Debug)]
 struct InputAtParameters {
     value: Expr,
-    /// Values of the parameters of `value`, SI.
+    /// Parameter values of `value`, SI.
     parameters: Vec<f64>,
 }
 
@@ -157,7 +157,7 @@ impl InputFunction for InputAtParameters {
 
 /// Inputs that remain inputs of the model and are functions of time, at any parameter values.
 pub struct FunctionInputs {
-    /// Place of each input among those of the model, and its expression.
+    /// Index of each input among the inputs of the model, and its expression.
     inputs: Vec<(usize, ExpressionInput)>,
 }
 
@@ -165,8 +165,8 @@ impl FunctionInputs {
     /// Returns the inputs of a model that `given` prescribes.
     ///
     /// # Errors
-    /// Same as [`with_prescribed_inputs`](crate::with_prescribed_inputs), and prescribed motion, whose rates an
-    /// expression does not give here.
+    /// Prescribed motion, because the expression does not give its rates here; see also
+    /// [`with_prescribed_inputs`](crate::with_prescribed_inputs).
     pub fn new(model: &Model, given: &[Assignment], role: InputRole) -> Result<Self, Error> {
         let mut inputs = Vec::with_capacity(given.len());
         for given in given {
@@ -187,7 +187,7 @@ impl FunctionInputs {
         Ok(Self { inputs })
     }
 
-    /// Adds these inputs to others, at parameter values in declared units.
+    /// Adds the inputs to others, at parameter values in declared units.
     ///
     /// # Errors
     /// Inadmissible parameter values.
@@ -210,36 +210,37 @@ impl FunctionInputs {
 /// Role of inputs that are given by expressions and remain inputs of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InputRole {
-    /// Controllers measure them.
+    /// Inputs that controllers measure.
     Measured,
-    /// Fixed steps hold them.
+    /// Inputs that fixed steps hold constant.
     Held,
 }
 
 /// Treatment of inputs that are given by expressions. Inputs without a role become definitions of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InputTreatment {
-    /// The role for which they remain inputs.
+    /// Role for which the inputs remain inputs of the model.
     pub role: Option<InputRole>,
-    /// They may be held between their steps, because no record gives other inputs.
+    /// True if inputs may be held between their steps, because no record gives other inputs.
     pub may_hold: bool,
 }
 
 /// Inputs given by expressions of time and parameters, at any parameter values.
 pub enum ExpressionInputs {
-    /// They are definitions of the model.
+    /// Inputs that became definitions of the model.
     Definitions,
-    /// They are constant between steps.
+    /// Inputs that are constant between steps.
     Steps(StepInputs),
-    /// They are functions of time.
+    /// Inputs that are functions of time.
     Functions(FunctionInputs),
 }
 
 impl ExpressionInputs {
-    /// Derives a model with the inputs that `given` prescribes, and returns both. `settings` are parameters in declared units.
+    /// Derives a model with the inputs that `given` prescribes, and returns both. `settings` are parameters in declared
+    /// units.
     ///
     /// # Errors
-    /// Same as [`with_prescribed_inputs`](crate::with_prescribed_inputs) and `derive`.
+    /// See [`with_prescribed_inputs`](crate::with_prescribed_inputs) and `derive`.
     pub fn derive<E: From<Error>>(
         declared: Model,
         given: &[Assignment],
@@ -263,12 +264,12 @@ impl ExpressionInputs {
         Ok((model, Self::Definitions))
     }
 
-    /// Returns true if inputs vary between steps, so that no motion is solved exactly.
+    /// Returns true if inputs vary between steps. The exact solver does not support such inputs.
     pub fn are_time_varying(&self) -> bool {
         matches!(self, Self::Functions(functions) if !functions.inputs.is_empty())
     }
 
-    /// Returns these inputs at parameter values in declared units. `others` returns the inputs that no expression gives.
+    /// Returns the inputs at parameter values in declared units. `others` returns the inputs that no expression gives.
     ///
     /// # Errors
     /// Inadmissible parameter values, and the errors of `others`.
@@ -285,8 +286,8 @@ impl ExpressionInputs {
     }
 }
 
-/// Returns the times at which an expression steps; `None` if it also varies between them, or depends on
-/// more than parameters and time.
+/// Returns the times at which an expression steps; `None` if it also varies between steps, or depends on more than
+/// parameters and time.
 fn step_times(expr: &Expr, parameters: &[f64]) -> Option<Vec<f64>> {
     match &expr.kind {
         ExprKind::Number(_) | ExprKind::Pi | ExprKind::Parameter(_) => Some(Vec::new()),
@@ -304,7 +305,7 @@ fn step_times(expr: &Expr, parameters: &[f64]) -> Option<Vec<f64>> {
             }
             let [start, later] = [0.0, 1.0].map(|t| value_at(argument, t, parameters));
             let time = -start / (later - start);
-            // Without the time the argument is constant.
+            // An argument that does not depend on time is constant and never steps.
             Some(time.is_finite().then_some(time).into_iter().collect())
         }
         ExprKind::Call(_, arguments) => {
@@ -315,7 +316,7 @@ fn step_times(expr: &Expr, parameters: &[f64]) -> Option<Vec<f64>> {
     }
 }
 
-/// Returns true if an expression of parameters and time is a polynomial of degree 1 in time.
+/// Returns true if an expression of parameters and time is at most linear in time.
 fn is_affine(expr: &Expr) -> bool {
     match &expr.kind {
         ExprKind::Number(_) | ExprKind::Pi | ExprKind::Parameter(_) | ExprKind::Time => true,

@@ -1,5 +1,5 @@
-//! Motion by steps of fixed length. Emitted code has the same method with the same order of operations, as `step`, so that
-//! a simulation and a loop on a processor have the same bits.
+//! Motion with steps of fixed length. `step` in emitted code has the same method and order of operations, so a
+//! simulation and a loop on a microcontroller are bit-identical.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point, StepMemory};
 use eomgen_model_spec::argument::Argument;
@@ -10,8 +10,8 @@ use crate::error::Error;
 use crate::instance::Instance;
 use crate::motion::{EarlyStop, StopCause};
 
-/// Largest distance of a time from the nearest step, as a fraction of the step or of the time since the start: far
-/// above rounding errors of times.
+/// Largest distance of a time from the nearest step, as a fraction of the step or of the time since the start. It is
+/// far above the rounding errors of times.
 const GRID_TOLERANCE: f64 = 1e-6;
 
 /// Motion with fixed steps from a start: step k begins at start + k step.
@@ -21,17 +21,17 @@ pub struct FixedSteps {
     step: f64,
     /// Number of steps taken.
     count: u64,
-    /// Time reached as requested, which may differ from that of the step by rounding, s.
+    /// Requested time, which may differ from the time of the step by rounding, s.
     reached: f64,
     state: Vec<f64>,
     memory: StepMemory,
 }
 
 impl Instance<'_> {
-    /// Starts a motion with steps of this length (s).
+    /// Starts a motion with steps of the given length (s).
     ///
     /// # Errors
-    /// A model whose motion needs events, a step that is not given, and an invalid state.
+    /// A model whose motion needs events, a missing step length, and an invalid state.
     pub(crate) fn start_fixed(
         &self,
         (t, state): (f64, &[f64]),
@@ -70,18 +70,18 @@ impl Instance<'_> {
     }
 }
 
-/// Returns why fixed steps have no prescribed motion.
+/// Returns the reason why fixed steps do not support prescribed motion.
 pub(crate) fn describe_prescribed_motion(input: &str) -> String {
     format!("the input `{input}` is prescribed motion, which cannot be held during a step")
 }
 
 impl FixedSteps {
-    /// Returns the time reached as requested, s.
+    /// Returns the last requested time, s.
     pub fn reached(&self) -> f64 {
         self.reached
     }
 
-    /// Returns the time of the step, s.
+    /// Returns the time of the current step, s.
     pub fn time(&self) -> f64 {
         self.time_after(self.count)
     }
@@ -94,10 +94,10 @@ impl FixedSteps {
         &self.state
     }
 
-    /// Checks that the steps to `until` (s) are at most as many as those of other solvers.
+    /// Checks that the number of steps to `until` (s) is at most the limit of other solvers.
     ///
     /// # Errors
-    /// A step that is too short for the time.
+    /// A step that is too short for the time span.
     pub fn check_step_count(&self, until: f64) -> Result<(), Error> {
         let most = Settings::default().max_steps as f64;
         let steps = (until - self.reached) / self.step;
@@ -111,10 +111,10 @@ impl FixedSteps {
         }
     }
 
-    /// Continues to `until` (s) with the rows at `samples`. Inputs are evaluated at the start of each step and held.
+    /// Continues to `until` (s) with output rows at `samples`. Inputs are evaluated at the start of each step and held.
     ///
     /// # Errors
-    /// A time that is not a multiple of the step after the start.
+    /// The time since the start is not a multiple of the step.
     pub fn advance(
         &mut self,
         (until, samples): (f64, &[f64]),
@@ -130,7 +130,8 @@ impl FixedSteps {
             let (time, is_row) = row;
             let steps = self.steps_until(time)?;
             while self.count < steps {
-                // An input that changes at the time reached has changed, whatever the rounding of the step's time.
+                // An input that changes at the requested time has its new value, even if the time of the step is
+                // smaller by rounding.
                 let held = inputs.evaluate(self.time().max(self.reached));
                 if let Some(place) = self.take_step(&held) {
                     let (t, names) = (self.time(), names());
@@ -161,7 +162,7 @@ impl FixedSteps {
         let steps = ((time - self.start) / self.step).round();
         let distance = (time - self.time_after(steps as u64)).abs();
         let rounding = 8.0 * f64::EPSILON * time.abs();
-        // A time before the first step is not the start, however long the step is.
+        // A time before the first step does not count as the start, even if the step is long.
         let span = self.step.min((time - self.start).abs());
         match distance <= rounding.max(GRID_TOLERANCE * span) {
             true => Ok(steps as u64),
@@ -173,7 +174,7 @@ impl FixedSteps {
         }
     }
 
-    /// Takes a step. Returns the index of a state that is not finite.
+    /// Takes a step. Returns the index of a state that is not finite, if there is one.
     fn take_step(&mut self, inputs: &[f64]) -> Option<usize> {
         let at = (self.time(), self.step);
         let Self {
@@ -187,19 +188,19 @@ impl FixedSteps {
         self.state.iter().position(|entry| !entry.is_finite())
     }
 
-    /// Writes the observables at the time reached.
+    /// Writes the observables at the current time.
     pub fn write_observables(&mut self, inputs: &[f64], out: &mut [f64]) {
         let (t, state) = (self.time(), &self.state);
         self.evaluator.observables(Point { t, state, inputs }, out);
     }
 
-    /// Writes the rates at the time reached.
+    /// Writes the rates at the current time.
     pub fn write_rates(&mut self, inputs: &[f64], out: &mut [f64]) {
         let (t, state) = (self.time(), &self.state);
         self.evaluator.rates(Point { t, state, inputs }, out);
     }
 
-    /// Continues from another state at the time reached.
+    /// Continues from another state at the current time.
     pub fn set_state(&mut self, state: &[f64]) {
         self.state.copy_from_slice(state);
     }

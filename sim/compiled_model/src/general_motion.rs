@@ -1,4 +1,4 @@
-//! A motion with a general solver that continues from call to call.
+//! Motion with a general solver that continues over several calls.
 
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{Settings, Simulation, SurfaceMode, System, Trajectory};
@@ -11,10 +11,10 @@ use crate::observers::Observers;
 use crate::projection::InitialChange;
 use crate::solver_options::{SolverOptions, general_method};
 
-/// Length (s) of a motion whose first step the solver starts with; the error estimate corrects it at once.
+/// Length (s) of a motion from which the solver estimates its first step; the error estimate corrects the step at once.
 const FIRST_LENGTH_S: f64 = 1.0;
 
-/// A motion with a general solver.
+/// Motion with a general solver.
 pub(crate) struct GeneralMotion {
     run: Box<GeneralRun>,
     simulation: Box<Simulation>,
@@ -44,7 +44,7 @@ impl GeneralMotion {
         Ok((Self { run, simulation }, changes))
     }
 
-    /// Sets the observers of the motion, and returns those before.
+    /// Sets the observers of the motion and returns the previous ones.
     pub fn replace_observers(&mut self, observers: Observers) -> Observers {
         self.run.system.replace_observers(observers)
     }
@@ -53,7 +53,7 @@ impl GeneralMotion {
         &self.run
     }
 
-    /// Returns the time reached, s.
+    /// Returns the current time, s.
     pub fn time(&self) -> f64 {
         self.simulation.time()
     }
@@ -75,8 +75,8 @@ impl GeneralMotion {
         self.run.system.rates(self.time(), self.state(), out);
     }
 
-    /// Continues to a time (s) and adds the states at `samples`, the events and the work to `trajectory`. Returns the
-    /// reason of an early stop, and another solver that may continue from there.
+    /// Continues to a time (s). Adds the states at `samples`, the events and the work to `trajectory`. Returns the
+    /// reason of an early stop, and another solver that may continue from this time.
     pub fn advance(
         &mut self,
         model: &dyn MotionModel,
@@ -102,7 +102,7 @@ impl GeneralMotion {
     /// Continues with another solver.
     ///
     /// # Errors
-    /// Same as [`GeneralMotion::start`].
+    /// See [`GeneralMotion::start`].
     pub fn change_solver(
         &mut self,
         model: &dyn MotionModel,
@@ -115,10 +115,10 @@ impl GeneralMotion {
         Ok(())
     }
 
-    /// Changes the inputs, which may jump at the time reached; adds the events of the jump to `log`.
+    /// Changes the inputs, which may jump at the current time; adds the events of the jump to `log`.
     ///
     /// # Errors
-    /// A motion that cannot follow the jump.
+    /// The motion cannot follow the jump.
     pub fn follow_inputs(
         &mut self,
         model: &dyn MotionModel,

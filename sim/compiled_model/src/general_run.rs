@@ -1,5 +1,4 @@
-//! A motion with a solver that supports any model: the system that it integrates, and the reasons of
-//! early stops.
+//! Run of a solver that supports any model: the system that it integrates, and the reasons of early stops.
 
 use std::cell::RefCell;
 
@@ -14,12 +13,12 @@ use crate::motion_model::MotionModel;
 use crate::projection::InitialChange;
 use crate::stop_reasons::{find_stop_cause, format_named};
 
-/// The system of one motion and its start.
+/// System of one motion, with its start.
 pub(crate) struct GeneralRun {
     pub system: DrivenModel<RefCell<Evaluator>, HeldInputs>,
     pub surfaces: Vec<Surface>,
     pub solver: Solver,
-    /// Consistent state at the start.
+    /// Consistent initial state.
     pub initial: Vec<f64>,
     pub initial_changes: Vec<InitialChange>,
 }
@@ -35,7 +34,7 @@ impl dyn MotionModel + '_ {
         inputs: &HeldInputs,
         settings: &Settings,
     ) -> Result<GeneralRun, Error> {
-        // Before the evaluator, whose pivots give a less specific error for dependent constraints.
+        // This check precedes the evaluator, whose pivots give a less specific error for dependent constraints.
         let start = self.find_consistent_start(state, span, inputs);
         let (initial, initial_changes) = start.map_err(|error| {
             let infinite = self.find_infinite_function((span.0, span.0));
@@ -50,8 +49,8 @@ impl dyn MotionModel + '_ {
             Method::Radau => Solver::Radau,
         };
         if solver == Solver::Adams {
-            // The Adams method uses the preceding steps, so it cannot continue from sticking; it
-            // reports the time of sticking instead.
+            // The Adams method uses the preceding steps, so it cannot continue after sticking. It reports the time of
+            // sticking instead.
             system = system.without_holding();
         }
         if solver == Solver::Radau
@@ -70,7 +69,8 @@ impl dyn MotionModel + '_ {
 }
 
 impl GeneralRun {
-    /// Returns time, cause and cure of an error. The motion began at a time (s) and reached a state.
+    /// Returns time, cause and remedy of an error. `start` (s) and `state` are the start of the motion and its last
+    /// state.
     pub fn early_stop(
         &self,
         model: &dyn MotionModel,

@@ -1,4 +1,4 @@
-//! Inputs and other functions of time without a finite value at a time of the motion.
+//! Inputs and other functions of time that have no finite value at a time of the motion.
 
 use eomgen_model_spec::evaluate::evaluate_at_time;
 use eomgen_model_spec::ids::DefinitionId;
@@ -9,22 +9,22 @@ use crate::error::Error;
 use crate::instance::Instance;
 use crate::model::CompiledModel;
 
-/// Distances after the end of a motion at which functions are tested, relative to the time: a solver fails on
-/// trial steps.
+/// Distances after the end of a motion at which functions are tested, relative to the time. A solver fails at trial
+/// steps, which are later than the end.
 const DISTANCES_AFTER: [f64; 5] = [0.0, 1e-15, 1e-13, 1e-11, 1e-9];
 
-/// Distances before the end of a motion that show a pole, relative to the simulated time.
+/// Distances before the end of a motion at which functions are tested for a pole, relative to the simulated time.
 const DISTANCES_BEFORE: [f64; 3] = [1e-9, 1e-7, 1e-5];
 
-/// Smallest growth of a function towards a pole from each of these distances to the next. A pole of order 1/2
-/// gives 10.
+/// Smallest growth of a function towards a pole from one of [`DISTANCES_BEFORE`] to the next smaller one. A pole of
+/// order 1/2 gives 10.
 const MIN_POLE_GROWTH: f64 = 5.0;
 
-/// Distances after the end of a motion between which second differences show an infinite second
-/// rate, relative to the simulated time or at the start, to the time after it.
+/// Distances after the end of a motion for second differences, which show an infinite second rate. They are relative to
+/// the simulated time, or to [`UNIT_TIME`] at the start.
 const DIFFERENCE_STEPS: [f64; 3] = [1e-6, 1e-4, 1e-2];
 
-/// Time in place of the simulated one for a motion that ends at its start, s.
+/// Reference time for a motion that ends at its start, s.
 const UNIT_TIME: f64 = 1.0;
 
 impl Instance<'_> {
@@ -37,7 +37,7 @@ impl Instance<'_> {
         let Some((t, place, value)) = inputs.first_not_finite(begin, end) else {
             return Ok(());
         };
-        // A sample before the span holds at its start.
+        // A sample before the span gives the value at its start.
         let t = t.max(begin);
         let known = self.model().model().inputs.get(place);
         let name = known.map_or("", |input| &input.name);
@@ -49,8 +49,9 @@ impl Instance<'_> {
     }
 }
 
-/// Returns the message for a definition of time alone, such as an input given by an expression, that has no
-/// finite value where a motion from `begin` ended, both in s. `parameters` are all those of the specification, SI.
+/// Returns the message for a definition that depends on time only, such as an input given by an expression, and that is
+/// not finite where the motion ended. `begin` and the end are times in s. `parameters` are all parameters of the
+/// specification, SI.
 pub(crate) fn find_infinite_function(
     model: &CompiledModel,
     parameters: &[f64],
@@ -107,8 +108,7 @@ fn has_rate_in_motion(model: &Model, definition: DefinitionId) -> bool {
     has_rate
 }
 
-/// Returns true if the second differences of a function grow without bound towards a time from
-/// either side.
+/// Returns true if the second differences of a function grow beyond all bounds towards a time from either side.
 fn has_infinite_rate(value: &impl Fn(f64) -> f64, t: f64, unit: f64) -> bool {
     [1.0, -1.0].into_iter().any(|side| {
         let differences = DIFFERENCE_STEPS.map(|step| {

@@ -1,5 +1,5 @@
-//! Initial states on the constraints, errors of constraints that cannot hold, and the system whose
-//! steps are projected onto the constraints.
+//! Consistent initial states, errors of constraints that cannot be satisfied, and the system whose steps are projected
+//! onto the constraints.
 
 use eomgen_model_spec::argument::Argument;
 use std::borrow::Borrow;
@@ -21,31 +21,30 @@ use crate::projection::{
 };
 use crate::singular_positions::SingularityWatch;
 
-/// Derivatives are dependent if less than this fraction of one remains after the others are
-/// eliminated.
+/// Derivatives are dependent if less than this fraction of a row remains after elimination of the others.
 const MIN_INDEPENDENT_FRACTION: f64 = 1e-9;
 
-/// Largest residual of a dependent constraint, relative to the terms of its rate of change, that counts as rounding.
+/// Largest residual of a dependent constraint that counts as rounding, relative to the terms of its rate.
 const MAX_RELATIVE_RESIDUAL: f64 = 1e-9;
 
-/// Rate, relative to the largest one or the typical size, that is rounding of the accelerations.
+/// A rate below this fraction of the largest rate or of the typical size is rounding of the accelerations.
 const MAX_ROUNDING_FRACTION: f64 = 1e-12;
 
-/// Smallest coefficient of a constraint in a dependent combination, relative to the largest, at
-/// which an error names it.
+/// Smallest coefficient of a constraint in a dependent combination, relative to the largest, for which an error names
+/// the constraint.
 const MIN_NAMED_COEFFICIENT: f64 = 1e-6;
 
-/// Dependent constraints are contradictory if their combined residual exceeds this fraction of its
-/// largest term. A smaller residual may be curvature, if the initial state does not satisfy the
-/// constraints.
+/// Dependent constraints are contradictory if their combined residual exceeds this fraction of its largest term. A
+/// smaller residual may come from curvature if the initial state does not satisfy the constraints.
 const MIN_CONTRADICTION_FRACTION: f64 = 0.1;
 
 impl dyn MotionModel + '_ {
-    /// Returns the solvers' system of the model at the relative `tolerance` of the states: projected onto the constraints, with impacts and with sticking. It keeps
-    /// the state of contacts and sticking, so use it for one motion only.
+    /// Returns the system of the model for solvers, at the relative `tolerance` of the states: with projection onto the
+    /// constraints, impacts and sticking. The system keeps the state of contacts and sticking, so use it for one motion
+    /// only.
     ///
     /// # Errors
-    /// Same as [`MotionModel::evaluator`].
+    /// See [`MotionModel::evaluator`].
     pub(crate) fn driven_model<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>>(
         &self,
         evaluator: E,
@@ -67,7 +66,7 @@ impl dyn MotionModel + '_ {
     /// Returns the projection onto the constraints; `None` without constraints.
     ///
     /// # Errors
-    /// Same as [`MotionModel::evaluator`].
+    /// See [`MotionModel::evaluator`].
     fn projection(&self) -> Result<Option<Projection>, Error> {
         if self.labels().constraints.is_empty() {
             return Ok(None);
@@ -94,13 +93,13 @@ impl dyn MotionModel + '_ {
         }))
     }
 
-    /// Returns the state nearest to `state` in the norm of the kinetic energy at which the constraints hold, for a motion
-    /// over a time span (s), and the changed values. A negative distance of an impact within the rounding of that time
-    /// span is set to zero.
+    /// Returns the consistent state nearest to `state` in the norm of the kinetic energy, for a motion over a time span
+    /// (s), and the changed values. A negative distance of an impact within the rounding of this time span is set to
+    /// zero.
     ///
     /// # Errors
-    /// [`Error::Request`] if a constraint depends on others at that state, or if no state near it
-    /// satisfies the constraints; the message names them.
+    /// [`Error::Request`] if a constraint depends on others at the state, or if no state near it satisfies the
+    /// constraints; the message names them.
     pub(crate) fn find_consistent_start(
         &self,
         state: &[f64],
@@ -139,7 +138,7 @@ impl dyn MotionModel + '_ {
             };
             return Err(error);
         }
-        // Rounding can make a correction succeed although constraints are dependent.
+        // A correction may succeed by rounding although constraints are dependent.
         if let Some(reason) = self.describe_dependent_constraint(t, &found, inputs)? {
             return Err(Error::Request(reason));
         }
@@ -169,7 +168,7 @@ impl dyn MotionModel + '_ {
         Ok((found.clone(), moved.collect()))
     }
 
-    /// Restores rates of 0 that a correction changed by rounding, so that a body at rest stays at rest.
+    /// Restores rates of 0 that a correction changed by rounding only, so that a body at rest stays at rest.
     fn undo_rounding(&self, state: &[f64], found: &mut [f64], degrees: usize) {
         let rates = degrees..2 * degrees;
         let typical = self.labels().typical_sizes[rates.clone()].iter();
@@ -185,7 +184,7 @@ impl dyn MotionModel + '_ {
     /// Returns the states before each correction that moves a state at a time (s) onto the constraints.
     ///
     /// # Errors
-    /// Same as [`MotionModel::evaluator`].
+    /// See [`MotionModel::evaluator`].
     pub(crate) fn list_corrected_states(
         &self,
         (t, state): (f64, &[f64]),
@@ -238,8 +237,8 @@ impl dyn MotionModel + '_ {
         })
     }
 
-    /// Returns an error text if a constraint has a zero, infinite or dependent derivative at a
-    /// state, and whether it contradicts the others.
+    /// Returns an error text if a constraint has a zero, infinite or dependent derivative at a state. The text states
+    /// whether the constraint contradicts the others.
     fn describe_dependent_constraint(
         &self,
         t: f64,
@@ -310,7 +309,7 @@ impl dyn MotionModel + '_ {
         Ok(Some(depends.reason()))
     }
 
-    /// Checks that constraints that depend on each other do not contradict each other.
+    /// Checks that dependent constraints do not contradict each other.
     ///
     /// # Errors
     /// [`Error::Request`] with the residuals at a state that satisfies as many constraints as possible.
@@ -384,19 +383,19 @@ impl dyn MotionModel + '_ {
     }
 }
 
-/// A constraint whose derivative is a linear combination of the derivatives of others.
+/// Constraint whose derivative is a linear combination of the derivatives of others.
 struct DependentConstraint<'a> {
     constraint: &'a ConstraintLabel,
     on: Vec<&'a ConstraintLabel>,
-    /// Residual minus the same combination of the other residuals.
+    /// Residual minus the linear combination of the other residuals.
     combined_residual: f64,
-    /// Largest term of that combination.
+    /// Largest term of `combined_residual`.
     scale: f64,
 }
 
 impl DependentConstraint<'_> {
-    /// Returns the error text: a contradiction if the residuals do not satisfy the combination,
-    /// otherwise a singular position.
+    /// Returns the error text. It reports a contradiction if the residuals do not satisfy the linear combination, and a
+    /// singular position otherwise.
     fn reason(&self) -> String {
         let names: Vec<String> = self.on.iter().map(|on| format!("`{}`", on.name)).collect();
         let (name, others) = (&self.constraint.name, names.join(", "));

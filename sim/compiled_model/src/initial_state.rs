@@ -10,11 +10,11 @@ use crate::instance::Instance;
 use crate::operating_point::{OperatingPoint, Setting};
 use crate::prescribed_inputs::split_assignments;
 
-/// Word that selects the nearest equilibrium.
+/// Word that requests the nearest equilibrium.
 const TRIM: &str = "trim";
 
-/// Values of states, inputs and time in place of those of the specification, and the choice of the nearest
-/// equilibrium. Expressions are evaluated at the parameter values of an instance.
+/// Values of states, inputs and time that replace those of the specification, or a request for the nearest equilibrium.
+/// Expressions are evaluated at the parameter values of an instance.
 #[derive(Clone, Debug, Default)]
 pub struct StateRequest {
     assigned: Vec<Assignment>,
@@ -25,7 +25,7 @@ impl StateRequest {
     /// Parses `NAME=EXPR` and the word `trim`. `option`, for example `--state`, replaces the file name in messages.
     ///
     /// # Errors
-    /// A text that is neither.
+    /// A text of another form.
     pub fn parse(option: &str, texts: &[String]) -> Result<Self, Error> {
         let (words, assigned): (Vec<String>, Vec<String>) =
             texts.iter().cloned().partition(|text| text.trim() == TRIM);
@@ -40,7 +40,7 @@ impl Instance<'_> {
     /// Reads values of states, inputs and `t`, SI.
     ///
     /// # Errors
-    /// An unknown name or an invalid value, with its place in the option.
+    /// An unknown name or an invalid value, with its location in the option.
     pub fn read_quantities(&self, given: &[Assignment]) -> Result<Vec<(String, f64)>, Error> {
         if given.is_empty() {
             return Ok(Vec::new());
@@ -61,10 +61,10 @@ impl Instance<'_> {
         given.iter().map(value).collect()
     }
 
-    /// Returns the requested point; with the equilibrium, if the request is for one.
+    /// Returns the requested point, and the equilibrium if one is requested.
     ///
     /// # Errors
-    /// Same as [`Instance::read_quantities`], and [`Error::Stopped`] if no equilibrium is found.
+    /// [`Error::Stopped`] if no equilibrium is found; see also [`Instance::read_quantities`].
     pub fn requested_point(
         &self,
         request: &StateRequest,
@@ -81,10 +81,10 @@ impl Instance<'_> {
         Ok((found.point.clone(), Some(found)))
     }
 
-    /// Returns the requested initial state, SI; with the equilibrium, if the request is for one.
+    /// Returns the requested initial state, SI, and the equilibrium if one is requested.
     ///
     /// # Errors
-    /// Same as [`Instance::requested_point`], and a value of an input or of the time.
+    /// A value of an input or of the time; see also [`Instance::requested_point`].
     pub fn requested_state(
         &self,
         request: &StateRequest,

@@ -1,4 +1,4 @@
-//! A compiled model at one set of parameter values.
+//! Compiled model at one set of parameter values.
 
 use std::borrow::Borrow;
 use std::cell::RefCell;
@@ -23,7 +23,7 @@ use crate::motion_model::MotionModel;
 use crate::projection::InitialChange;
 use crate::sticking::{ObservedMotion, SidedModel};
 
-/// A compiled model that an instance borrows or shares.
+/// Compiled model that an instance borrows or shares.
 #[derive(Clone)]
 pub(crate) enum ModelHandle<'m> {
     Borrowed(&'m CompiledModel),
@@ -41,7 +41,7 @@ impl Deref for ModelHandle<'_> {
     }
 }
 
-/// A compiled model at one set of parameter values, and the initial state that follows from them.
+/// Compiled model at one set of parameter values, with the resulting initial state.
 #[derive(Clone)]
 pub struct Instance<'m> {
     pub(crate) model: ModelHandle<'m>,
@@ -63,13 +63,13 @@ impl CompiledModel {
         self.with_parameters(&[])
     }
 
-    /// Sets independent parameters, each in the unit that the specification declares, and
-    /// recomputes all dependent parameters.
+    /// Sets independent parameters, each in the unit that the specification declares, and recomputes all dependent
+    /// parameters.
     ///
     /// # Errors
-    /// An unknown name, an invalid value, a coefficient along a field that the quadrature does not resolve at these
-    /// values, or a parameter that the specification gives by an expression. Such an expression is part of the equations: replace it in the model, then
-    /// derive again.
+    /// An unknown name, an invalid value, or a coefficient along a field that the quadrature does not resolve at these
+    /// values. A parameter that the specification gives by an expression is rejected too. Its expression is part of the
+    /// equations: change it in the model and derive again.
     pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Instance<'_>, Error> {
         Instance::new(ModelHandle::Borrowed(self), settings)
     }
@@ -77,7 +77,7 @@ impl CompiledModel {
     /// Returns an instance that shares the model; see [`CompiledModel::with_parameters`].
     ///
     /// # Errors
-    /// Same as [`CompiledModel::with_parameters`].
+    /// See [`CompiledModel::with_parameters`].
     pub fn share_with_parameters(
         self: &Arc<Self>,
         settings: &[(&str, f64)],
@@ -87,7 +87,7 @@ impl CompiledModel {
 }
 
 impl<'m> Instance<'m> {
-    /// Returns a copy in which residuals of constraints decay at this rate, 1/s.
+    /// Returns a copy in which the residuals of constraints decay at the given rate, 1/s.
     pub(crate) fn with_stabilisation_rate(&self, rate: f64) -> Self {
         let mut changed = self.clone();
         let mut set = |place: Option<usize>, all: fn(&mut Self) -> &mut Vec<f64>| {
@@ -192,8 +192,7 @@ impl<'m> Instance<'m> {
         &self.initial
     }
 
-    /// Returns the default inputs: 0, or the middle of the range for a prescribed motion that has
-    /// one.
+    /// Returns the default inputs: 0, or the middle of the range for prescribed motion with a range.
     pub fn default_inputs(&self) -> HeldInputs {
         HeldInputs::constant(self.model.default_inputs())
     }
@@ -234,28 +233,28 @@ impl<'m> Instance<'m> {
         Some(rows)
     }
 
-    /// Returns [`CompiledModel::sided_model`] at these parameters.
+    /// Returns [`CompiledModel::sided_model`] at the parameters of this instance.
     ///
     /// # Errors
-    /// Same as [`CompiledModel::sided_model`].
+    /// See [`CompiledModel::sided_model`].
     pub fn sided_model(&self) -> Result<Option<SidedModel>, Error> {
         self.model.sided_model(&self.parameters)
     }
 
-    /// Returns [`CompiledModel::holding_model`] at these parameters.
+    /// Returns [`CompiledModel::holding_model`] at the parameters of this instance.
     ///
     /// # Errors
-    /// Same as [`CompiledModel::sided_model`].
+    /// See [`CompiledModel::sided_model`].
     pub(crate) fn holding_model(&self) -> Result<Option<SidedModel>, Error> {
         self.model.holding_model(&self.parameters)
     }
 
-    /// Returns the solvers' system of this instance at the relative `tolerance` of the states:
-    /// projected onto the constraints, with impacts and with sticking. It keeps the state of contacts and sticking, so use it for one motion
-    /// only.
+    /// Returns the system of this instance for solvers, at the relative `tolerance` of the states: with projection onto
+    /// the constraints, impacts and sticking. The system keeps the state of contacts and sticking, so use it for one
+    /// motion only.
     ///
     /// # Errors
-    /// Same as [`Instance::evaluator`].
+    /// See [`Instance::evaluator`].
     pub fn driven_model<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>>(
         &self,
         evaluator: E,
@@ -265,12 +264,11 @@ impl<'m> Instance<'m> {
         (self as &dyn MotionModel).driven_model(evaluator, inputs, tolerance)
     }
 
-    /// Returns the state nearest to `state` in the norm of the kinetic energy at which the
-    /// constraints hold, and the changed values.
+    /// Returns the consistent state nearest to `state` in the norm of the kinetic energy, and the changed values.
     ///
     /// # Errors
-    /// [`Error::Request`] if a constraint depends on others at that state, or if no state near it
-    /// satisfies the constraints; the message names them.
+    /// [`Error::Request`] if a constraint depends on others at the state, or if no state near it satisfies the
+    /// constraints; the message names them.
     pub fn find_consistent_state(
         &self,
         state: &[f64],
@@ -291,22 +289,21 @@ impl<'m> Instance<'m> {
         exact.propagator_at(&values)
     }
 
-    /// Returns the observables at every sample of a motion, one row per sample; `energy` and
-    /// `power` are the last two.
+    /// Returns the observables at every sample of a motion, one row per sample; `energy` and `power` are the last two.
     ///
     /// # Errors
-    /// Same as [`Instance::evaluator`].
+    /// See [`Instance::evaluator`].
     pub fn observables(&self, motion: &Motion) -> Result<Vec<Vec<f64>>, Error> {
         let mut rows = Vec::with_capacity(motion.trajectory.times.len());
         self.observe(motion, |_, _, observables| rows.push(observables.to_vec()))?;
         Ok(rows)
     }
 
-    /// Calls `show` with the time (s), state and observables of every sample of a motion. During
-    /// sticking, the observables use the friction force that holds the motion.
+    /// Calls `show` with the time (s), state and observables of every sample of a motion. During sticking, the
+    /// observables use the friction force that holds the motion.
     ///
     /// # Errors
-    /// Same as [`Instance::evaluator`].
+    /// See [`Instance::evaluator`].
     pub fn observe(
         &self,
         motion: &Motion,

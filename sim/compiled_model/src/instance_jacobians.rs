@@ -37,11 +37,11 @@ impl Instance<'_> {
         JacobianEvaluator::new(prepare_evaluator(program, code, self.parameters()))
     }
 
-    /// Returns true for each state that a rate or a switching function depends on. An unrestrained
-    /// rotation angle, for example, has no influence.
+    /// Returns, for each state, true if a rate or a switching function depends on it. For example, the angle of an
+    /// unrestrained rotor has no influence.
     ///
     /// # Errors
-    /// Same as [`Instance::jacobian_evaluator`].
+    /// See [`Instance::jacobian_evaluator`].
     pub fn influential_states(&self) -> Result<Vec<bool>, Error> {
         let program = &self.model().jacobian_program()?.program;
         let mut felt = vec![false; program.states()];

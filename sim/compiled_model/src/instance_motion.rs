@@ -13,8 +13,8 @@ use crate::labels::Labels;
 use crate::motion_model::MotionModel;
 use crate::sticking::SidedModel;
 
-/// Length, in the SI unit of a distance, of a machine without parameters of that dimension. Distances of a unit roundoff
-/// of an SI unit then count as zero.
+/// Length, in the SI unit of a distance, assumed for a model without parameters of that dimension. Distances below the
+/// unit roundoff of one SI unit then count as zero.
 const UNKNOWN_LENGTH_SI: f64 = 1e-5;
 
 impl MotionModel for Instance<'_> {

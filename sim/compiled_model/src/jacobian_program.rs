@@ -1,4 +1,4 @@
-//! The program of a model with its Jacobians, lowered once at the first use.
+//! Program of a model with its Jacobians, lowered at first use.
 
 use std::sync::{Arc, OnceLock};
 
@@ -10,13 +10,13 @@ use eomgen_codegen::variant::lower_with_derivatives;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
 
-/// Outputs with each entry of each Jacobian.
+/// Outputs with every entry of every Jacobian.
 pub(crate) const ENTRY_BY_ENTRY: [Output; 2] = [Output::Jacobians, Output::TimeDerivatives];
 
-/// Outputs with one derivative along a direction, whose parts all variables share.
+/// Outputs with one derivative along a direction, which all variables share.
 pub(crate) const ALONG_DIRECTION: [Output; 2] = [Output::Tangents, Output::TimeDerivatives];
 
-/// The program of a model with its Jacobians; its machine code is compiled at the first use.
+/// Program of a model with its Jacobians; its machine code is compiled at first use.
 pub(crate) struct JacobianProgram {
     pub(crate) program: Program,
     code: OnceLock<Option<Arc<dyn MachineCode>>>,

@@ -1,9 +1,9 @@
-//! Dense Jacobians of a compiled model. The crate `codegen` derives them.
+//! Dense Jacobians of a compiled model, derived by the crate `codegen`.
 
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
-/// A Jacobian of a model: the function and the variable of differentiation.
+/// Jacobian of a model: the function and the variable of differentiation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Jacobian {
     /// Derivatives of the rates with respect to the state.
@@ -91,8 +91,8 @@ impl JacobianEvaluator {
         matrix
     }
 
-    /// Writes the dense row-major matrix at a point to `out`, of rows times columns numbers. On a
-    /// switching surface the derivatives are one-sided.
+    /// Writes the dense row-major matrix at a point to `out`, which has rows times columns numbers. On a switching
+    /// surface the derivatives are one-sided.
     pub fn evaluate(&mut self, of: Jacobian, point: Point<'_>, out: &mut [f64]) {
         self.layouts[of as usize].evaluate(&mut self.evaluator, point, out);
     }

@@ -1,4 +1,4 @@
-//! Names, units and sizes of a model that its motions and their messages need.
+//! Names, units and sizes for motions of a model and their messages.
 
 use eomgen_codegen::encode_structures;
 
@@ -18,7 +18,7 @@ pub(crate) struct Labels {
     pub typical_sizes: Vec<f64>,
     pub impacts: Vec<ImpactLabel>,
     pub constraints: Vec<ConstraintLabel>,
-    /// Number of constraints beyond those that are needed, because they depend on each other.
+    /// Number of constraints that depend on others at every state.
     pub constraint_excess: usize,
 }
 
@@ -28,7 +28,7 @@ pub(crate) struct ImpactLabel {
     pub name: String,
     /// Unit of the distance.
     pub unit: String,
-    /// Coordinates with the dimension of the distance.
+    /// Indices of the coordinates with the dimension of the distance.
     pub coordinates: Vec<usize>,
 }
 

@@ -40,10 +40,10 @@
 //! # Ok::<(), eomgen_compiled_model::Error>(())
 //! ```
 //!
-//! An [`ExportedModel`] has the programs of a model without their derivation. An [`ExportedMotion`] moves it in a host
-//! that contains neither the derivation nor machine code (feature `derive` off), such as a page.
+//! An [`ExportedModel`] has the programs of a model without their derivation. An [`ExportedMotion`] simulates it in a
+//! host program without derivation and machine code (feature `derive` off), such as a web page.
 
-// Without the derivation, only the motion of exported models uses the rest.
+// Without the derivation, only motions of exported models use the remaining code.
 #![cfg_attr(not(feature = "derive"), allow(dead_code, unused_imports))]
 
 mod audit;

@@ -1,4 +1,4 @@
-//! Linearisation of a model at a point, and the cause if there is none.
+//! Linearisation of a model at a point, and the cause if none exists.
 
 use eomgen_analysis::discretisation::{DiscreteSystem, hold_inputs};
 use eomgen_codegen::program::Variable;
@@ -17,47 +17,46 @@ use crate::state_space::StateSpace;
 /// Largest magnitude of a state or an input whose fourth power does not overflow.
 const LARGEST_VALUE: f64 = 1e75;
 
-/// Displacement of the states from a switching surface to each side, relative to their natural scales. Derivatives
-/// on one side change by a fraction of about this.
+/// Displacement of the states from a switching surface to each side, relative to their natural scales. One-sided
+/// derivatives change by a fraction of this size.
 const SIDE_DISPLACEMENT: f64 = 1e-9;
 
-/// Least growth of the difference of both sides at twice the distance if a derivative has no jump.
+/// Smallest growth of the difference between both sides at twice the distance if a derivative has no jump.
 const MIN_GROWTH: f64 = 1.5;
 
-/// Difference of both sides, relative to the derivative, that is rounding.
+/// Largest difference between both sides that counts as rounding, relative to the derivative.
 const MAX_SIDE_DIFFERENCE: f64 = 1e-6;
 
-/// Variables listed in a message.
+/// Maximum number of variables listed in a message.
 const MAX_LISTED: usize = 6;
 
-/// Smooth forms of terms without a derivative.
+/// Smooth replacements of terms without a derivative.
 const SMOOTH_FORMS: &str = "write a smooth form with a small eps: sqrt(v^2 + eps^2) instead of norm(v) or abs(v), \
     x/sqrt(x + eps) instead of sqrt(x)";
 
-/// Linearisation of a model about a point: d(dx)/dt = f + A dx + B du and dy = C dx + D du, with
-/// the deviations dx, du, dy from the point. Matrices are row-major.
+/// Linearisation of a model about a point: d(dx)/dt = f + A dx + B du and dy = C dx + D du, with the deviations dx, du,
+/// dy from the point. Matrices are row-major.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linearisation {
-    /// Matrix A: rates by states.
+    /// Matrix A: derivatives of the rates with respect to the state.
     pub a: Vec<f64>,
-    /// Matrix B: rates by inputs.
+    /// Matrix B: derivatives of the rates with respect to the inputs.
     pub b: Vec<f64>,
-    /// Matrix C: observables by states.
+    /// Matrix C: derivatives of the observables with respect to the state.
     pub c: Vec<f64>,
-    /// Matrix D: observables by inputs.
+    /// Matrix D: derivatives of the observables with respect to the inputs.
     pub d: Vec<f64>,
     /// Rates f at the point, SI; zero at an equilibrium.
     pub rates: Vec<f64>,
     /// Observables at the point, SI.
     pub observables: Vec<f64>,
-    /// True on a switching surface whose sides have different linearisations; the matrices are then those of one side.
+    /// True on a switching surface whose sides have different linearisations. The matrices are then valid on one side.
     pub is_one_sided: bool,
 }
 
 impl Linearisation {
-    /// Returns the rows of H in H dx = 0, the constraints on small motions dx, row-major:
-    /// derivatives of all residuals, and of the rates of holonomic residuals. Empty without
-    /// constraints.
+    /// Returns the rows of H in H dx = 0, the constraints on small motions dx, row-major. The rows are derivatives of
+    /// all residuals, and of the rates of holonomic residuals. Empty without constraints.
     pub fn constraint_matrix(&self, model: &CompiledModel) -> Vec<f64> {
         let states = self.rates.len();
         let names = model.observable_names();
@@ -84,11 +83,11 @@ impl Linearisation {
 }
 
 impl CompiledModel {
-    /// Computes the discrete form of matrices A and B (row by row) for inputs held over `period` (s).
+    /// Computes the discrete form of matrices A and B (row-major) for inputs held over `period` (s).
     ///
     /// # Errors
-    /// Prescribed motion, whose input and rates cannot all be held; an inadmissible period; motions that are too fast
-    /// for the period.
+    /// Prescribed motion, because its input and rates cannot all be held; an inadmissible period; motions that are too
+    /// fast for the period.
     pub fn discretise(&self, a: &[f64], b: &[f64], period: f64) -> Result<DiscreteSystem, Error> {
         let inputs = &self.model().inputs;
         if let Some(input) = inputs.iter().find(|input| input.rate.is_some()) {
@@ -108,8 +107,8 @@ impl Instance<'_> {
     /// Linearises the model about a time (s), a state and inputs, SI.
     ///
     /// # Errors
-    /// Same as [`Instance::jacobian_evaluator`], a derivative that has no finite limit at the
-    /// point, with the place of its term, and a pole of the coordinates.
+    /// A derivative that has no finite limit at the point, with the location of its term; a pole of the coordinates;
+    /// see also [`Instance::jacobian_evaluator`].
     pub fn linearise(&self, point: Point<'_>) -> Result<Linearisation, Error> {
         if let Some(coordinate) = self.find_coordinate_pole(point)? {
             return Err(self.pole_error(&coordinate, point));
@@ -146,8 +145,8 @@ impl Instance<'_> {
         })
     }
 
-    /// Returns the common linearisation of both sides of a point on a surface; `None` if the sides differ. The derivative
-    /// at the surface itself is that of one side, or of neither, as for a dead zone of width 0.
+    /// Returns the common linearisation of both sides of a point on a surface; `None` if the sides differ. The
+    /// derivative on the surface itself is that of one side, or of neither, as for a dead zone of width 0.
     ///
     /// # Errors
     /// Invalid parameter values.
@@ -284,7 +283,7 @@ impl Instance<'_> {
         ))
     }
 
-    /// Returns the message for a state or an input so large that its powers overflow.
+    /// Returns a message if a state or an input is so large that its powers overflow.
     fn out_of_range(&self, point: Point<'_>) -> Option<String> {
         let states = self.model().state_names().into_iter().zip(point.state);
         let inputs = self.model().model().inputs.iter();
@@ -297,7 +296,7 @@ impl Instance<'_> {
         ))
     }
 
-    /// Returns kind, variables and point of a singularity, for a message.
+    /// Describes a singularity for a message: its kind, variables and point.
     fn singularity(&self, term: &SingularTerm, point: Point<'_>) -> String {
         let program = self.model().program();
         let names = self.model().state_names();
@@ -340,9 +339,9 @@ impl Instance<'_> {
     }
 }
 
-/// Returns the derivative at a surface from those at a distance from it on both sides, and at twice the distance;
-/// `None` if it jumps there. Otherwise the difference of both sides grows with the distance, at least in
-/// proportion, and the mean is extrapolated to the surface.
+/// Returns the derivative on a surface, extrapolated from derivatives on both sides at one distance and at twice the
+/// distance; `None` if the derivative jumps. Without a jump, the difference between both sides grows at least in
+/// proportion to the distance, and the mean is extrapolated.
 fn derivative_across(
     (below, above): (f64, f64),
     (far_below, far_above): (f64, f64),
@@ -354,8 +353,8 @@ fn derivative_across(
 }
 
 impl StateSpace {
-    /// Replaces the derivatives that differ from those across surfaces by more than rounding. Others keep their exact
-    /// zeros.
+    /// Replaces the derivatives that differ from those across surfaces by more than rounding. The others keep their
+    /// exact zeros.
     fn replace_different(&mut self, across: &Self) {
         let pairs = [
             (&mut self.a, &across.a),
@@ -489,7 +488,7 @@ pull = { value = "k*x + u", unit = "N" }
         let found = run.linearise(point).expect("a linearisation");
         assert_eq!(found.a, [0.0, 1.0, -9.0, -1.5]);
         assert_eq!(found.b, [0.0, 0.5]);
-        // pull, energy and its rate by the damper and the motor.
+        // Derivatives of the observables `pull`, `energy` and `power`; the damper and the motor have a power.
         assert_eq!(found.c[..2], [18.0, 0.0]);
         assert_eq!(found.d[..2], [1.0, 0.0]);
         for (value, right) in found.rates.iter().zip([0.3, 2.0 - 0.9 - 0.45]) {
@@ -503,7 +502,7 @@ pull = { value = "k*x + u", unit = "N" }
         assert!((by_parameters[4] + 0.05).abs() < 1e-16); // d(-k x/m)/dk
     }
 
-    /// Returns the stiffness of a mass of 1 kg at rest at a position, and whether the sides there differ.
+    /// Returns the stiffness of a mass of 1 kg at rest at a position, and whether the stiffnesses on both sides differ.
     fn stiffness(potential: &str, position: f64) -> (f64, bool) {
         let text = format!(
             "[model]\nname = \"mass\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\

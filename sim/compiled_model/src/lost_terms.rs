@@ -1,4 +1,4 @@
-//! Terms that are lost in the rounding of stiffer ones.
+//! Terms that are lost in the rounding of stiffer terms.
 
 use eomgen_codegen::program::evaluator::Point;
 
@@ -8,18 +8,18 @@ use crate::linearisation::Linearisation;
 /// Rate, 1/s, below which a motion counts as rigid.
 const MAX_HIDDEN_RATE: f64 = 1e-2;
 
-/// Factors by which a parameter is multiplied until its terms exceed the rounding of others.
+/// Factors on a parameter, tried until its terms exceed the rounding errors of other terms.
 const LARGE_FACTORS: [f64; 5] = [1e24, 1e60, 1e150, 1e220, 1e290];
 
-/// Change of an entry, relative to the entry, that its rounding may falsify.
+/// A change of an entry below this fraction of the entry may be wrong by rounding.
 const MAX_SMALL_FRACTION: f64 = 1e-12;
 
-/// Relative error of such a change from which on it is lost.
+/// Relative error of a change from which on the change counts as lost.
 const MAX_LOST_FRACTION: f64 = 1e-2;
 
 impl Instance<'_> {
-    /// Returns the name of a parameter whose terms are lost in the rounding of others: a change of it changes
-    /// a rate or an entry of the state matrix by less than its own terms would.
+    /// Returns the name of a parameter whose terms are lost in the rounding of others. A change of this parameter
+    /// changes a rate or an entry of the state matrix by less than its own terms would.
     pub(crate) fn find_lost_parameter(
         &self,
         here: &Linearisation,
@@ -29,7 +29,7 @@ impl Instance<'_> {
             .a
             .iter()
             .fold(0.0_f64, |most, entry| most.max(entry.abs()));
-        // Rounding of the largest entry hides slower motions.
+        // The rounding error of the largest entry hides slower motions.
         if (f64::EPSILON * largest).sqrt() <= MAX_HIDDEN_RATE {
             return None;
         }
@@ -49,7 +49,7 @@ impl Instance<'_> {
                 .zip(doubled)
                 .zip(there)
                 .any(|((a, doubled), there)| {
-                    // Change of the entry if it is linear in the parameter.
+                    // Change of the entry by the parameter if the entry is linear in it.
                     let own = (there - a) / (factor - 1.0);
                     let change = doubled - a;
                     let is_small = own.abs().max(change.abs()) < MAX_SMALL_FRACTION * a.abs();
@@ -62,7 +62,8 @@ impl Instance<'_> {
         None
     }
 
-    /// Returns the entries with a parameter times a factor; `None` if the parameter is 0 or one is not finite there.
+    /// Returns the entries with a parameter multiplied by a factor; `None` if the parameter is 0 or an entry is not
+    /// finite.
     fn scaled_entries(&self, name: &str, factor: f64, point: Point<'_>) -> Option<Vec<f64>> {
         let mut parameters = self.model().model().parameters.iter();
         let unit = &parameters.find(|known| known.name == name)?.unit;
@@ -79,7 +80,7 @@ impl Instance<'_> {
     }
 }
 
-/// Returns the entries of the state matrix, then the rates.
+/// Returns the entries of the state matrix, followed by the rates.
 fn entries(linear: &Linearisation) -> Vec<f64> {
     [&linear.a[..], &linear.rates].concat()
 }

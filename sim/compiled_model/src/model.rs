@@ -73,8 +73,8 @@ impl Orders<'_> {
     }
 }
 
-/// A derived model, independent of parameter values. Machine code, Jacobians and the
-/// piecewise-linear form are made at their first use and kept. Threads may share the model.
+/// Derived model, independent of parameter values. Machine code, Jacobians and the piecewise-linear form are created at
+/// first use and kept. Threads may share the model.
 pub struct CompiledModel {
     model: Model,
     orders: Vec<usize>,
@@ -84,7 +84,7 @@ pub struct CompiledModel {
     piecewise_linear: OnceLock<Result<PiecewiseLinear, ExactError>>,
     differentiated: OnceLock<Result<JacobianProgram, Diagnostics>>,
     tangents: OnceLock<Result<JacobianProgram, Diagnostics>>,
-    /// Program of the gradients of trajectories.
+    /// Program for the gradients of trajectories.
     gradients: OnceLock<Result<JacobianProgram, Diagnostics>>,
     /// Program whose rates take the sides of surfaces as inputs, and its machine code.
     sided: OnceLock<Result<Option<Program>, Diagnostics>>,
@@ -103,7 +103,7 @@ impl CompiledModel {
     /// [`eomgen_model_spec::load`] and call [`CompiledModel::derive`].
     ///
     /// # Errors
-    /// [`Error::Specification`] with every error at its place.
+    /// [`Error::Specification`] with every error and its location.
     pub fn load(path: impl AsRef<Path>, orders: Orders<'_>) -> Result<Self, Error> {
         let Checked { model, .. } = eomgen_model_spec::load(path.as_ref())?;
         Self::derive(model, orders)
@@ -112,7 +112,7 @@ impl CompiledModel {
     /// Checks and derives the specification in `text`. Messages use `name` as its file name.
     ///
     /// # Errors
-    /// Same as [`CompiledModel::load`].
+    /// See [`CompiledModel::load`].
     pub fn from_text(name: &str, text: &str, orders: Orders<'_>) -> Result<Self, Error> {
         let Checked { model, .. } = eomgen_model_spec::check(Source::new(name, text))?;
         Self::derive(model, orders)
@@ -129,11 +129,11 @@ impl CompiledModel {
         Ok(Self::new(model, orders, derived))
     }
 
-    /// Derives a checked model without checking inertia at its own parameters and initial state,
-    /// for example to read its equations or to run it at other parameters.
+    /// Derives a checked model without checking inertia at its own parameters and initial state, for example to read
+    /// its equations or to run it at other parameters.
     ///
     /// # Errors
-    /// Same as [`CompiledModel::derive`], except those about inertia.
+    /// The errors of [`CompiledModel::derive`], except those about inertia.
     pub fn derive_without_inertia_check(model: Model, orders: Orders<'_>) -> Result<Self, Error> {
         let orders = orders.resolve(&model)?;
         let derived = Variant::derive_for_report(&model, &orders, &[])?;
@@ -177,7 +177,7 @@ impl CompiledModel {
         &self.equations
     }
 
-    /// Returns a note for each group of constraints that depend on each other.
+    /// Returns a note for each group of linearly dependent constraints.
     pub fn redundancy_notes(&self) -> Vec<String> {
         self.equations.redundancy.describe(&self.model)
     }
@@ -207,8 +207,7 @@ impl CompiledModel {
         units
     }
 
-    /// Returns the default inputs, SI: 0, or the middle of the range for a prescribed motion that
-    /// has one.
+    /// Returns the default inputs, SI: 0, or the middle of the range for prescribed motion with a range.
     pub fn default_inputs(&self) -> Vec<f64> {
         let none = || vec![0.0; self.model.inputs.len()];
         self.model.typical_inputs(0.0).unwrap_or_else(|_| none())
@@ -278,16 +277,15 @@ impl CompiledModel {
             .collect()
     }
 
-    /// Returns an evaluator of the program at these values of the independent parameters, SI. It
-    /// runs machine code if the processor is supported, and otherwise interprets; the numbers are
-    /// the same.
+    /// Returns an evaluator of the program at the given values of the independent parameters, SI. It runs machine code
+    /// if the processor is supported, and interprets the program otherwise; both give the same numbers.
     pub fn evaluator(&self, parameters: &[f64]) -> Evaluator {
         let code = self.code.get_or_init(|| eomgen_jit::code(&self.program));
         prepare_evaluator(&self.program, code.as_ref(), parameters)
     }
 
-    /// Returns an evaluator that interprets the program. Machine code gives the same numbers, but
-    /// takes longer to generate than a few evaluations take.
+    /// Returns an evaluator that interprets the program. Machine code gives the same numbers, but its generation takes
+    /// longer than a few evaluations.
     pub(crate) fn interpreter(&self, parameters: &[f64]) -> Evaluator {
         prepare_evaluator(&self.program, None, parameters)
     }
@@ -300,8 +298,8 @@ impl CompiledModel {
         self.jacobian_program().map(|_| ())
     }
 
-    /// Returns the program of the constraints' derivatives, or `None` without constraints. It is
-    /// lowered once, at these values of all parameters, SI.
+    /// Returns the program of the constraint derivatives; `None` without constraints. It is lowered once, at the given
+    /// values of all parameters, SI.
     pub(crate) fn constraint_program(&self, values: &[f64]) -> Option<&Program> {
         let made = self
             .constraints
@@ -316,7 +314,7 @@ impl CompiledModel {
         made.as_ref().map_err(|found| found.clone().into())
     }
 
-    /// Returns the program of the derivatives along a direction and by time.
+    /// Returns the program of the derivatives along a direction and with respect to time.
     pub(crate) fn tangent_program(&self) -> Result<&Program, Error> {
         let made = self
             .tangents
@@ -325,7 +323,7 @@ impl CompiledModel {
         made.map_err(|found| found.clone().into())
     }
 
-    /// Returns the program of the gradients of trajectories.
+    /// Returns the program for the gradients of trajectories.
     pub(crate) fn gradient_program(&self) -> Result<&JacobianProgram, Error> {
         let made = self.gradients.get_or_init(|| {
             lower_for_gradients(&self.model, &self.equations).map(JacobianProgram::new)
@@ -333,8 +331,8 @@ impl CompiledModel {
         made.as_ref().map_err(|found| found.clone().into())
     }
 
-    /// Returns residuals and derivatives of the constraints at these values of the independent parameters, SI; `None`
-    /// without constraints.
+    /// Returns residuals and derivatives of the constraints at the given values of the independent parameters, SI;
+    /// `None` without constraints.
     pub fn constraint_rows(&self, parameters: &[f64]) -> Option<ConstraintRows> {
         let values = self.model.parameter_values().ok()?;
         let program = self.constraint_program(&values)?;
@@ -344,8 +342,8 @@ impl CompiledModel {
         Some(rows)
     }
 
-    /// Returns the projection onto the constraints at these values of the independent parameters, SI, for motions that
-    /// do not stop at singular positions; `None` without constraints.
+    /// Returns the projection onto the constraints at the given values of the independent parameters, SI; `None`
+    /// without constraints. It does not stop motions at singular positions.
     pub fn projection(&self, parameters: &[f64]) -> Option<Projection> {
         if self.model.constraints.is_empty() {
             return None;
@@ -369,11 +367,11 @@ impl CompiledModel {
         })
     }
 
-    /// Returns the model in which the sides of switching surfaces are inputs, at these values of
-    /// the independent parameters, SI. `None` if there are no surfaces.
+    /// Returns the model in which the sides of switching surfaces are inputs, at the given values of the independent
+    /// parameters, SI. `None` without surfaces.
     ///
     /// # Errors
-    /// Parameter values that are not admissible.
+    /// Inadmissible parameter values.
     pub fn sided_model(&self, parameters: &[f64]) -> Result<Option<SidedModel>, Error> {
         let sided = self.sided_program()?.map(|program| {
             let code = self.sided_code.get_or_init(|| eomgen_jit::code(program));
@@ -382,8 +380,8 @@ impl CompiledModel {
         Ok(sided)
     }
 
-    /// Returns [`CompiledModel::sided_model`] if its surfaces can hold the motion. Otherwise it
-    /// compiles nothing.
+    /// Returns [`CompiledModel::sided_model`] if its surfaces can hold the motion. Otherwise compiles nothing and
+    /// returns `None`.
     pub(crate) fn holding_model(&self, parameters: &[f64]) -> Result<Option<SidedModel>, Error> {
         match self.sided_program()? {
             Some(program) if !program.outputs.sliding.is_empty() => self.sided_model(parameters),
@@ -399,10 +397,10 @@ impl CompiledModel {
         Ok(made.as_ref())
     }
 
-    /// Returns an evaluator for steps of fixed length, at these values of the independent parameters, SI.
+    /// Returns an evaluator for steps of fixed length, at the given values of the independent parameters, SI.
     ///
     /// # Errors
-    /// A model without such steps.
+    /// A model that fixed steps do not support.
     pub(crate) fn stepper(&self, parameters: &[f64]) -> Result<Evaluator, Error> {
         let made = self
             .stepped
@@ -412,8 +410,8 @@ impl CompiledModel {
         Ok(prepare_evaluator(program, code.as_ref(), parameters))
     }
 
-    /// Returns the corners of a motion at these values of the independent parameters, SI. `None` if
-    /// no momenta can jump.
+    /// Returns the corners of a motion at the given values of the independent parameters, SI. `None` if no momentum can
+    /// jump.
     ///
     /// # Errors
     /// Terms that cannot be derived.
@@ -431,8 +429,8 @@ impl CompiledModel {
         Ok(made.as_ref())
     }
 
-    /// Returns the function of the first surface at which the energies jump, so that rates jump;
-    /// `None` if there is none.
+    /// Returns the function of the first surface at which the energies jump, so that rates jump; `None` without such a
+    /// surface.
     pub fn first_corner(&self) -> Option<&str> {
         let mut guards = self.program.guards.iter();
         let corner = guards.find(|guard| guard.is_corner)?;

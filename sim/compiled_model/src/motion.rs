@@ -1,4 +1,4 @@
-//! Simulated motions, the solvers and the reasons for choosing or stopping one.
+//! Simulated motions, the solvers, and the reasons for the choice or the stop of a solver.
 
 use std::fmt;
 
@@ -12,8 +12,8 @@ use crate::projection::InitialChange;
 /// Solver of the equations of motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Solver {
-    /// [`Solver::Exact`] if the model is piecewise linear, otherwise [`Solver::Rk`];
-    /// [`Solver::Radau`] if the motion turns out to be stiff.
+    /// [`Solver::Exact`] if the model is piecewise linear, otherwise [`Solver::Rk`], which changes to [`Solver::Radau`]
+    /// if the motion is stiff.
     #[default]
     Auto,
     /// Exact propagation from event to event, with rounding errors only; for piecewise-linear
@@ -61,12 +61,12 @@ impl fmt::Display for Solver {
     }
 }
 
-/// A motion, sampled up to the time that the solver reached.
+/// Motion, sampled up to the end or the early stop of the solver.
 #[derive(Clone, Debug)]
 pub struct Motion {
     /// States at the samples, number of events and solver statistics.
     pub trajectory: Trajectory,
-    /// Switching surfaces of the events, by the index of their functions.
+    /// Switching surfaces of the events, in the order of their functions.
     pub surfaces: Vec<Surface>,
     /// Inputs of the motion.
     pub inputs: HeldInputs,
@@ -76,33 +76,33 @@ pub struct Motion {
     pub solver_choice: Option<SolverChoice>,
     /// Reason why the solver stopped early; `None` if it reached the end.
     pub early_stop: Option<EarlyStop>,
-    /// Changes of the initial state that make the constraints hold.
+    /// Changes of the initial state by the projection onto the constraints.
     pub initial_changes: Vec<InitialChange>,
     /// Energy balance, if requested.
     pub audit: Option<Audit>,
-    /// Results of the requested `Measurement`s, in the units of their quantities; `None` for a time that the motion did
-    /// not reach.
+    /// Results of the requested `Measurement`s, in the units of their quantities; `None` if the motion ended before the
+    /// start of the measurement.
     pub measured: Vec<Option<f64>>,
     /// States of the controllers.
     pub controller_states: ControllerStates,
-    /// Instants at which contact friction admitted several motions.
+    /// Times at which contact friction admits several motions.
     pub friction_choices: Vec<FrictionChoice>,
 }
 
-/// Instant at which contact friction admitted several motions. The motion with the fewest changes of modes was taken, and
-/// among several of these the one with the smallest forces.
+/// Time at which contact friction admits several motions. The motion with the fewest mode changes was taken, and among
+/// several of these the one with the smallest forces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrictionChoice {
     /// Time, s.
     pub t: f64,
-    /// Names of the impacts that were decided together.
+    /// Names of the impacts whose modes were determined together.
     pub impacts: Vec<String>,
-    /// Number of motions.
+    /// Number of admissible motions.
     pub motions: usize,
 }
 
 impl FrictionChoice {
-    /// Returns a sentence about all choices of a motion; `None` without any.
+    /// Returns a sentence about all such times of a motion; `None` if there are none.
     pub fn describe_all(all: &[Self]) -> Option<String> {
         let first = all.first()?;
         let impacts: Vec<String> = first
@@ -129,7 +129,7 @@ impl FrictionChoice {
 pub struct ControllerStates {
     /// Names.
     pub names: Vec<String>,
-    /// Values at each sample of the motion, after the samples of the controllers at its time, SI.
+    /// Values at each sample of the motion, SI. A controller sample at the same time is already included.
     pub rows: Vec<Vec<f64>>,
 }
 
@@ -153,8 +153,7 @@ pub enum SolverChoice {
     PiecewiseLinear,
     /// The model is not piecewise linear; the text names the term.
     NotPiecewiseLinear(String),
-    /// The model is piecewise linear, but the exact solver cannot follow this motion, for this
-    /// reason.
+    /// The model is piecewise linear, but the exact solver does not support this motion; the text gives the reason.
     NotSupportedByExact(String),
     /// The model is stiff; the text names the state and its settling time.
     Stiff(String),
@@ -163,9 +162,9 @@ pub enum SolverChoice {
 /// Reason why a solver stopped early.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EarlyStop {
-    /// Time reached, s, if known.
+    /// Time of the stop, s, if known.
     pub t: Option<f64>,
-    /// Cause, with names, and cure.
+    /// Cause, with names, and remedy.
     pub reason: String,
     /// Category of the cause.
     pub cause: StopCause,
@@ -176,7 +175,7 @@ pub struct EarlyStop {
 pub enum StopCause {
     /// Rates that are not finite, or a mass matrix that is not positive definite.
     NotFinite,
-    /// Too many events per time, or a surface that holds the motion.
+    /// Too many events in a short time, or a surface that holds the motion.
     Switching,
     /// Stiffness that limits the steps of an explicit solver; the text names the state.
     Stiff(String),

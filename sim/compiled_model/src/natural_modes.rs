@@ -10,7 +10,7 @@ use crate::linearisation::Linearisation;
 use crate::model::CompiledModel;
 
 impl CompiledModel {
-    /// Returns names and SI units of the amplitudes of a mode shape: coordinates, then first-order states.
+    /// Returns names and SI units of the entries of a mode shape: coordinates, then first-order states.
     pub fn amplitudes(&self) -> Vec<(String, String)> {
         let degrees = self.program().degrees_of_freedom();
         let states = self.state_names().into_iter().zip(self.state_units());
@@ -21,8 +21,8 @@ impl CompiledModel {
 }
 
 impl Instance<'_> {
-    /// Returns the natural modes of a linearisation about a point, lowest frequency first. With constraints, they are those of the
-    /// motions that the constraints allow. The entries of a shape are those of
+    /// Returns the natural modes of a linearisation about a point, lowest frequency first. With constraints, the modes
+    /// belong to motions that satisfy the constraints. The entries of a shape are in the order of
     /// [`CompiledModel::amplitudes`].
     ///
     /// # Errors

@@ -29,7 +29,7 @@ impl Observers {
         }
     }
 
-    /// Continues with a solver of a relative tolerance.
+    /// Continues with a solver of another relative tolerance.
     pub fn continue_with(&mut self, tolerance: f64) {
         if let Some(auditor) = &mut self.auditor {
             auditor.continue_with(tolerance);

@@ -1,4 +1,4 @@
-//! Operating points: a time, a state and inputs, addressed by name.
+//! Operating points: time, state and inputs, set by name.
 
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_model_spec::foreign::suggest_state;
@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::instance::Instance;
 use crate::model::CompiledModel;
 
-/// A time, a state and inputs, SI, in the order of the model.
+/// Time, state and inputs, SI, in the order of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OperatingPoint {
     /// Time, s.
@@ -19,7 +19,7 @@ pub struct OperatingPoint {
 }
 
 impl OperatingPoint {
-    /// Returns the point in the form that evaluators take.
+    /// Returns the point as an argument of evaluators.
     pub fn point(&self) -> Point<'_> {
         Point {
             t: self.t,
@@ -29,20 +29,19 @@ impl OperatingPoint {
     }
 }
 
-/// A quantity of an operating point that can be set, by its index.
+/// Quantity of an operating point that can be set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Setting {
     /// Time.
     Time,
-    /// Entry of the state.
+    /// State, by its index.
     State(usize),
-    /// Input.
+    /// Input, by its index.
     Input(usize),
 }
 
 impl CompiledModel {
-    /// Finds the quantity with this name: a coordinate, mode, rate, first-order state, input, or
-    /// `t`.
+    /// Finds the quantity with a name: a coordinate, mode, rate, first-order state, input, or `t`.
     ///
     /// # Errors
     /// An unknown name.

@@ -1,5 +1,4 @@
-//! Check of a motion for overlapping bodies: a negative distance of an impact beyond the solver's
-//! errors.
+//! Check of a motion for overlapping bodies: distances of impacts that are negative beyond the solver's errors.
 
 use eomgen_codegen::program::Op;
 use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, Point, Stretch};
@@ -17,9 +16,9 @@ pub struct Overlap {
     pub impact: String,
     /// Time, s.
     pub t: f64,
-    /// Distance, negative, SI.
+    /// Distance, SI; negative.
     pub distance: f64,
-    /// Distance that the solver's errors can explain, SI.
+    /// Largest overlap that errors of the solver can cause, SI.
     pub tolerance: f64,
 }
 
@@ -40,11 +39,11 @@ impl Overlap {
 }
 
 impl Instance<'_> {
-    /// Returns the first sample at which bodies overlap by more than the solver's errors at this
-    /// relative tolerance can explain. Steps of fixed length meet a contact up to a step late.
+    /// Returns the first sample at which bodies overlap by more than the solver's errors at the given relative
+    /// tolerance can cause. Fixed steps detect a contact up to one step late.
     ///
     /// # Errors
-    /// Same as [`Instance::evaluator`].
+    /// See [`Instance::evaluator`].
     pub fn find_first_overlap(
         &self,
         motion: &Motion,
@@ -114,7 +113,7 @@ impl Instance<'_> {
 
 /// Returns the upper bound of the exact distance of an impact at a point.
 fn find_largest_distance(evaluator: &mut Evaluator, point: Point<'_>, place: usize) -> f64 {
-    // The sum of polynomials is rounded, that of numbers is not.
+    // Enclosures of polynomials include rounding errors; enclosures of numbers do not.
     let still = |value: f64| Enclosure::polynomial(std::array::from_fn(|_| value), 0.0);
     let all = |values: &[f64]| -> Vec<Enclosure> { values.iter().copied().map(still).collect() };
     let stretch = Stretch {
@@ -143,7 +142,8 @@ fn mean_step(trajectory: &Trajectory) -> f64 {
     }
 }
 
-/// Returns the largest change of each state in a step, for the sizes of the states: coordinates move with their rates.
+/// Returns the largest change of each state in a step, from the magnitudes of the states; coordinates move with their
+/// rates.
 fn moves_in_step(sizes: &[f64], step: f64, degrees: usize) -> Vec<f64> {
     let rates = sizes[degrees..2 * degrees].iter().map(|rate| step * rate);
     rates.chain(sizes[degrees..].iter().map(|_| 0.0)).collect()

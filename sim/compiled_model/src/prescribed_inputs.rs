@@ -10,11 +10,10 @@ use eomgen_model_spec::suggest::did_you_mean;
 
 use crate::error::Error;
 
-/// Splits every `NAME=VALUE` of an option. `option`, for example `--input`, replaces the file name in
-/// messages.
+/// Splits every `NAME=VALUE` of an option. `option`, for example `--input`, replaces the file name in messages.
 ///
 /// # Errors
-/// A text that is not `NAME=VALUE`, and a name that is given twice.
+/// A text that is not `NAME=VALUE`, or a repeated name.
 pub fn split_assignments(option: &str, texts: &[String]) -> Result<Vec<Assignment>, Error> {
     let split = texts.iter().map(|text| Assignment::split(option, text));
     let split = split
@@ -32,10 +31,10 @@ pub fn split_assignments(option: &str, texts: &[String]) -> Result<Vec<Assignmen
     Ok(split)
 }
 
-/// Returns the model with each of these inputs replaced by a definition.
+/// Returns the model with each of the given inputs replaced by a definition.
 ///
 /// # Errors
-/// An unknown or repeated input, or an invalid expression, with its place in the option.
+/// An unknown or repeated input, or an invalid expression, with its location in the option.
 pub fn with_prescribed_inputs(mut model: Model, given: &[Assignment]) -> Result<Model, Error> {
     for given in given {
         let edit = Edit::PrescribeInput(PrescribeInput {
@@ -50,7 +49,7 @@ pub fn with_prescribed_inputs(mut model: Model, given: &[Assignment]) -> Result<
     Ok(model)
 }
 
-/// Returns a warning with its value for every input that is not driven, except those of `driven`.
+/// Returns a warning with the default value for every input that is not in `driven`.
 pub fn list_undriven_inputs(model: &Model, driven: &[&str]) -> Vec<String> {
     let values = model.typical_inputs(0.0).unwrap_or_default();
     let own = model.inputs.iter().zip(values).enumerate();
@@ -67,10 +66,10 @@ pub fn list_undriven_inputs(model: &Model, driven: &[&str]) -> Vec<String> {
     .collect()
 }
 
-/// Returns the model without controllers, with one of these inputs replaced by a definition.
+/// Returns the model without controllers, with one input replaced by a definition.
 ///
 /// # Errors
-/// Same as [`with_prescribed_inputs`], and an input that a controller drives.
+/// An input that a controller drives; see also [`with_prescribed_inputs`].
 pub(crate) fn with_one_prescribed_input(model: &Model, given: &Assignment) -> Result<Model, Error> {
     let mut inputs = model.inputs.iter();
     let place = inputs.position(|input| input.name == given.name());
@@ -90,7 +89,7 @@ pub(crate) fn with_one_prescribed_input(model: &Model, given: &Assignment) -> Re
     with_prescribed_inputs(alone, std::slice::from_ref(given))
 }
 
-/// Returns the error of an input at its place in the option's text.
+/// Returns the error of an input, with its location in the option's text.
 fn not_prescribed(error: &EditError, given: &Assignment, model: &Model) -> Error {
     let found = match error {
         EditError::Invalid(found) => given.relocated(found),
@@ -114,7 +113,7 @@ fn not_prescribed(error: &EditError, given: &Assignment, model: &Model) -> Error
     }
 }
 
-/// Returns the messages of an edit, without places: these refer to the edited text.
+/// Returns the messages of an edit without locations, because they refer to the edited text.
 fn messages(error: &EditError, given: &Assignment, model: &Model) -> String {
     match error {
         EditError::Invalid(found) => {

@@ -1,12 +1,11 @@
 //! Projection of states onto the constraints.
 //!
-//! With the stabilisation rate w the accelerations are a(w) = a(0) - 2 w P r - w^2 P g. Here P =
-//! M^-1 A^T (A M^-1 A^T)^-1, g are the residuals of the holonomic constraints, and r are their
-//! rates and the residuals of the nonholonomic constraints. Two more evaluations, at w and -w for
-//! a large w, give P g and P r. These are the smallest corrections of coordinates and rates in the
-//! norm of the kinetic energy: Newton's method with the mass matrix as its metric (E. Hairer, C.
-//! Lubich, G. Wanner, *Geometric Numerical Integration*, IV.4). Their cost per mode equals that of
-//! the rates.
+//! With the stabilisation rate w the accelerations are a(w) = a(0) - 2 w P r - w^2 P g. Here P = M^-1 A^T (A M^-1
+//! A^T)^-1, g are the residuals of the holonomic constraints, and r are their rates and the residuals of the
+//! nonholonomic constraints. Two more evaluations, at w and -w for a large w, give P g and P r. These are the smallest
+//! corrections of coordinates and rates in the norm of the kinetic energy. The method is Newton's method with the mass
+//! matrix as its metric (E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, IV.4). The computation
+//! time per mode equals that of the rates.
 
 use std::cell::RefCell;
 
@@ -16,21 +15,20 @@ use eomgen_sim::ode::UNMOVED_SIZE_FRACTION;
 
 use crate::singular_positions::SingularityWatch;
 
-/// The rate w, 1/s. It is so large that the rounding of the accelerations is negligible compared
-/// with w^2 times a residual worth correcting.
+/// Stabilisation rate w, 1/s. It is so large that rounding errors of the accelerations are negligible compared with w^2
+/// times a residual worth correcting.
 pub(crate) const LARGE_RATE_PER_S: f64 = 1_048_576.0;
 
-/// Relative size of the last correction. Newton's method squares the error, so the next correction
-/// would be below rounding.
+/// Relative size of the last correction. Newton's method squares the error, so the next correction would be rounding.
 const LAST_CORRECTION_FRACTION: f64 = 1e-8;
 
-/// Maximum number of corrections after a step, which begins on the constraints.
+/// Maximum number of corrections after a step, which starts on the constraints.
 const MAX_STEP_CORRECTIONS: usize = 8;
 
-/// Its multiples differ from each other and from whole numbers, so that no two rates are equal.
+/// Golden ratio; the fractional parts of its multiples all differ.
 const GOLDEN_RATIO: f64 = 1.618_033_988_749_895;
 
-/// Maximum number of corrections of a state that need not be near the constraints.
+/// Maximum number of corrections of a state that may be far from the constraints.
 pub(crate) const MAX_INITIAL_CORRECTIONS: usize = 100;
 
 /// Projection of states onto the constraints, at one set of parameters.
@@ -41,16 +39,16 @@ pub struct Projection {
     pub(crate) negative_rate_model: RefCell<Evaluator>,
     /// Stabilisation rate of the model itself, 1/s.
     pub(crate) stabilisation_rate: f64,
-    /// Sizes of coordinates and of rates that have not moved.
+    /// Largest typical size of the coordinates, and of the rates, used until they move.
     pub(crate) unmoved_sizes: [f64; 2],
-    /// Detector of singular positions along the motion, if it stops there.
+    /// Detector of singular positions, if the motion stops there.
     pub(crate) singularity_watch: Option<RefCell<SingularityWatch>>,
 }
 
-/// Maximum number of changed initial values in a sentence.
+/// Maximum number of changed initial values in a message.
 const MAX_LISTED_CHANGES: usize = 8;
 
-/// An initial value that was changed to satisfy the constraints.
+/// Initial value that was changed to satisfy the constraints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InitialChange {
     /// Name of the coordinate, mode or rate.
@@ -64,7 +62,8 @@ pub struct InitialChange {
 }
 
 impl InitialChange {
-    /// Returns a sentence about the changes of a state, named by `what`, such as `initial state`; `None` without changes.
+    /// Returns a sentence about the changes of a state, which is called `what`, for example `initial state`; `None`
+    /// without changes.
     pub fn describe_all(what: &str, all: &[Self]) -> Option<String> {
         let listed = all.iter().take(MAX_LISTED_CHANGES).map(Self::describe);
         let mut listed: Vec<String> = listed.collect();
@@ -91,13 +90,13 @@ fn round_to_six_digits(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }
 
-/// Receiver of the states before corrections.
+/// Callback that receives the states before corrections.
 type StateObserver<'o> = &'o mut dyn FnMut(&[f64]);
 
 impl Projection {
-    /// Moves a state at a time (s) onto the constraints, to the nearest one in the norm of the kinetic energy, and
-    /// returns the number of evaluations of the rates. `own` evaluates the model itself. Returns `None` and leaves the
-    /// state as it is if no near state satisfies the constraints.
+    /// Moves a state at a time (s) to the nearest state on the constraints, in the norm of the kinetic energy. Returns
+    /// the number of evaluations of the rates. `own` evaluates the model itself. Returns `None` and leaves the state
+    /// unchanged if no state nearby satisfies the constraints.
     pub fn move_onto_constraints(
         &self,
         own: &mut Evaluator,
@@ -111,9 +110,9 @@ impl Projection {
         Some(evaluations)
     }
 
-    /// Corrects a state in place with at most `most` corrections. Calls `observe` with the state before each of them.
-    /// Returns the number of evaluations of the rates, or `None` if the corrections do not converge. The state stays
-    /// finite if it was.
+    /// Corrects a state in place with at most `most` corrections. Calls `observe` with the state before each
+    /// correction. Returns the number of evaluations of the rates, or `None` if the corrections do not converge. A
+    /// finite state stays finite.
     pub(crate) fn correct(
         &self,
         own: &mut Evaluator,
@@ -148,8 +147,8 @@ impl Projection {
         None
     }
 
-    /// Computes the corrections P g of the coordinates and P r of their rates in the memory of three rates, and returns
-    /// it, with the corrections second and third; `None` if one is not finite.
+    /// Computes the corrections P g of the coordinates and P r of their rates. They are the second and third of the
+    /// three returned rate vectors. Returns `None` if a correction is not finite.
     fn corrections<'r>(
         &self,
         own: &mut Evaluator,
@@ -161,8 +160,8 @@ impl Projection {
         if is_finite(rates, degrees) {
             return Some(rates);
         }
-        // A force along v/norm(v) has no value at rest. P g and P r do not depend on forces, and r is linear in the
-        // rates, so that two points with other rates determine both.
+        // A force along v/norm(v) is undefined at rest. P g and P r do not depend on forces, and r is linear in the
+        // rates. Therefore two points with other rates determine both.
         let mut moved = point.state.to_vec();
         let mut compute_near = |multiple: f64, rates: &mut [Vec<f64>; 3]| {
             for row in 0..degrees {
@@ -204,9 +203,8 @@ impl Projection {
         }
     }
 
-    /// Corrects a state after a step and returns the number of evaluations. If the correction
-    /// fails or the step passes a singular position, the state is filled with NaN, which stops the
-    /// motion.
+    /// Corrects a state after a step and returns the number of evaluations. If the correction fails or the step passes
+    /// a singular position, the state is filled with NaN, which stops the motion.
     pub(crate) fn correct_after_step(
         &self,
         own: &mut Evaluator,
@@ -232,7 +230,7 @@ impl Projection {
     }
 }
 
-/// Returns the largest size of an unmoved coordinate and of an unmoved rate, from the typical sizes of the states.
+/// Returns the largest typical size of the coordinates and of the rates.
 pub(crate) fn find_unmoved_sizes(typical_sizes: &[f64], degrees: usize) -> [f64; 2] {
     [0, 1].map(|kind| {
         let sizes = typical_sizes[kind * degrees..(kind + 1) * degrees].iter();

@@ -1,4 +1,4 @@
-//! Simulations that continue from call to call, as with a controller, in a co-simulation or in an interactive
+//! Simulations that continue over several calls, for example with a controller, in a co-simulation or in an interactive
 //! program.
 
 use eomgen_codegen::program::evaluator::Point;
@@ -26,8 +26,8 @@ use crate::stop_reasons::{
     describe_exact_stop, find_exact_stop_cause, may_be_supported_by_general,
 };
 
-/// A simulation that continues from call to call. Inputs may change in between; they are held until the
-/// next change. Without a change the solver keeps its steps, so that many short calls give the same motion as a long one.
+/// Simulation that continues over several calls. Inputs may change between calls; they are held until the next change.
+/// Without a change the solver keeps its steps, so that many short calls give the same motion as a long one.
 ///
 /// The controllers of the specification run. The start and each call include the samples at their last time, so that a
 /// change of an input or of the state at the time of a sample acts after it.
@@ -64,7 +64,7 @@ pub struct Simulation<'m> {
     instance: Instance<'m>,
     options: SolverOptions,
     inputs: HeldInputs,
-    /// Inputs from the time reached on.
+    /// Inputs from the current time on.
     present_inputs: Vec<f64>,
     engine: Engine,
     solver_choice: Option<SolverChoice>,
@@ -171,7 +171,7 @@ impl<'m> Instance<'m> {
         })
     }
 
-    /// Returns the reason for the exact solver, or for another one.
+    /// Returns the reason for or against the exact solver.
     fn choose_solver(&self, inputs: &HeldInputs) -> SolverChoice {
         if inputs.is_time_varying() {
             return SolverChoice::NotPiecewiseLinear(TIME_VARYING_INPUTS_MESSAGE.to_owned());
@@ -187,8 +187,8 @@ impl<'m> Instance<'m> {
         Ok(DrivenModel::new(&evaluator, inputs).surfaces())
     }
 
-    /// Starts the exact solver with the reason of its choice, `None` if it was requested. A chosen solver that cannot follow
-    /// the motion is replaced by a general one: the result is `None` and the reason.
+    /// Starts the exact solver. `choice` is the reason for its choice, or `None` if it was requested. If a chosen exact
+    /// solver does not support the motion, returns `None` and the reason; a general solver replaces it.
     fn try_exact(
         &self,
         start: (f64, &[f64]),
@@ -233,7 +233,7 @@ impl<'m> Instance<'m> {
 }
 
 impl Simulation<'_> {
-    /// Returns the time reached, s.
+    /// Returns the current time, s.
     pub fn time(&self) -> f64 {
         match &self.engine {
             Engine::Exact { motion, .. } => motion.time(),
@@ -242,7 +242,7 @@ impl Simulation<'_> {
         }
     }
 
-    /// Returns the time of the step of [`Solver::Fixed`], s; `None` for other solvers.
+    /// Returns the time of the current step of [`Solver::Fixed`], s; `None` for other solvers.
     pub(crate) fn step_time(&self) -> Option<f64> {
         match &self.engine {
             Engine::Fixed(steps) => Some(steps.time()),
@@ -250,7 +250,7 @@ impl Simulation<'_> {
         }
     }
 
-    /// Returns the state at that time, SI.
+    /// Returns the state at the current time, SI.
     pub fn state(&self) -> &[f64] {
         match &self.engine {
             Engine::Exact { motion, .. } => motion.state(),
@@ -259,7 +259,7 @@ impl Simulation<'_> {
         }
     }
 
-    /// Returns the inputs from that time on, SI.
+    /// Returns the inputs from the current time on, SI.
     pub fn inputs(&self) -> &[f64] {
         &self.present_inputs
     }
@@ -273,7 +273,7 @@ impl Simulation<'_> {
         }
     }
 
-    /// Returns the reason for this solver; `None` if it was requested.
+    /// Returns the reason for the solver in use; `None` if it was requested.
     pub fn solver_choice(&self) -> Option<&SolverChoice> {
         self.solver_choice.as_ref()
     }
@@ -283,7 +283,7 @@ impl Simulation<'_> {
         &self.surfaces
     }
 
-    /// Returns the changes of the first state, or of the last one that was set, that made the constraints hold.
+    /// Returns the corrections that projected the initial state, or the state set last, onto the constraints.
     pub fn initial_changes(&self) -> &[InitialChange] {
         &self.initial_changes
     }
@@ -294,14 +294,14 @@ impl Simulation<'_> {
         log_events(&self.log, &self.surfaces, degrees)
     }
 
-    /// Forgets the events so far.
+    /// Deletes the events so far.
     pub fn clear_events(&mut self) {
         self.log.events.clear();
         self.log.jumps.clear();
     }
 
-    /// Writes the observables at the time reached to `out`. During sticking they use the friction force that holds
-    /// the motion. At a sample they use the inputs after it.
+    /// Writes the observables at the current time to `out`. During sticking they use the friction force that holds the
+    /// motion. At a sample they use the inputs after it.
     pub fn write_observables(&mut self, out: &mut [f64]) {
         let t = self.time();
         match &mut self.engine {
@@ -320,7 +320,7 @@ impl Simulation<'_> {
         }
     }
 
-    /// Writes the rates at the time reached to `out`. During sticking they use the friction force that holds the
+    /// Writes the rates at the current time to `out`. During sticking they use the friction force that holds the
     /// motion.
     pub fn write_rates(&mut self, out: &mut [f64]) {
         let t = self.time();
@@ -340,8 +340,8 @@ impl Simulation<'_> {
         }
     }
 
-    /// Returns the modes of the switching surfaces, for a start at the same point; empty if the solver decides them
-    /// by the state.
+    /// Returns the modes of the switching surfaces, for a start at the same point. Empty if the solver derives the
+    /// modes from the state.
     pub fn modes(&self) -> &[SurfaceMode] {
         match &self.engine {
             Engine::Exact { .. } | Engine::Fixed(_) => &[],
@@ -352,7 +352,7 @@ impl Simulation<'_> {
     /// Continues to the time `until` (s).
     ///
     /// # Errors
-    /// A time before the time reached, and [`Error::Stopped`] if the solver stops early, at the time that it reached.
+    /// A time before the current one; [`Error::Stopped`] with the last time if the solver stops early.
     pub fn advance(&mut self, until: f64) -> Result<(), Error> {
         let mut trajectory = Trajectory::default();
         let ended = self.advance_through((until, &[]), &mut trajectory, &mut |_| {});
@@ -364,12 +364,12 @@ impl Simulation<'_> {
         }
     }
 
-    /// Continues to the time `until` (s), and adds the states at `samples` (s, ascending, after the time reached), the
-    /// events and the work to `trajectory`. Calls `progress` with the time reached, s. Returns the reason if the
-    /// solver stops early.
+    /// Continues to the time `until` (s). Adds the states at `samples` (s, ascending, after the current time), the
+    /// events and the work to `trajectory`. Calls `progress` with the current time, s. Returns the reason if the solver
+    /// stops early.
     ///
     /// # Errors
-    /// Times that are not finite, not ascending or before the time reached.
+    /// Times that are not finite, not ascending or before the current time.
     pub fn advance_through(
         &mut self,
         asked: (f64, &[f64]),
@@ -410,7 +410,7 @@ impl Simulation<'_> {
         }
     }
 
-    /// Checks that fixed steps to a time (s) are not too many.
+    /// Checks that the number of fixed steps to a time (s) is below the limit.
     pub(crate) fn check_step_count(&self, until: f64) -> Result<(), Error> {
         match &self.engine {
             Engine::Fixed(steps) => steps.check_step_count(until),
@@ -418,7 +418,7 @@ impl Simulation<'_> {
         }
     }
 
-    /// Checks times that a call asks for.
+    /// Checks the times that a call requests.
     pub(crate) fn check_times(&self, until: f64, samples: &[f64]) -> Result<(), Error> {
         let now = self.time();
         let ascending = samples.windows(2).all(|pair| pair[0] <= pair[1]);
@@ -432,8 +432,8 @@ impl Simulation<'_> {
         }
     }
 
-    /// Continues with the present solver. Returns the reason of an early stop, and another solver that may
-    /// continue from there.
+    /// Continues with the present solver. Returns the reason of an early stop, and another solver that may continue
+    /// from this time.
     fn try_advance(
         &mut self,
         (until, samples): (f64, &[f64]),
@@ -486,7 +486,7 @@ impl Simulation<'_> {
         }
     }
 
-    /// Continues with a general solver from a state at the time reached.
+    /// Continues with a general solver from a state at the current time.
     fn restart_general(
         &mut self,
         solver: Solver,
@@ -503,7 +503,7 @@ impl Simulation<'_> {
         Ok(changes)
     }
 
-    /// Observes the motion from the time reached on: with the energy audit if `audits` is true, and with measurements.
+    /// Observes the motion from the current time on: with the energy audit if `audits` is true, and with measurements.
     /// Fixed steps are not observed.
     ///
     /// # Errors
@@ -537,7 +537,7 @@ impl Simulation<'_> {
         Ok(())
     }
 
-    /// Returns the instants at which contact friction admitted several motions.
+    /// Returns the times at which contact friction admits several motions.
     pub(crate) fn friction_choices(&self) -> Vec<FrictionChoice> {
         match &self.engine {
             Engine::General(motion) => motion.run().system.friction_choices(),
@@ -568,11 +568,11 @@ impl Simulation<'_> {
         }
     }
 
-    /// Changes the inputs from the time reached on. The same inputs again change nothing. An input that a controller
-    /// drives keeps its value.
+    /// Changes the inputs from the current time on. Equal inputs change nothing. An input that a controller drives
+    /// keeps its value.
     ///
     /// # Errors
-    /// Another number of inputs, one that is not finite, another value of an input that a controller drives, and a
+    /// A wrong number of inputs, an input that is not finite, another value of an input that a controller drives, and a
     /// motion that cannot follow the jump.
     pub fn set_inputs(&mut self, inputs: &[f64]) -> Result<(), Error> {
         let names = &self.instance.model().program().inputs;
@@ -613,11 +613,11 @@ impl Simulation<'_> {
         self.follow_input_jump()
     }
 
-    /// Changes the inputs from the time reached on to others, which may vary with time. Adds the events of the change to
+    /// Changes the inputs from the current time on; the new ones may vary with time. Adds the events of the change to
     /// `trajectory`.
     ///
     /// # Errors
-    /// A motion that cannot follow the jump.
+    /// The motion cannot follow the jump.
     pub(crate) fn change_inputs(
         &mut self,
         inputs: HeldInputs,
@@ -658,10 +658,10 @@ impl Simulation<'_> {
         }
     }
 
-    /// Continues from another state at the time reached, SI. Controllers keep their states.
+    /// Continues from another state at the current time, SI. Controllers keep their states.
     ///
     /// # Errors
-    /// An invalid state, and one from which the motion cannot continue.
+    /// An invalid state, and a state from which the motion cannot continue.
     pub fn set_state(&mut self, state: &[f64]) -> Result<(), Error> {
         let states = self.instance.model().program().states();
         if state.len() != states || state.iter().any(|entry| !entry.is_finite()) {
@@ -669,7 +669,7 @@ impl Simulation<'_> {
                 "a state has {states} finite entries"
             )));
         }
-        // Surfaces hold or close anew.
+        // Sticking surfaces and closed contacts are determined again.
         if let Engine::Fixed(steps) = &mut self.engine {
             steps.set_state(state);
             return Ok(());

@@ -1,5 +1,5 @@
-//! Simulation of an instance: choice of the solver, and errors with the names of states and
-//! surfaces. The crate `sim` contains the solvers.
+//! Simulation of an instance: choice of the solver, and errors with the names of states and surfaces. The solvers are
+//! in the crate `sim`.
 
 use eomgen_model_spec::argument::Argument;
 use std::cell::RefCell;
@@ -32,7 +32,7 @@ pub(crate) const TIME_VARYING_INPUTS_MESSAGE: &str = "the exact solver holds inp
 pub struct Request<'r> {
     /// State at the first sample, SI.
     pub initial: &'r [f64],
-    /// Times of the samples, s, ascending.
+    /// Times of the samples in ascending order, s.
     pub times: &'r [f64],
     /// Inputs of the motion.
     pub inputs: &'r HeldInputs,
@@ -40,14 +40,14 @@ pub struct Request<'r> {
     pub solver: Solver,
     /// Relative tolerance; [`Solver::Exact`] ignores it.
     pub tolerance: f64,
-    /// Longest step, s; [`Solver::Exact`] ignores it, and [`Solver::Fixed`] takes steps of this length. See
+    /// Longest step, s. [`Solver::Exact`] ignores it, and [`Solver::Fixed`] takes steps of this length. See
     /// [`Settings::max_step`].
     pub max_step: f64,
-    /// True to compare the change of the energy with the work; see [`crate::Audit`].
+    /// True to audit the energy balance; see [`crate::Audit`].
     pub audit: bool,
 }
 
-/// A request with measurements.
+/// Request with measurements.
 #[derive(Clone, Copy)]
 pub(crate) struct Observed<'r> {
     pub request: &'r Request<'r>,
@@ -79,12 +79,12 @@ impl Request<'_> {
 }
 
 impl Instance<'_> {
-    /// Simulates from the state `initial` (SI) at the first of the times (s, ascending), and
-    /// returns the states at all of them.
+    /// Simulates from the state `initial` (SI) at the first of the times (s, ascending), and returns the states at all
+    /// of them.
     ///
     /// # Errors
-    /// An invalid request, a solver that does not support the model, and [`Error::Stopped`] if the
-    /// solver stops early. [`Instance::simulate_until_stop`] keeps the samples before such a stop.
+    /// An invalid request, a solver that does not support the model, and [`Error::Stopped`] if the solver stops early.
+    /// [`Instance::simulate_until_stop`] keeps the samples before such a stop.
     pub fn simulate(
         &self,
         initial: &[f64],
@@ -105,12 +105,11 @@ impl Instance<'_> {
             .into_complete()
     }
 
-    /// Simulates a request and returns the samples up to the time that the solver reaches. The controllers of the
-    /// specification drive their inputs. Calls `progress` with the time reached, s.
+    /// Simulates a request and returns the samples up to the end or the early stop of the solver. The controllers of
+    /// the specification drive their inputs. Calls `progress` with the current time, s.
     ///
     /// # Errors
-    /// An invalid request, a solver that does not support the model, or a solver that stops before
-    /// its first step.
+    /// An invalid request, a solver that does not support the model, or a solver that stops before its first step.
     pub fn simulate_until_stop(
         &self,
         request: &Request<'_>,
@@ -122,7 +121,7 @@ impl Instance<'_> {
     /// Simulates like [`Instance::simulate_until_stop`] and measures quantities; see [`Motion::measured`].
     ///
     /// # Errors
-    /// Same as [`Instance::simulate_until_stop`]; [`Solver::Fixed`] measures nothing.
+    /// Measurements with [`Solver::Fixed`]; see also [`Instance::simulate_until_stop`].
     pub fn simulate_measured(
         &self,
         request: &Request<'_>,
@@ -194,8 +193,8 @@ impl Instance<'_> {
             }
             return Err(error.into());
         }
-        // The evaluator rejects an indefinite mass matrix, as for the other solvers, and names the
-        // switching functions.
+        // The evaluator rejects an indefinite mass matrix, as for the other solvers, and the error names the switching
+        // functions.
         let evaluator = RefCell::new(self.evaluator()?);
         let mut trajectory = Trajectory::default();
         let start = (request.time_span().0, request.initial);
@@ -224,7 +223,7 @@ impl Instance<'_> {
                 Err(Error::Stopped { t, .. }) => Some(*t),
                 Err(_) => None,
             };
-            // Both solvers cannot follow it; the farther one states the reason.
+            // If both solvers stop early, the one that came farther gives the reason.
             let is_farther = ended_at.is_none_or(|ended_at| ended_at >= t);
             if is_farther || matches!(error, ExactError::Sticking { .. }) {
                 return motion;
@@ -389,9 +388,9 @@ pub(crate) fn new_motion(
     }
 }
 
-/// Returns the motion up to the stop; an error if the solver stopped before its first step.
+/// Returns the motion up to the stop, or an error if the solver stopped before its first step.
 pub(crate) fn with_early_stop(mut motion: Motion, why: EarlyStop) -> Result<Motion, Error> {
-    // An invalid request may be found after the first sample.
+    // An invalid request may be detected after the first sample.
     if motion.trajectory.times.len() <= usize::from(why.t.is_none()) {
         return Err(Error::Stopped {
             t: why.t,

@@ -1,17 +1,16 @@
 //! Detection of singular positions, at which constraints depend on each other.
 //!
-//! With the rows R of the constraints in the metric of the inertias, F = (R R^T)^(-1/2) R has
-//! orthonormal rows that turn smoothly along a motion. If R loses rank and regains it, as when a
-//! parallelogram folds flat, one direction of F changes its sign. Then F_1 F_2^T of the states
-//! before and after has the eigenvalue -1, for any step length. Inside a step, coordinates follow
-//! the cubic through the coordinates and rates at both ends.
+//! Let R be the rows of the constraints in the metric of the inertias. Then F = (R R^T)^(-1/2) R has orthonormal rows
+//! that turn smoothly along a motion. If R loses rank and regains it, as when a parallelogram folds flat, one direction
+//! of F changes its sign. F_1 F_2^T of the states before and after then has the eigenvalue -1, for any step length.
+//! Inside a step, coordinates follow the cubic through the coordinates and rates at both ends.
 //!
-//! If constraints depend on each other everywhere, R contains as many rows as are independent, the best ones at the
-//! start of each interval. At a singular position every choice loses rank.
+//! If constraints depend on each other at every state, R contains only independent rows, chosen at the start of each
+//! interval. At a singular position every choice loses rank.
 //!
-//! The rounding of accelerations grows with the reciprocal square of the least singular value of
-//! R, so steps may fail before the position is reached. The motion is then extrapolated from the
-//! coordinates, rates and accelerations of its last state.
+//! The rounding error of accelerations grows with the reciprocal square of the least singular value of R, so steps may
+//! fail before the position is reached. The motion is then extrapolated from the coordinates, rates and accelerations
+//! of its last state.
 
 use eomgen_analysis::qr_iteration::symmetric_eigen;
 use eomgen_codegen::independence::rows::ConstraintRows;
@@ -23,63 +22,61 @@ use nalgebra::{DMatrix, DVector, Dyn, RowDVector, SymmetricEigen};
 
 use crate::constraint_rank::ConstraintRank;
 
-/// Least eigenvalue of the symmetric part of F_1 F_2^T if no direction turned by more than 60
-/// degrees.
+/// Smallest eigenvalue of the symmetric part of F_1 F_2^T if no direction has turned by more than 60 degrees.
 const MIN_TURN_EIGENVALUE: f64 = 0.5;
 
 const MAX_HALVINGS: u32 = 40;
 
-/// Least singular value of the scaled rows below which constraints count as dependent.
+/// Constraints count as dependent if the least singular value of the scaled rows is below this limit.
 const SINGULAR_VALUE_LIMIT: f64 = 1e-3;
 
-/// Least singular value of the scaled rows below which accelerations have no digits: the root of
-/// the unit roundoff.
+/// Least singular value of the scaled rows below which accelerations have no accurate digits: the square root of the
+/// unit roundoff.
 const UNDETERMINED_VALUE_LIMIT: f64 = 1.5e-8;
 
 /// Least singular value of the scaled rows below which a step ends the motion if its straight continuation reaches a
-/// singular position: accelerations have eight digits there, and fewer with every shorter step.
+/// singular position. Accelerations have eight accurate digits there, and fewer after every shorter step.
 const IMMINENT_VALUE_LIMIT: f64 = 1e-4;
 
-/// Least singular value of the scaled rows below which a motion is extrapolated to a singular
-/// position.
+/// A motion is extrapolated to a singular position if the least singular value of the scaled rows is below this limit.
 const NEAR_SINGULAR_VALUE_LIMIT: f64 = 0.1;
 
-/// Maximum number of doublings of the extrapolated time, from its rounding on.
+/// Maximum number of doublings of the extrapolated time, which starts at its rounding error.
 const MAX_DOUBLINGS: i32 = 52;
 
-/// Number of states kept before the present one: the starts of this step and the preceding one.
+/// Number of states kept before the current one: the starts of this step and of the preceding step.
 const KEPT_STATES: usize = 2;
 
 struct WatchedState {
     t: f64,
     state: Vec<f64>,
-    /// The scaled rows R of all constraints.
+    /// Scaled rows R of all constraints.
     rows: DMatrix<f64>,
-    /// The orthonormal rows F if all constraints are independent.
+    /// Orthonormal rows F if all constraints are independent.
     frame: Option<DMatrix<f64>>,
-    /// Least singular value of the scaled rows, without those that vanish everywhere.
+    /// Least singular value of the scaled rows, without singular values that vanish at every state.
     least: f64,
-    /// Combination of the constraints for the least singular value.
+    /// Combination of the constraints that belongs to the least singular value.
     dependent_combination: DVector<f64>,
 }
 
-/// States on a path, by the time (s).
+/// States on a path as a function of time (s).
 type Path<'p> = dyn Fn(f64) -> Vec<f64> + 'p;
 
 /// Detector of singular positions along a motion.
 pub(crate) struct SingularityWatch {
     rows: ConstraintRows,
     names: Vec<String>,
-    /// Number of constraints that depend on the others everywhere.
+    /// Number of constraints that depend on the others at every state.
     excess: usize,
-    /// Largest length of each row up to now; a single row may vanish.
+    /// Largest length of each row so far, because a single row may vanish.
     lengths: Vec<f64>,
     passed: Vec<WatchedState>,
     found: Option<(f64, String)>,
 }
 
 impl SingularityWatch {
-    /// Creates the detector for constraints of which `excess` depend on the others everywhere.
+    /// Creates a detector for constraints; `excess` of them depend on the others at every state.
     pub(crate) fn new(rows: ConstraintRows, names: Vec<String>, excess: usize) -> Self {
         Self {
             rows,
@@ -91,14 +88,14 @@ impl SingularityWatch {
         }
     }
 
-    /// Returns true if the motion passes a singular position between the last state and this one.
+    /// Returns true if the motion passes a singular position between the last state and the given one.
     pub(crate) fn passes_singularity(
         &mut self,
         t: f64,
         state: &[f64],
         inputs: &HeldInputs,
     ) -> bool {
-        // The solver rejected steps to later times.
+        // The solver rejected the steps to later times.
         self.passed.retain(|earlier| earlier.t < t);
         let Some(here) = self.watch_state(t, state.to_vec(), inputs) else {
             return false;
@@ -129,8 +126,8 @@ impl SingularityWatch {
         false
     }
 
-    /// Returns the time (s) of the singular position that stopped the motion, and a message;
-    /// `None` if there is none. The solver stopped at `t` (s) and `state`, with these rates.
+    /// Returns the time (s) of the singular position that stopped the motion, and a message; `None` if there is none.
+    /// The solver stopped at `t` (s) and `state`, with the given rates.
     pub(crate) fn find_end(
         &mut self,
         (t, state): (f64, &[f64]),
@@ -183,7 +180,7 @@ impl SingularityWatch {
         })
     }
 
-    /// Returns the frames of two states, for the same constraints.
+    /// Returns the frames F of two states, for the same constraints.
     fn frames(&self, a: &WatchedState, b: &WatchedState) -> Option<[DMatrix<f64>; 2]> {
         if let (Some(a), Some(b)) = (&a.frame, &b.frame) {
             return Some([a.clone(), b.clone()]);
@@ -267,7 +264,7 @@ impl SingularityWatch {
         }
         let first = self.search((a, &middle), path, inputs, halvings - 1);
         let found = first.or_else(|| self.search((&middle, b), path, inputs, halvings - 1));
-        // Errors of the coordinates replace a singular position by a fast turn next to it.
+        // Errors of the coordinates replace a singular position by a fast turn of F nearby.
         found.or((middle.least <= SINGULAR_VALUE_LIMIT).then_some(middle))
     }
 
@@ -285,7 +282,7 @@ impl SingularityWatch {
     }
 }
 
-/// Returns (R R^T)^(-1/2) R of the rows R, from the eigenvalues of R R^T.
+/// Returns (R R^T)^(-1/2) R for the rows R, from the eigenvalues of R R^T.
 fn orthonormal_rows(mut squares: SymmetricEigen<f64, Dyn>, rows: &DMatrix<f64>) -> DMatrix<f64> {
     for value in squares.eigenvalues.iter_mut() {
         *value = value.max(f64::MIN_POSITIVE).sqrt().recip();

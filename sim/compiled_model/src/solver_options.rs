@@ -7,8 +7,8 @@ use crate::motion::Solver;
 /// Default relative tolerance.
 pub const DEFAULT_TOLERANCE: f64 = 1e-9;
 
-/// Maximum number of explicit steps, if stability limits their length, before [`Solver::Auto`]
-/// changes to the implicit solver. That solver needs a few times less time for the trajectory.
+/// Maximum number of explicit steps, if stability limits their length, before [`Solver::Auto`] changes to the implicit
+/// solver. The implicit solver then needs a fraction of the time for the trajectory.
 pub(crate) const MAX_STIFF_STEPS: u64 = 100_000;
 
 /// Solver and accuracy of a simulation.

@@ -1,8 +1,8 @@
-//! Matrices of a linearisation. For a large model they are computed column by column, from derivatives along each
-//! state and input.
+//! Matrices of a linearisation. For a large model they are computed column by column, from derivatives along each state
+//! and input.
 //!
 //! The program of one derivative along a direction is a few times as long as that of the rates. Programs of Jacobians
-//! compute each entry: for relative coordinates of a chain their length grows with a power of the number of bodies.
+//! compute each entry: in relative coordinates of a chain, their length grows with a power of the number of bodies.
 
 use eomgen_codegen::mechanics::outputs::TANGENTS;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
@@ -14,13 +14,13 @@ use crate::jacobians::{Jacobian, JacobianEvaluator, JacobianLayout};
 
 /// Derivatives of rates and observables at a point, row-major.
 pub(crate) struct StateSpace {
-    /// Rates by states.
+    /// Derivatives of the rates with respect to the state.
     pub a: Vec<f64>,
-    /// Rates by inputs.
+    /// Derivatives of the rates with respect to the inputs.
     pub b: Vec<f64>,
-    /// Observables by states.
+    /// Derivatives of the observables with respect to the state.
     pub c: Vec<f64>,
-    /// Observables by inputs.
+    /// Derivatives of the observables with respect to the inputs.
     pub d: Vec<f64>,
 }
 
@@ -31,11 +31,12 @@ impl StateSpace {
     }
 }
 
-/// Largest product of the operations of the rates and the variables for which every entry of the Jacobians is
-/// derived. A plane chain of 20 hinged bodies is below it and takes 0.2 GB. One of 40 bodies would take 1.5 GB.
+/// Largest product of two numbers for which every entry of the Jacobians is derived: operations of the rates, and
+/// variables. A plane chain of 20 hinged bodies is below this limit and needs 0.2 GB. A chain of 40 bodies would need
+/// 1.5 GB.
 const MAX_ENTRY_WORK: usize = 500_000;
 
-/// Evaluator of [`StateSpace`] and of derivatives by time.
+/// Evaluator of [`StateSpace`] and of derivatives with respect to time.
 pub(crate) struct StateSpaceEvaluator<'i, 'm> {
     instance: &'i Instance<'m>,
     tangents: Option<Tangents>,
@@ -46,8 +47,8 @@ impl<'m> Instance<'m> {
     /// Returns an evaluator of the matrices of a linearisation. It does not check that the mass matrix is positive
     /// definite, so its accelerations may be invalid.
     ///
-    /// Small models are differentiated entry by entry: entries that cancel are then exactly 0, and null spaces are
-    /// found by them. Large models are differentiated along directions.
+    /// Small models are differentiated entry by entry, because entries that cancel are then exactly 0 and null spaces
+    /// can be found. Large models are differentiated along directions.
     pub(crate) fn state_space_evaluator(&self) -> Result<StateSpaceEvaluator<'_, 'm>, Error> {
         let program = self.model().program();
         let variables = program.states() + program.inputs.len();
@@ -78,8 +79,8 @@ impl<'m> Instance<'m> {
 }
 
 impl StateSpaceEvaluator<'_, '_> {
-    /// Returns the matrices at a point. On a switching surface the derivatives are one-sided. An entry without a
-    /// finite value makes no other entry infinite.
+    /// Returns the matrices at a point. On a switching surface the derivatives are one-sided. An infinite entry does
+    /// not affect the other entries.
     pub(crate) fn evaluate(&mut self, point: Point<'_>) -> Result<StateSpace, Error> {
         if let Some(tangents) = &mut self.tangents {
             let found = tangents.evaluate(point);
@@ -87,7 +88,7 @@ impl StateSpaceEvaluator<'_, '_> {
                 return Ok(found);
             }
         }
-        // Along one direction, infinity times 0 hides the finite entries of the same row.
+        // In a derivative along one direction, infinity times 0 hides the finite entries of the same row.
         let entries = match &mut self.entries {
             Some(entries) => entries,
             none => none.insert(self.instance.interpreted_jacobians()?),
@@ -158,7 +159,7 @@ impl Tangents {
         found
     }
 
-    /// Returns the derivatives of the rates by time that are not identically 0.
+    /// Returns the derivatives of the rates with respect to time that are not identically 0.
     fn by_time(&mut self, point: Point<'_>) -> Vec<f64> {
         let layout = &mut self.by_time;
         self.evaluator
@@ -204,7 +205,7 @@ flow = { on = "p", value = "sign(valve)*sqrt(abs(valve))*sqrt(m*g*l)" }
 height = { value = "r.y", unit = "m" }
 "#;
 
-    /// Returns the matrices by directions and by entries.
+    /// Returns the matrices computed along directions and entry by entry.
     fn both(inputs: &[f64]) -> [StateSpace; 2] {
         let model = CompiledModel::from_text("forced.toml", FORCED, Orders::Declared);
         let model = model.unwrap_or_else(|error| panic!("{error}"));

@@ -51,7 +51,7 @@ pub(crate) fn find_exact_stop_cause(
     }
 }
 
-/// Returns cause and cure of an error of the exact solver.
+/// Returns cause and remedy of an error of the exact solver.
 #[cfg(feature = "derive")]
 pub(crate) fn describe_exact_stop(
     labels: &Labels,
@@ -63,7 +63,7 @@ pub(crate) fn describe_exact_stop(
     })
 }
 
-/// Returns true if another solver may follow the motion.
+/// Returns true if another solver may support the motion.
 #[cfg(feature = "derive")]
 pub(crate) fn may_be_supported_by_general(error: &ExactError) -> bool {
     match error {
@@ -78,7 +78,7 @@ pub(crate) fn may_be_supported_by_general(error: &ExactError) -> bool {
     }
 }
 
-/// Formats an error of a solver with the names of the states and of these switching functions.
+/// Formats an error of a solver with the names of the states and switching functions.
 pub(crate) fn format_named(
     labels: &Labels,
     (surfaces, solver): (&[Surface], Solver),

@@ -1,7 +1,7 @@
-//! Typical sizes of states, derived from their units. The parameters, initial values and ranges of
-//! a model determine the size of each base unit: a least-squares fit of the logarithms of their
-//! values, which are linear in the logarithms of the base units. A change of units scales all
-//! sizes alike, so solvers that compare states with these sizes take the same steps.
+//! Typical sizes of states, from their units. The parameters, initial values and ranges of a model determine the size
+//! of each base unit, by a least-squares fit of the logarithms of their values. These are linear in the logarithms of
+//! the base units. A change of units scales all sizes alike, so solvers that compare states with these sizes take the
+//! same steps.
 
 use eomgen_analysis::qr_iteration;
 use eomgen_model_spec::dimension::Dimension;
@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 
 const BASE_UNITS: usize = 7;
 
-/// Singular values below this fraction of the largest count as 0; their combination of units is
+/// Singular values below this fraction of the largest count as 0; the corresponding combination of units is
 /// undetermined.
 const MIN_SINGULAR_VALUE_FRACTION: f64 = 1e-9;
 
@@ -22,7 +22,7 @@ const LARGEST_EXPONENT: f64 = 400.0;
 pub struct TypicalSizes([f64; BASE_UNITS]);
 
 impl TypicalSizes {
-    /// Fits the sizes to the values of a model at these orders of its fields.
+    /// Fits the sizes to the values of a model with the given orders of its fields.
     pub fn new(model: &Model, orders: &[usize]) -> Self {
         Self(fit_base_units(&known_values(model, orders)))
     }
@@ -108,8 +108,7 @@ mod tests {
 
     use super::compute_typical_sizes;
 
-    /// Returns the sizes for a mass on a spring with a stop, with lengths and masses scaled by
-    /// powers of two.
+    /// Returns the sizes for a mass on a spring with a stop; lengths and masses are scaled by powers of two.
     fn sizes(length: i32, mass: i32) -> Vec<f64> {
         let (length, mass) = (2f64.powi(length), 2f64.powi(mass));
         let text = format!(

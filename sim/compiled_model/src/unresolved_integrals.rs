@@ -1,4 +1,4 @@
-//! Check of a motion for integrals along a field that their quadrature does not resolve.
+//! Check of a motion for integrals along a field that the quadrature does not resolve.
 
 use eomgen_codegen::mechanics::fields::resolution::{
     MAX_ERROR, QuadratureError, State, has_nonlinear_integrals, worst_at_state,
@@ -8,10 +8,10 @@ use crate::error::Error;
 use crate::instance::Instance;
 use crate::motion::Motion;
 
-/// Number of samples of a motion that are checked: each takes as long as hundreds of evaluations.
+/// Number of checked samples of a motion; each check takes as long as hundreds of evaluations.
 const SAMPLES: usize = 20;
 
-/// Sample at which an integral has a larger error than the quadrature may have.
+/// Sample at which an integral has a larger error than the quadrature allows.
 #[derive(Clone, Debug)]
 pub struct UnresolvedIntegral {
     /// Time, s.
@@ -35,8 +35,8 @@ impl UnresolvedIntegral {
 }
 
 impl Instance<'_> {
-    /// Returns the sample with the largest error of an integral whose integrand is no polynomial of the motion, if
-    /// that error is above [`MAX_ERROR`].
+    /// Returns the sample with the largest integral error if this error is above [`MAX_ERROR`]. Only integrals whose
+    /// integrand is not a polynomial of the motion are checked.
     ///
     /// # Errors
     /// Invalid parameter values.

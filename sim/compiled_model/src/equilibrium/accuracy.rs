@@ -1,9 +1,10 @@
-//! Accuracy of an equilibrium: the rounding errors of the accelerations, and the errors of the unknowns that follow.
+//! Accuracy of an equilibrium: rounding errors of the accelerations, and the resulting errors of the unknowns.
 //!
-//! At an equilibrium r the accelerations, J their derivatives by the unknowns. J without directions of rounding, J_k, has
-//! the pseudoinverse J_k^+. The part of r that no change of the unknowns removes, r - J_k J_k^+ r, must be rounding: a
-//! direction whose slope is lost beside stiffer ones is no free motion if a force acts along it. The errors of the
-//! unknowns are |J_k^+ r| and |J_k^+| times the roundings of r.
+//! Notation: r are the accelerations at the equilibrium, and J are their derivatives with respect to the unknowns. J_k
+//! is J without directions whose slopes are rounding, and J_k^+ is its pseudoinverse. No change of the unknowns removes
+//! the part r - J_k J_k^+ r, so it must be rounding. A direction whose slope is lost beside stiffer ones is no free
+//! motion if a force acts along it. The errors of the unknowns are |J_k^+ r| and |J_k^+| times the rounding errors of
+//! r.
 
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_codegen::rounding::bound_rates;
@@ -15,24 +16,24 @@ use crate::instance::Instance;
 
 use super::linear::{KeptDirections, LinearisedEquations, ScaledSystem};
 
-/// Largest error of an unknown, relative to its value or its size: a table has six digits.
+/// Largest error of an unknown, relative to its value or its size. It gives the six digits of a table.
 const MAX_ERROR_FRACTION: f64 = 1e-6;
 
-/// Factor of roundings at which an acceleration that no change removes is one.
+/// An acceleration that no change of the unknowns removes is nonzero beyond this multiple of its rounding error.
 const BALANCE_FACTOR: f64 = 2.0;
 
-/// Reason why a point is no equilibrium to the digits of its unknowns.
+/// Reason why a point is not an equilibrium to six digits of its unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Inaccuracy {
-    /// An acceleration remains, by its row.
+    /// An acceleration remains; its row.
     Unbalanced(usize),
-    /// An unknown has a large error, by its index, with the error.
+    /// An unknown has a large error; its index and the error.
     Uncertain(usize, f64),
-    /// The terms with a parameter are rounding of others.
+    /// The terms with a parameter are lost in the rounding of other terms; its name.
     Hidden(String),
 }
 
-/// Linearised equations at a point, with the directions in which a change of the unknowns removes accelerations.
+/// Linearised equations at a point, and the directions in which a change of the unknowns removes accelerations.
 pub(super) struct Accuracy<'e> {
     equations: &'e LinearisedEquations,
     system: &'e ScaledSystem,
@@ -41,7 +42,7 @@ pub(super) struct Accuracy<'e> {
 }
 
 impl<'e> Accuracy<'e> {
-    /// Singular values below `least` of the largest count as 0.
+    /// Prepares the directions. Singular values below `least` times the largest count as 0.
     pub fn new(equations: &'e LinearisedEquations, system: &'e ScaledSystem, least: f64) -> Self {
         Self {
             equations,
@@ -56,7 +57,7 @@ impl<'e> Accuracy<'e> {
         self.kept.left.ncols() < self.system.matrix.ncols()
     }
 
-    /// Returns an acceleration that no change of the unknowns removes and that exceeds the roundings.
+    /// Returns an acceleration that no change of the unknowns removes and that exceeds its rounding error.
     pub fn find_unbalanced(&self, roundings: &DVector<f64>) -> Option<Inaccuracy> {
         let rows = self.system.rows.abs();
         let count = self.residuals.len();
@@ -76,8 +77,8 @@ impl<'e> Accuracy<'e> {
         Some(Inaccuracy::Unbalanced(row))
     }
 
-    /// Returns the unknown with the largest error, if it is too large, for the `roundings` of the accelerations.
-    /// `magnitudes` are those of the unknowns, 0 if unknown.
+    /// Returns the unknown with the largest error if the error is too large. `roundings` are rounding errors of the
+    /// accelerations, and `magnitudes` those of the unknowns, 0 if unknown.
     pub fn find_uncertain(
         &self,
         roundings: &DVector<f64>,
@@ -104,7 +105,7 @@ impl<'e> Accuracy<'e> {
 }
 
 impl Instance<'_> {
-    /// Returns bounds of the rounding errors of the accelerations and of the rates of first-order states at a point;
+    /// Returns bounds on the rounding errors of the accelerations and of the rates of first-order states at a point;
     /// `None` if one has no bound.
     pub(super) fn bound_rate_roundings(&self, point: Point<'_>) -> Option<Vec<f64>> {
         let numbers = std::iter::once(&point.t).chain(point.state);

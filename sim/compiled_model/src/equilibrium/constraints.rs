@@ -1,4 +1,4 @@
-//! Holonomic constraints of a search: the search stays on them.
+//! Holonomic constraints of an equilibrium search, which all its points satisfy.
 
 use eomgen_analysis::allowed_motions::{AllowedMotions, row_by_row};
 use eomgen_analysis::qr_iteration;
@@ -16,18 +16,19 @@ use super::unknown::Unknown;
 /// Maximum number of corrections of a point.
 const MAX_CORRECTIONS: usize = 20;
 
-/// Correction, relative to the size of its unknown, after which Newton's method leaves rounding.
+/// A correction below this fraction of the size of its unknown is the last one of Newton's method; the remaining error
+/// is rounding.
 const LAST_CORRECTION_FRACTION: f64 = 1e-9;
 
 /// Singular values below this fraction of the largest count as 0.
 const MIN_SINGULAR_VALUE_FRACTION: f64 = 1e-9;
 
-/// Holonomic constraints and their derivatives by the unknowns of a search.
+/// Holonomic constraints and their derivatives with respect to the unknowns of a search.
 pub(super) struct HolonomicConstraints {
     rows: ConstraintRows,
-    /// Indices of the constraints.
+    /// Indices of the holonomic constraints among all constraints.
     places: Vec<usize>,
-    /// Indices of their multipliers among the observables.
+    /// Indices of the multipliers of these constraints among the observables.
     multipliers: Vec<usize>,
     /// State of each unknown; `None` for unknowns that the constraints do not contain.
     columns: Vec<Option<usize>>,
@@ -36,7 +37,7 @@ pub(super) struct HolonomicConstraints {
 }
 
 impl HolonomicConstraints {
-    /// Returns the constraints of a model by these unknowns; `None` if there are none.
+    /// Returns the constraints of a model as functions of the given unknowns; `None` without constraints.
     pub fn new(instance: &Instance<'_>, unknowns: &[Unknown]) -> Option<Self> {
         let rows = instance.constraint_rows()?;
         let constraints = instance.model().model().constraints.iter().enumerate();
@@ -69,8 +70,8 @@ impl HolonomicConstraints {
         })
     }
 
-    /// Returns the constraints at a point, with their multipliers by the evaluator of the model, or `None` if a number is
-    /// not finite.
+    /// Linearises the constraints at a point. The evaluator of the model gives their multipliers. Returns `None` if a
+    /// number is not finite.
     pub fn linearise(
         &mut self,
         at: &OperatingPoint,
@@ -106,7 +107,7 @@ impl HolonomicConstraints {
         })
     }
 
-    /// Returns the derivatives of the constraints by the coordinates and modes at a point, SI.
+    /// Returns the derivatives of the constraints with respect to the coordinates and modes at a point, SI.
     fn derivatives(&mut self, at: &OperatingPoint) -> DMatrix<f64> {
         let all = self.rows.derivatives(at.point());
         let degrees = self.rows.degrees_of_freedom();
@@ -121,8 +122,8 @@ impl HolonomicConstraints {
         })
     }
 
-    /// Moves a point onto the constraints by the smallest changes of the unknowns relative to their typical sizes.
-    /// Returns false if that fails.
+    /// Projects a point onto the constraints by the smallest changes of the unknowns, relative to their typical sizes.
+    /// Returns false if the projection fails.
     pub fn project(&mut self, at: &mut OperatingPoint) -> bool {
         for _ in 0..MAX_CORRECTIONS {
             let residuals = self.rows.residuals(at.point());
@@ -161,7 +162,7 @@ impl HolonomicConstraints {
                 }
             }
             if relative <= LAST_CORRECTION_FRACTION {
-                // Fixed coordinates can make the constraints unsolvable.
+                // If coordinates are fixed, the constraints may have no solution.
                 return (&matrix * &change - &wanted).amax() <= LAST_CORRECTION_FRACTION;
             }
         }

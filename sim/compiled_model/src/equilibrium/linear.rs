@@ -1,14 +1,14 @@
-//! Linearised equations at one point of a search, scaled so that units do not matter.
+//! Linearised equations at one point of an equilibrium search, scaled to be independent of units.
 
 use eomgen_analysis::allowed_motions::{AllowedMotions, row_by_row};
 use eomgen_analysis::qr_iteration;
 use nalgebra::{DMatrix, DVector, Dyn, SVD};
 
-/// Accelerations below this fraction of their terms have no sign.
+/// The sign of an acceleration below this fraction of its terms is unknown.
 const MAX_SIGNLESS_FRACTION: f64 = 1e-12;
 
-/// Largest change of the accelerations' slope along a step, relative to the slope, at which the
-/// equations count as linear.
+/// Largest change of the slope of the accelerations along a step for which the equations count as linear, relative to
+/// the slope.
 const MAX_SLOPE_CHANGE_FRACTION: f64 = 0.5;
 
 /// Accelerations and rates of first-order states at a point, and their derivatives with respect to
@@ -16,24 +16,24 @@ const MAX_SLOPE_CHANGE_FRACTION: f64 = 0.5;
 pub(super) struct LinearisedEquations {
     pub accelerations: DVector<f64>,
     pub matrix: DMatrix<f64>,
-    /// Constraints at this point, if there are any.
+    /// Linearised constraints at this point; `None` without constraints.
     pub constraints: Option<LinearisedConstraints>,
     /// Largest magnitude of each acceleration or of its terms at this point.
     pub terms: DVector<f64>,
-    /// The same, at all points of the search up to now: the scales of its norm.
+    /// Largest such magnitude at all points of the search so far; scales of the norm.
     pub sizes: DVector<f64>,
-    /// Sum of the magnitudes of the terms that each acceleration has in the state, by its derivatives, and of the largest
+    /// For each acceleration, the sum of the magnitudes of its derivatives times the states, and of its largest
     /// constraint force.
     pub state_terms: DVector<f64>,
     /// True for each acceleration that an unknown input changes.
     pub input_rows: Vec<bool>,
-    /// Largest magnitudes of the accelerations at all points of the search up to now.
+    /// Largest magnitude of each acceleration at all points of the search so far.
     pub largest: DVector<f64>,
 }
 
 impl LinearisedEquations {
-    /// Computes the smallest change of the unknowns that minimises the linearised accelerations and
-    /// satisfies the linearised constraints. Singular values below `least`, relative to the largest, count as 0.
+    /// Computes the smallest change of the unknowns that minimises the linearised accelerations and satisfies the
+    /// linearised constraints. Singular values below `least` times the largest count as 0.
     pub fn solve_step(&self, scales: &[Option<f64>], least: f64) -> DVector<f64> {
         let unknowns = self.matrix.ncols();
         let step = || {
@@ -46,7 +46,7 @@ impl LinearisedEquations {
         step().unwrap_or_else(|| DVector::zeros(unknowns))
     }
 
-    /// Returns the equations without units. Each unknown is scaled by its natural scale or, without one, by its effect on
+    /// Returns dimensionless equations. Each unknown is scaled by its natural scale or, without one, by its effect on
     /// the accelerations. `None` if a number is not finite.
     pub fn scale(&self, scales: &[Option<f64>]) -> Option<ScaledSystem> {
         let (sizes, units) = self.find_scales(scales);
@@ -67,13 +67,14 @@ impl LinearisedEquations {
             matrix: &rows * &self.matrix * &changes,
             rows,
             changes,
-            // The scaled slopes are about 1. Forces with an extremum along a displacement have a slope of rounding.
+            // The slopes are about 1 after scaling. Forces with an extremum along a displacement have a slope of
+            // rounding.
             slope_size: 1.0,
         })
     }
 
-    /// Returns the scales of rows and unknowns. Sizes of rows give units of unknowns by their effect; these units give the
-    /// sizes of rows in which all terms are 0, for example that of an actuator at rest.
+    /// Returns the scales of rows and unknowns. The sizes of rows give the units of unknowns by their effects. These
+    /// units give the sizes of rows in which all terms are 0, for example the row of an actuator at rest.
     fn find_scales(&self, scales: &[Option<f64>]) -> (DVector<f64>, DVector<f64>) {
         let entry = |row: usize, column: usize| self.matrix[(row, column)].abs();
         let positive = |size: f64| (size > 0.0).then_some(size);
@@ -107,8 +108,8 @@ impl LinearisedEquations {
         (known_or_one(rows), known_or_one(units))
     }
 
-    /// Returns true if the slope of the accelerations along `way` is nearly the same at another
-    /// point.
+    /// Returns true if the slope of the accelerations along `way` is nearly the same in `there`, the equations at
+    /// another point.
     pub fn is_straight_to(&self, there: &Self, way: &DVector<f64>) -> bool {
         let rows = self.sizes.map(nonzero_or_one);
         let slope = |linear: &Self| (&linear.matrix * way).component_div(&rows);
@@ -116,8 +117,8 @@ impl LinearisedEquations {
         (&there - &here).norm() <= MAX_SLOPE_CHANGE_FRACTION * here.norm().max(there.norm())
     }
 
-    /// Returns the squared norm of accelerations, relative to the sizes of these equations. With constraints it is that of
-    /// the kinetic energy, which does not depend on the direction of the coordinates.
+    /// Returns the squared norm of accelerations, relative to the sizes of these equations. With constraints the norm
+    /// is that of the kinetic energy, which does not depend on the choice of coordinates.
     pub fn squared_norm(&self, accelerations: &DVector<f64>) -> f64 {
         let relative = |row: usize| accelerations[row] / nonzero_or_one(self.sizes[row]);
         let squares = |rows: std::ops::Range<usize>| rows.map(relative).map(|own| own * own).sum();
@@ -135,20 +136,20 @@ impl LinearisedEquations {
         energy / nonzero_or_one(size) + others
     }
 
-    /// Returns true if all accelerations are below this fraction of their terms.
+    /// Returns true if all accelerations are below the fraction `part` of their terms.
     pub fn is_below(&self, part: f64) -> bool {
         self.rows_above(part).is_empty()
     }
 
-    /// Returns the rows of the accelerations that are not below this fraction of their terms.
+    /// Returns the rows of the accelerations that are at least the fraction `part` of their terms.
     pub fn rows_above(&self, part: f64) -> Vec<usize> {
         let rows = self.relative_accelerations().enumerate();
         let above = rows.filter(|(_, own)| own.is_nan() || *own > part);
         above.map(|(row, _)| row).collect()
     }
 
-    /// Returns the magnitude of an unknown that balances the largest acceleration of the search in one row; 0 if it changes
-    /// none.
+    /// Returns the magnitude of an unknown that balances the largest acceleration of the search in one row; 0 if the
+    /// unknown changes no acceleration.
     pub fn balancing_size(&self, unknown: usize) -> f64 {
         let effects = self.matrix.column(unknown).into_iter();
         let rows = effects
@@ -168,7 +169,7 @@ impl LinearisedEquations {
         worst.map_or((0, 0.0), |(row, _)| (row, self.accelerations[row]))
     }
 
-    /// Returns the sign of the acceleration of a coordinate; 0 if it is rounding.
+    /// Returns the sign of the acceleration of a coordinate; 0 if the acceleration is rounding.
     pub fn acceleration_sign(&self, coordinate: usize) -> f64 {
         let value = self.accelerations.get(coordinate).copied().unwrap_or(0.0);
         match self.terms.get(coordinate) {
@@ -183,7 +184,7 @@ impl LinearisedEquations {
         parts
             .zip(scales)
             .map(|((value, size), (largest, is_balanced))| {
-                // Terms below the rounding of earlier accelerations are those of an input that balances nothing.
+                // Terms below the rounding errors of earlier accelerations come from an input that balances nothing.
                 let is_rounding = *is_balanced && *size <= f64::EPSILON * largest;
                 if *value == 0.0 || is_rounding {
                     0.0
@@ -194,21 +195,23 @@ impl LinearisedEquations {
     }
 }
 
-/// Holonomic constraints at a point of a search.
+/// Holonomic constraints, linearised at a point of a search.
 pub(super) struct LinearisedConstraints {
-    /// Derivatives of the constraints by the unknowns.
+    /// Derivatives of the constraints with respect to the unknowns.
     pub by_unknowns: DMatrix<f64>,
     /// Mass matrix.
     pub mass: DMatrix<f64>,
-    /// Largest acceleration of each coordinate by the force of one constraint. Those of several constraints may cancel.
+    /// Largest acceleration of each coordinate by the force of a single constraint. The forces of several constraints
+    /// may cancel.
     pub largest_accelerations: DVector<f64>,
     /// Independent displacements of the coordinates that satisfy the linearised constraints, as columns.
     pub displacements: DMatrix<f64>,
 }
 
 impl LinearisedConstraints {
-    /// Returns the part of the accelerations along the displacements, by the principle of least constraint. Across them the
-    /// constraints determine the accelerations, and the rounding of their forces remains.
+    /// Returns the component of the accelerations along the displacements, by the principle of least constraint. In the
+    /// orthogonal directions the constraints determine the accelerations; a component there is only rounding of the
+    /// constraint forces.
     pub fn project(&self, accelerations: &DVector<f64>) -> Option<DVector<f64>> {
         let degrees = self.mass.nrows();
         let mut projected = accelerations.clone();
@@ -227,8 +230,8 @@ impl LinearisedConstraints {
         Some(allowed.basis().clone())
     }
 
-    /// Returns the rows of the equations for accelerations relative to `sizes`. The accelerations count along the
-    /// displacements only: across them the constraints determine them.
+    /// Returns the rows of the equations for accelerations relative to `sizes`. Only accelerations along the
+    /// displacements count: in the orthogonal directions the constraints determine the accelerations.
     fn rows(&self, sizes: &DVector<f64>) -> DMatrix<f64> {
         let (degrees, independent) = self.displacements.shape();
         let mut along = self.displacements.transpose() * &self.mass;
@@ -249,19 +252,19 @@ impl LinearisedConstraints {
     }
 }
 
-/// Linearised equations without units, along the changes that constraints allow.
+/// Dimensionless linearised equations for changes that satisfy the constraints.
 pub(super) struct ScaledSystem {
-    /// Equations as combinations of the accelerations.
+    /// Equations as linear combinations of the accelerations.
     pub rows: DMatrix<f64>,
-    /// Changes of the unknowns for a change of 1, one column per independent change.
+    /// Change of the unknowns for a unit change, one column per independent change.
     pub changes: DMatrix<f64>,
-    /// Derivatives of the equations by the independent changes.
+    /// Derivatives of the equations with respect to the independent changes.
     pub matrix: DMatrix<f64>,
-    /// Size of regular slopes; 0 if that of the largest singular value counts.
+    /// Size of regular slopes; 0 if the largest singular value is the reference instead.
     slope_size: f64,
 }
 
-/// Directions of a scaled system whose slopes are not rounding.
+/// Directions of a scaled system whose slopes exceed rounding.
 pub(super) struct KeptDirections {
     /// Orthonormal combinations of the equations, one per column.
     pub left: DMatrix<f64>,
@@ -270,7 +273,7 @@ pub(super) struct KeptDirections {
 }
 
 impl ScaledSystem {
-    /// Returns the directions with singular values above `least` of the largest.
+    /// Returns the directions with singular values above `least` times the largest.
     pub fn kept_directions(&self, least: f64) -> KeptDirections {
         let (rows, columns) = self.matrix.shape();
         let mut kept = KeptDirections {
@@ -294,8 +297,9 @@ impl ScaledSystem {
         kept
     }
 
-    /// Returns a change of the unknowns in directions with singular values below `least` of the largest: the part of the
-    /// accelerations of the unknowns in them. `None` if changes of the unknowns remove the accelerations.
+    /// Returns a change of the unknowns in directions with singular values below `least` times the largest: the
+    /// component of the unknowns' accelerations in these directions. `None` if changes of the unknowns remove the
+    /// accelerations.
     pub fn free_change(
         &self,
         least: f64,
@@ -314,7 +318,7 @@ impl ScaledSystem {
         Some((scaled - along_kept).component_mul(&units))
     }
 
-    /// Returns the row of the acceleration with the largest part in one of the equations.
+    /// Returns the row of the acceleration with the largest coefficient in one of the equations.
     pub fn main_acceleration(&self, row: usize, equations: &LinearisedEquations) -> usize {
         let factors = self.rows.row(row).into_iter();
         let parts = factors.zip(equations.accelerations.iter());
@@ -323,7 +327,8 @@ impl ScaledSystem {
         largest.map_or(0, |(row, _)| row)
     }
 
-    /// Returns the singular value below which one counts as 0, for this fraction of the largest.
+    /// Returns the limit below which a singular value counts as 0: the given fraction of the largest or of the slope
+    /// size.
     pub fn least_singular_value(&self, decomposed: &SVD<f64, Dyn, Dyn>, fraction: f64) -> f64 {
         fraction * decomposed.singular_values.amax().max(self.slope_size)
     }

@@ -1,9 +1,8 @@
-//! Equilibria: steady states, at rest or with constant speeds.
+//! Equilibria: states at rest or in steady motion.
 //!
-//! At an equilibrium all accelerations and all rates of first-order states are 0. Rates of
-//! coordinates are 0 too, except along [cyclic directions](Instance::cyclic_directions), along
-//! which any constant speed is possible. The search keeps the given speeds; if it finds no
-//! equilibrium with them, the speeds become unknowns as well.
+//! At an equilibrium all accelerations and all rates of first-order states are 0. Rates of coordinates are 0 too,
+//! except along [cyclic directions](Instance::find_cyclic_directions), along which any constant speed is possible. The
+//! search keeps the given speeds. If no equilibrium with these speeds is found, the speeds become unknowns as well.
 
 mod accuracy;
 mod constraints;
@@ -32,30 +31,29 @@ pub use self::stability::Stability;
 /// Smallest rate that counts as nonzero, relative to its largest term.
 const MAX_ZERO_RATE_FRACTION: f64 = 1e-6;
 
-/// Largest difference of equal speeds, relative to the largest speed of the same unit.
+/// Largest difference of speeds that count as equal, relative to the largest speed of the same unit.
 const MAX_SPEED_DIFFERENCE_FRACTION: f64 = 1e-9;
 
-/// Relative tolerance of the states at which friction holds a machine.
+/// Relative tolerance of a state at which friction holds a machine.
 const HELD_TOLERANCE: f64 = 1e-9;
 
 /// An equilibrium of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equilibrium {
-    /// Operating point of the equilibrium.
+    /// State, time and inputs of the equilibrium.
     pub point: OperatingPoint,
     /// Remaining accelerations of the coordinates, then rates of the first-order states, SI.
     pub residual: Vec<f64>,
     /// Names of the nonzero rates, which stay constant.
     pub nonzero_rates: Vec<String>,
-    /// Names of the coordinates, rates, inputs and first-order states that were unknowns of the
-    /// search.
+    /// Names of the coordinates, rates, inputs and first-order states that were unknowns of the search.
     pub unknowns: Vec<String>,
-    /// True if the rates depend on time or on prescribed motion that moves. If true, the point is an equilibrium at that instant
-    /// only.
+    /// True if the rates depend on time or on prescribed motion that moves. If so, the point is an equilibrium at this
+    /// instant only.
     pub depends_on_time: bool,
 }
 
-/// Reasons why a state is no equilibrium, by name; empty at an equilibrium.
+/// Quantities that keep a state from being an equilibrium, by name; empty at an equilibrium.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Departure {
     /// Nonzero rates, except constant speeds along cyclic directions.
@@ -85,23 +83,22 @@ pub struct EquilibriumRequest<'r> {
 }
 
 impl Instance<'_> {
-    /// Finds the equilibrium nearest to the start. Coordinates and first-order states are
-    /// unknowns, except fixed ones. A first-order state whose rate is 0 at rest for any value, such
-    /// as that of a hysteresis, keeps its value if an equilibrium has it. Inputs have their default
-    /// or given values. If coordinates,
-    /// speeds or first-order states are fixed, the inputs that are not fixed are unknowns too and
-    /// hold the machine there.
+    /// Finds the equilibrium nearest to the start. Coordinates and first-order states are unknowns unless fixed. A
+    /// first-order state whose rate is 0 at rest for any value, such as the state of a hysteresis, keeps its value if
+    /// an equilibrium has it. Inputs have their default or given values. If coordinates, speeds or first-order states
+    /// are fixed, the inputs that are not fixed are unknowns too and hold the machine there.
+    ///
+    /// If friction holds the machine at the start, and forces balance at no state near it, the start is the
+    /// equilibrium.
     ///
     /// # Errors
-    /// An unknown name, a nonzero rate of a coordinate that is not cyclic, a start outside a
-    /// declared range, and [`Error::Stopped`] if no equilibrium is found. If friction holds the machine at the start
-    /// and forces balance at no state near it, the start is the equilibrium.
+    /// An unknown name, a nonzero rate of a coordinate that is not cyclic, a start outside a declared range, and
+    /// [`Error::Stopped`] if no equilibrium is found.
     pub fn find_equilibrium(&self, request: EquilibriumRequest<'_>) -> Result<Equilibrium, Error> {
         let given = [request.start_values, request.fixed_values].concat();
         let mut at = self.operating_point(&given)?;
         self.check_ranges(&at)?;
-        // At a nonzero stabilisation rate the accelerations contain the residuals of the
-        // constraints.
+        // At a nonzero stabilisation rate, violated constraints cause accelerations.
         let holding = self.with_stabilisation_rate(1.0);
         let directions = match self.is_at_rest(&at) {
             true => Vec::new(),
@@ -142,7 +139,7 @@ impl Instance<'_> {
                 rates
             }
             (Err(error), None) => {
-                // No equilibrium at these speeds: search for the speeds too.
+                // No equilibrium has these speeds, so the search includes the speeds.
                 let directions = holding.find_cyclic_directions(&start)?;
                 let speeds = self.find_unknown_speeds(&directions, request.fixed_values)?;
                 if speeds.is_empty() {
@@ -170,15 +167,15 @@ impl Instance<'_> {
     /// Returns true if a state is an equilibrium; see [`Instance::find_departure`].
     ///
     /// # Errors
-    /// Same as [`Instance::jacobian_evaluator`].
+    /// See [`Instance::jacobian_evaluator`].
     pub fn is_equilibrium(&self, at: &OperatingPoint) -> Result<bool, Error> {
         Ok(self.find_departure(at)?.is_none())
     }
 
-    /// Returns the rates, accelerations and first-order states that are not steady.
+    /// Returns the rates, accelerations and first-order states that keep a state from being an equilibrium.
     ///
     /// # Errors
-    /// Same as [`Instance::jacobian_evaluator`].
+    /// See [`Instance::jacobian_evaluator`].
     pub fn find_departure(&self, at: &OperatingPoint) -> Result<Departure, Error> {
         let holding = self.with_stabilisation_rate(1.0);
         let mut found = Departure {
@@ -206,7 +203,7 @@ impl Instance<'_> {
         Ok(found)
     }
 
-    /// Returns the nonzero rates of prescribed motion whose positions change a rate.
+    /// Returns the nonzero rates of prescribed motion whose positions change the rate of a state.
     fn find_moving_inputs(&self, at: &OperatingPoint) -> Result<Vec<String>, Error> {
         let inputs = &self.model().model().inputs;
         let moving = inputs.iter().enumerate().filter_map(|(place, input)| {
@@ -226,8 +223,8 @@ impl Instance<'_> {
         Ok(acting.map(|(_, rate)| inputs[rate].name.clone()).collect())
     }
 
-    /// Returns the accelerations and the rates of first-order states, all 0 up to rounding, if friction holds the machine
-    /// at rest and no state changes.
+    /// Returns the accelerations and the rates of first-order states if friction holds the machine at rest and no state
+    /// changes. All are then 0 up to rounding.
     fn find_held_rates(&self, at: &OperatingPoint) -> Result<Option<Vec<f64>>, Error> {
         if !self.is_at_rest(at) || self.holding_model()?.is_none() {
             return Ok(None);
@@ -236,7 +233,7 @@ impl Instance<'_> {
         let inputs = HeldInputs::constant(at.inputs.clone());
         let system = self.driven_model(&evaluator, inputs, HELD_TOLERANCE)?;
         let mut guards = vec![0.0; system.guard_count()];
-        // The first evaluation decides which surfaces hold.
+        // The first evaluation decides which surfaces hold the motion.
         system.guards(at.t, &at.state, &mut guards);
         let (mut rates, mut roundings) = (vec![0.0; at.state.len()], vec![0.0; at.state.len()]);
         system.rates(at.t, &at.state, &mut rates);
@@ -264,9 +261,9 @@ impl Instance<'_> {
             .all(|rate| *rate == 0.0)
     }
 
-    /// Returns the unknowns at given speeds: all coordinates and first-order states that are not
-    /// fixed, and the inputs that are not fixed if a state is. Rates of prescribed motion are given: a machine on an
-    /// accelerated base is not at rest.
+    /// Returns the unknowns at given speeds: all coordinates and first-order states that are not fixed, and, if a state
+    /// is fixed, the inputs that are not fixed. Rates of prescribed motion are given: a machine on an accelerated base
+    /// is not at rest.
     fn find_unknowns(
         &self,
         at: &OperatingPoint,
@@ -304,7 +301,7 @@ impl Instance<'_> {
         Ok(free.map(Unknown::Speed).collect())
     }
 
-    /// Returns the coordinates whose rates are among these values.
+    /// Returns the coordinates whose rates are among the given values.
     fn find_rates(&self, values: &[(&str, f64)]) -> Result<Vec<usize>, Error> {
         let degrees = self.degrees();
         let mut found = Vec::new();
@@ -318,8 +315,8 @@ impl Instance<'_> {
         Ok(found)
     }
 
-    /// Replaces the rates by those of a motion along cyclic directions. The speed along a direction is the mean of those by
-    /// the first group of coordinates that move along it, otherwise by all nonzero rates.
+    /// Replaces the rates by those of a motion along cyclic directions. The speed along a direction is the mean of the
+    /// speeds that the first group of coordinates along it gives, or else that all nonzero rates give.
     fn project_rates(
         &self,
         at: &mut OperatingPoint,
@@ -347,7 +344,7 @@ impl Instance<'_> {
         }
     }
 
-    /// Rejects fixed rates that no steady motion has together.
+    /// Rejects fixed rates that are impossible in any steady motion.
     fn check_fixed_rates(&self, at: &OperatingPoint, fixed: &[(&str, f64)]) -> Result<(), Error> {
         let degrees = self.degrees();
         for (name, value) in fixed {
@@ -438,7 +435,7 @@ impl Instance<'_> {
     }
 }
 
-/// Returns true if an unknown is the only coordinate of a cyclic direction; it keeps its value.
+/// Returns true if an unknown is the only coordinate of a cyclic direction. Such an unknown keeps its value.
 fn is_cyclic_coordinate(unknown: &Unknown, directions: &[Vec<f64>]) -> bool {
     let Unknown::Setting(Setting::State(place)) = unknown else {
         return false;

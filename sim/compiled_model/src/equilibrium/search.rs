@@ -1,10 +1,10 @@
-//! Search for an equilibrium: Gauss-Newton steps with the emitted Jacobians.
+//! Equilibrium search by Gauss-Newton steps with the emitted Jacobians.
 //!
-//! A step is shortened until the linearised equations are accurate along it (P. Deuflhard, *Newton
-//! Methods for Nonlinear Problems*, 3.2). The search thus follows the path from its start and does
-//! not jump to another equilibrium. No coordinate moves by more than a fraction of its natural
-//! scale, or out of its declared range. Steps are tangential to the holonomic constraints, and each
-//! point is moved onto them, so that the path is that of independent coordinates.
+//! A step is shortened until the linearised equations are accurate along it (P. Deuflhard, *Newton Methods for
+//! Nonlinear Problems*, 3.2). The search thus follows the path from its start and does not jump to another equilibrium.
+//! No coordinate moves by more than a fraction of its natural scale, or out of its declared range. Steps are tangential
+//! to the holonomic constraints, and each point is projected onto them. The path is therefore the same as in
+//! independent coordinates.
 
 use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_model_spec::argument::Argument;
@@ -21,36 +21,37 @@ use super::constraints::HolonomicConstraints;
 use super::linear::LinearisedEquations;
 use super::unknown::Unknown;
 
-/// Maximum number of steps; near an equilibrium ten are enough.
+/// Maximum number of steps; near an equilibrium ten suffice.
 const MAX_STEPS: usize = 300;
 
 const MAX_HALVINGS: i32 = 40;
 
-/// Number of halvings after which a step is accepted although the equations are not linear along
-/// it, for example across a kink.
+/// Number of halvings after which a step is accepted although the equations are nonlinear along it, for example at a
+/// kink.
 const MAX_STRAIGHT_HALVINGS: i32 = 12;
 
-/// Maximum number of halvings of a step if all accelerations are zero already; the remaining gain
-/// is rounding.
+/// Maximum number of halvings of a step if all accelerations are already zero to rounding; a further reduction is
+/// rounding.
 const MAX_FINAL_HALVINGS: i32 = 2;
 
 /// Longest step, relative to a coordinate's natural scale.
 const MAX_STEP_FRACTION: f64 = 0.25;
 
-/// Displacement from a point at which no step helps, relative to a coordinate's natural scale or, without one, its
-/// typical size.
+/// Displacement from a point at which no step reduces the accelerations, relative to a coordinate's natural scale or,
+/// without one, its typical size.
 const NUDGE_FRACTION: f64 = 1.0 / 1024.0;
 
 const MAX_NUDGES: usize = 3;
 
-/// Maximum number of displacements inside a region in which a coordinate changes no acceleration, such as a play. Each is
-/// twice as long as the last; the longest is 64 natural scales.
+/// Maximum number of displacements inside a region in which a coordinate changes no acceleration, such as a play. Each
+/// displacement is twice the previous one; the longest is 64 natural scales.
 const MAX_FLAT_NUDGES: i32 = 17;
 
 /// Largest acceleration that counts as zero, relative to the largest term of its equation.
 const MAX_ZERO_FRACTION: f64 = 1e-10;
 
-/// Distance of a switching surface, relative to the size of an unknown, at which an equilibrium may lie on it.
+/// An equilibrium within this distance of a switching surface may lie on it. The distance is relative to the size of an
+/// unknown.
 const SURFACE_FRACTION: f64 = 1e-6;
 
 /// Maximum number of steps of the secant method to a switching surface.
@@ -59,17 +60,18 @@ const MAX_SURFACE_STEPS: usize = 5;
 /// Singular values below this fraction of the largest count as 0.
 const MIN_SINGULAR_VALUE_FRACTION: f64 = 1e-12;
 
-/// The same fraction for a second search, which keeps the slopes of soft parts. It is the rounding of the entries.
+/// Limit of singular values in a second search, which keeps the slopes of soft parts: the rounding error of the
+/// entries.
 const SOFT_SINGULAR_VALUE_FRACTION: f64 = 16.0 * f64::EPSILON;
 
-/// Rounding of an acceleration without a bound, relative to the largest term of its equation.
+/// Rounding error of an acceleration for which no bound is known, relative to the largest term of its equation.
 const ROUNDING_FRACTION: f64 = ROUNDING_FACTOR * f64::EPSILON;
 
-/// Reason why a search has no result.
+/// Reason why a search found no equilibrium.
 enum Failure {
-    /// The accelerations remain.
+    /// No point with zero accelerations was found.
     NotFound(Error),
-    /// The accelerations are small, but the unknowns have large errors.
+    /// The accelerations are zero to rounding, but the unknowns have large errors.
     Inaccurate(Error),
 }
 
@@ -148,14 +150,14 @@ impl<'i, 'm> Search<'i, 'm> {
         Ok(here.accelerations.iter().copied().collect())
     }
 
-    /// Moves `at` to an equilibrium, by further attempts from the same start if the first fails.
+    /// Moves `at` to an equilibrium. If the first attempt fails, makes further attempts from the same start.
     fn search_from(&mut self, at: &mut OperatingPoint) -> Result<LinearisedEquations, Error> {
         let start = at.clone();
         let first = match self.attempt(at, MIN_SINGULAR_VALUE_FRACTION)? {
             Ok(here) => return Ok(here),
             Err(first) => first,
         };
-        // A slope that counts as 0 may be that of a soft part.
+        // A slope that counts as 0 may belong to a soft part.
         *at = start.clone();
         let second = match self.attempt(at, SOFT_SINGULAR_VALUE_FRACTION)? {
             Ok(here) => return Ok(here),
@@ -171,8 +173,9 @@ impl<'i, 'm> Search<'i, 'm> {
         })
     }
 
-    /// Moves `at` to an equilibrium from a start on a switching surface, such as a wheel that touches the ground, to
-    /// one side of which the machine accelerates. Returns `None` if the start is not on a surface or no equilibrium is found.
+    /// Moves `at` to an equilibrium from a start on a switching surface, such as a wheel that touches the ground. The
+    /// attempt starts on the side towards which the machine accelerates. Returns `None` if the start is not on a
+    /// surface or no equilibrium is found.
     fn attempt_near_surface(
         &mut self,
         at: &mut OperatingPoint,
@@ -188,7 +191,7 @@ impl<'i, 'm> Search<'i, 'm> {
         Ok(self.attempt(at, MIN_SINGULAR_VALUE_FRACTION)?.ok())
     }
 
-    /// Moves `at` to an equilibrium. Singular values below `least` of the largest count as 0.
+    /// Moves `at` to an equilibrium. Singular values below `least` times the largest count as 0.
     fn attempt(
         &mut self,
         at: &mut OperatingPoint,
@@ -205,7 +208,7 @@ impl<'i, 'm> Search<'i, 'm> {
     }
 
     /// Rejects an equilibrium on a switching surface at which a derivative has no finite limit, such as that of
-    /// `sign(p)*sqrt(abs(p))` at 0. Beside the surface, within the error of the search, its derivatives are rounding.
+    /// `sign(p)*sqrt(abs(p))` at 0. Within the error of the search beside the surface, its derivatives are rounding.
     fn check_surfaces(&mut self, at: &OperatingPoint) -> Result<(), Error> {
         let guards = self.guards(at);
         for place in 0..self.unknowns.len() {
@@ -238,15 +241,15 @@ impl<'i, 'm> Search<'i, 'm> {
         Ok(())
     }
 
-    /// Returns the switching functions at a point.
+    /// Evaluates the switching functions at a point.
     fn guards(&mut self, at: &OperatingPoint) -> Vec<f64> {
         let mut guards = vec![0.0; self.evaluator.guard_count()];
         self.evaluator.guards(at.point(), &mut guards);
         guards
     }
 
-    /// Moves `at` by steps that reduce the accelerations until none does. Singular values below `least` of the largest
-    /// count as 0.
+    /// Moves `at` by steps that reduce the accelerations until no step does. Singular values below `least` times the
+    /// largest count as 0.
     fn descend(
         &mut self,
         at: &mut OperatingPoint,
@@ -260,7 +263,7 @@ impl<'i, 'm> Search<'i, 'm> {
             }
             let step = here.solve_step(&self.scales, least);
             let moved = match self.advance(at, &here, &step) {
-                // No step reduces the accelerations, which are zero up to rounding.
+                // No step reduces the accelerations, and they are zero up to rounding.
                 None if here.is_below(MAX_ZERO_FRACTION) => break,
                 None => {
                     let flat = self.find_flat_direction(&here, least);
@@ -288,7 +291,7 @@ impl<'i, 'm> Search<'i, 'm> {
         Ok(here)
     }
 
-    /// Returns the reason why a point is no equilibrium to the digits of its unknowns.
+    /// Returns the reason why a point is not an equilibrium to six digits of its unknowns, if there is one.
     fn find_inaccuracy(
         &self,
         at: &OperatingPoint,
@@ -300,7 +303,7 @@ impl<'i, 'm> Search<'i, 'm> {
             let value = match self.unknowns[place] {
                 Unknown::Setting(Setting::State(state)) => at.state[state].abs(),
                 Unknown::Setting(Setting::Input(input)) => {
-                    // An input has no typical size; one that balances nothing is rounding.
+                    // An input has no typical size; an input that balances nothing is rounding.
                     at.inputs[input].abs().max(here.balancing_size(place))
                 }
                 _ => 0.0,
@@ -312,7 +315,7 @@ impl<'i, 'm> Search<'i, 'm> {
         let of_terms = &here.terms * ROUNDING_FRACTION;
         let mut found = accuracy.find_unbalanced(&of_state);
         let mut uncertain = accuracy.find_uncertain(&of_terms, &magnitudes);
-        // Bounds of the roundings are closer, but take longer.
+        // Bounds on the rounding errors are sharper but take longer to compute.
         if (found.is_some() || uncertain.is_some())
             && let Some(bounds) = self.instance.bound_rate_roundings(at.point())
         {
@@ -330,9 +333,8 @@ impl<'i, 'm> Search<'i, 'm> {
         })
     }
 
-    /// Returns the longest shortened step that reduces the accelerations and along which the
-    /// equations are nearly linear. If there is none, returns the longest that reduces the
-    /// accelerations.
+    /// Returns the longest shortened step that reduces the accelerations and along which the equations are nearly
+    /// linear. Without such a step, returns the longest one that reduces the accelerations.
     fn advance(
         &mut self,
         at: &OperatingPoint,
@@ -368,7 +370,7 @@ impl<'i, 'm> Search<'i, 'm> {
         bent
     }
 
-    /// Returns the fraction of a step that keeps every unknown within [`MAX_STEP_FRACTION`].
+    /// Returns the largest fraction of a step that keeps every unknown within [`MAX_STEP_FRACTION`].
     fn step_fraction(&self, step: &DVector<f64>) -> f64 {
         let parts = step.iter().zip(&self.scales);
         let part = |(change, scale): (&f64, &Option<f64>)| match scale {
@@ -378,8 +380,8 @@ impl<'i, 'm> Search<'i, 'm> {
         parts.map(part).fold(1.0, f64::min)
     }
 
-    /// Returns a change of the unknowns that changes no acceleration and along which the machine accelerates, relative to
-    /// the typical sizes. With constraints, a coordinate cannot move independently.
+    /// Returns a change of the unknowns, relative to the typical sizes, that changes no acceleration and along which
+    /// the machine accelerates. With constraints, a coordinate cannot move independently.
     fn find_flat_direction(&self, here: &LinearisedEquations, least: f64) -> Option<DVector<f64>> {
         if self.constraints.is_some() {
             return None;
@@ -419,7 +421,7 @@ impl<'i, 'm> Search<'i, 'm> {
         }
     }
 
-    /// Returns the signs of the accelerations of the unknowns; 0 for rounding, and for first-order states and inputs.
+    /// Returns the signs of the accelerations of the unknowns; 0 for rounding, for first-order states and for inputs.
     fn acceleration_signs(&self, here: &LinearisedEquations) -> DVector<f64> {
         let signs = self.unknowns.iter().map(|unknown| {
             let coordinate = self.accelerated_coordinate(unknown);
@@ -428,8 +430,8 @@ impl<'i, 'm> Search<'i, 'm> {
         DVector::from_iterator(self.unknowns.len(), signs)
     }
 
-    /// Returns a point displaced in a direction relative to the typical sizes. If no step helps, forces may have an
-    /// extremum or be constant.
+    /// Returns a point displaced in a direction relative to the typical sizes. The search uses it if no step helps,
+    /// because forces may have an extremum or be constant.
     fn nudge(
         &mut self,
         at: &OperatingPoint,
@@ -443,7 +445,8 @@ impl<'i, 'm> Search<'i, 'm> {
         (way.amax() > 0.0).then_some((trial, there))
     }
 
-    /// Returns the first-order states among the unknowns whose rates are 0 whatever the unknowns are, to first order.
+    /// Returns the first-order states among the unknowns whose rates are 0 for all values of the unknowns, to first
+    /// order.
     pub fn find_lasting_states(&mut self, at: &OperatingPoint) -> Vec<Unknown> {
         let degrees = self.instance.degrees();
         let Some(here) = self.try_linearised(at) else {
@@ -459,13 +462,13 @@ impl<'i, 'm> Search<'i, 'm> {
         self.unknowns.iter().filter(lasts).copied().collect()
     }
 
-    /// Returns the accelerations at a point and their derivatives with respect to the unknowns.
+    /// Linearises the accelerations at a point with respect to the unknowns.
     pub fn linearise(&mut self, at: &OperatingPoint) -> Result<LinearisedEquations, Error> {
         let found = self.try_linearised(at);
         found.ok_or_else(|| self.instance.no_linearisation_error(at.point()))
     }
 
-    /// Returns the same, or `None` if a number is not finite.
+    /// Linearises like [`Self::linearise`], but returns `None` if a number is not finite.
     fn try_linearised(&mut self, at: &OperatingPoint) -> Option<LinearisedEquations> {
         let degrees = self.instance.model().program().degrees_of_freedom();
         let states = at.state.len();
@@ -545,14 +548,14 @@ impl<'i, 'm> Search<'i, 'm> {
         })
     }
 
-    /// Moves a point onto the constraints; returns false if that fails.
+    /// Projects a point onto the constraints; returns false if the projection fails.
     fn project(&mut self, at: &mut OperatingPoint) -> bool {
         let constraints = self.constraints.as_mut();
         constraints.is_none_or(|constraints| constraints.project(at))
     }
 
-    /// Returns a point moved by a change of the unknowns, inside their ranges and on the constraints, and the change of the
-    /// unknowns. `None` if no such point is near.
+    /// Returns a point moved by a change of the unknowns, inside their ranges and on the constraints, and the actual
+    /// change. `None` if no such point is near.
     fn move_point(
         &mut self,
         at: &OperatingPoint,
@@ -577,7 +580,7 @@ impl<'i, 'm> Search<'i, 'm> {
         Some((moved, way))
     }
 
-    /// Returns a point moved by a change of the unknowns, inside their ranges, and the change of the unknowns.
+    /// Returns a point moved by a change of the unknowns, limited to their ranges, and the actual change.
     fn move_unknowns(
         &self,
         at: &OperatingPoint,
@@ -636,7 +639,7 @@ impl<'i, 'm> Search<'i, 'm> {
         self.unknowns.iter().flat_map(names).collect()
     }
 
-    /// Returns the name and the value of the coordinate or first-order state of a row of the equations.
+    /// Returns the name and value of the coordinate or first-order state that belongs to a row of the equations.
     fn row_quantity(&self, at: &OperatingPoint, row: usize) -> (String, f64) {
         let degrees = self.instance.model().program().degrees_of_freedom();
         let place = if row < degrees { row } else { row + degrees };
@@ -675,7 +678,7 @@ impl<'i, 'm> Search<'i, 'm> {
         Error::Stopped { t: None, reason }
     }
 
-    /// Returns the error of a point that is no equilibrium to the digits of its unknowns.
+    /// Returns the error for a point that is not an equilibrium to six digits of its unknowns.
     fn inaccuracy_error(
         &self,
         at: &OperatingPoint,
@@ -707,7 +710,7 @@ impl<'i, 'm> Search<'i, 'm> {
         Error::Stopped { t: None, reason }
     }
 
-    /// Returns a name and the value of an unknown.
+    /// Returns the name and value of an unknown.
     fn unknown_quantity(&self, at: &OperatingPoint, unknown: Unknown) -> (String, f64) {
         let model = self.instance.model();
         let degrees = model.program().degrees_of_freedom();
@@ -725,7 +728,7 @@ impl<'i, 'm> Search<'i, 'm> {
     }
 }
 
-/// Returns the coordinate of a cyclic direction whose speed is that along the direction.
+/// Returns the coordinate that defines the speed along a cyclic direction.
 fn main_coordinate(direction: &[f64]) -> usize {
     let place = direction.iter().position(|speed| *speed == 1.0);
     place.unwrap_or(0)

@@ -36,7 +36,7 @@ impl Instance<'_> {
     /// Returns the stability of an equilibrium for small motions that satisfy the constraints.
     ///
     /// # Errors
-    /// Same as [`Instance::linearise`], and eigenvalues that cannot be computed.
+    /// Eigenvalues that cannot be computed; see also [`Instance::linearise`].
     pub fn classify_stability(&self, at: &OperatingPoint) -> Result<Stability, Error> {
         let linear = self.linearise(at.point())?;
         let degrees = self.model().program().degrees_of_freedom();

@@ -1,10 +1,10 @@
-//! Equilibria compared with closed forms.
+//! Tests of equilibria against closed-form solutions.
 
 use crate::{CompiledModel, EquilibriumRequest, Error, Instance, Orders};
 
 use super::Equilibrium;
 
-/// A pendulum with a motor; its angle is measured from the lowest position.
+/// Pendulum with a motor; its angle is measured from the lowest position.
 const PENDULUM: &str = r#"
 [model]
 name = "pendulum"
@@ -113,7 +113,7 @@ fn search_finds_nearer_equilibrium_of_pendulum() {
         .point
         .state[0];
     assert!(found.abs() < 1e-9 || (found - PI).abs() < 1e-9, "{found}");
-    // At 0, the slope of the force is exactly 0 if the angle is measured from the horizontal.
+    // If the angle is measured from the horizontal, the slope of the force is exactly 0 at 0.
     let level = PENDULUM.replace("-m*g*l*cos(theta)", "m*g*l*sin(theta)");
     let model = compiled(&level.replace("2.8", "0"));
     let run = model.with_declared_parameters().expect("an instance");
@@ -160,7 +160,7 @@ fn search_crosses_kink_of_bilinear_spring() {
     assert!((found - 0.015).abs() < 1e-12, "{found}");
 }
 
-/// A disc on a shaft with friction and a motor, and a bob that swings out as it turns.
+/// Disc on a shaft with friction and a motor, and a bob that swings out as the shaft turns.
 const GOVERNOR: &str = r#"
 [model]
 name = "governor"
@@ -190,7 +190,7 @@ motor = { on = "phi", value = "T + u" }
 fn governor_at_steady_speed_is_equilibrium() {
     let model = compiled(GOVERNOR);
     let run = model.with_declared_parameters().expect("an instance");
-    // T = c omega at 8 rad/s; the angle of the bob follows from cos(theta) = g/(l omega^2).
+    // The torque at 8 rad/s is c omega; the angle of the bob satisfies cos(theta) = g/(l omega^2).
     let right = (9.81 / (0.4 * 64.0_f64)).acos();
     let found = from(&run, &[("theta", 1.0)]).expect("steady running");
     assert!((found.point.state[2] - 8.0).abs() < 1e-8, "{found:?}");
@@ -210,7 +210,7 @@ fn governor_at_steady_speed_is_equilibrium() {
     assert!(!run.is_equilibrium(&slipping).expect("an answer"));
 }
 
-/// A pendulum in Cartesian coordinates on a rod, with a spring.
+/// Pendulum in Cartesian coordinates on a rod, with a spring.
 const ROD: &str = r#"
 [model]
 name = "rod"
@@ -232,7 +232,7 @@ spring = "1/2*k*(x - 0.1*l)^2"
 rod = { zero = "x^2 + y^2 - l^2" }
 "#;
 
-/// The same in the angle from the vertical.
+/// The same pendulum with the angle from the vertical as coordinate.
 const ANGLE: &str = r#"
 [model]
 name = "angle"
@@ -292,7 +292,7 @@ fn fixed_values_off_the_constraints_are_refused() {
     );
 }
 
-/// A slide on a table with dry friction, which an actuator with a lag pushes.
+/// Slide on a table with dry friction; an actuator with a lag pushes it.
 const SLIDE: &str = r#"
 [model]
 name = "slide"
@@ -356,7 +356,7 @@ fn machine_that_friction_holds_is_at_an_equilibrium() {
 
 #[test]
 fn search_from_far_away_ends_at_the_equilibrium() {
-    // V = -a x^2/2 + b x^4/4 has equilibria at 0 and at the roots of a/b, here 1e-3 m.
+    // For V = -a x^2/2 + b x^4/4 the equilibria are 0 and +-sqrt(a/b), here 1e-3 m.
     let text = "[model]\nname = \"duffing\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
                 a = { value = 2, unit = \"N/m\" }\nb = { value = 2e6, unit = \"N/m^3\" }\n\
                 [coordinates]\nx = { unit = \"m\" }\n[kinetic]\nT = \"1/2*m*dot(x)^2\"\n\
@@ -393,7 +393,7 @@ fn search_leaves_a_play() {
     }
 }
 
-/// Two wheels joined by an elastic gear of ratio n, both turning at the start.
+/// Two wheels connected by an elastic gear of ratio n; both turn at the start.
 const GEAR: &str = r#"
 [model]
 name = "gear"
@@ -440,7 +440,7 @@ fn fixed_rate_of_a_steady_motion_determines_the_others() {
     );
 }
 
-/// A mass on a spring with Dahl friction, whose state `z` keeps any value at rest.
+/// Mass on a spring with Dahl friction, whose state `z` keeps any value at rest.
 const BRISTLE: &str = r#"
 [model]
 name = "bristle"
@@ -495,7 +495,7 @@ fn state_of_hysteresis_balances_the_load_of_a_free_mass() {
     assert_eq!(found.unknowns, ["x", "z"]);
 }
 
-/// A car whose tyres just touch the ground at the start: on this surface the slope of their force is one-sided.
+/// The tyres of the car just touch the ground at the start; on this surface the slope of their force is one-sided.
 #[test]
 fn car_settles_on_tyres_that_touch_at_the_start() {
     let model = compiled(

@@ -1,6 +1,4 @@
-//! Derivatives of a number.
-
-/// Derivatives of a number by a state, the inputs of a program and the independent parameters.
+/// Derivatives of a number with respect to state, program inputs and independent parameters.
 #[derive(Clone, Debug)]
 pub(super) struct Derivatives {
     pub state: Vec<f64>,

@@ -1,4 +1,4 @@
-//! The backward pass over events, by transposed saltation matrices.
+//! Backward pass over events, by transposed saltation matrices.
 
 use std::ops::Range;
 
@@ -9,14 +9,14 @@ use super::pull_back::{BackwardPass, add, add_product, no_gradient};
 use super::recorder::{Part, PartKind};
 use crate::error::Error;
 
-/// Largest relative difference of delays that belong to one surface, written twice.
+/// Largest relative difference of the event delays of two guards that count as the same surface.
 const MAX_DELAY_DIFFERENCE_FRACTION: f64 = 1e-6;
 
-/// Largest relative difference between the jump of a motion and that by one impact.
+/// Largest relative difference between the jump of a motion and the jump by a single impact.
 const MAX_JUMP_DIFFERENCE_FRACTION: f64 = 1e-6;
 
 impl BackwardPass<'_, '_> {
-    /// Follows an event backwards, by the transposed saltation matrix.
+    /// Propagates the adjoint backwards over an event, by the transposed saltation matrix.
     pub fn follow_event(&mut self, place: usize) -> Result<(), Error> {
         let recorded = self.recorded;
         let part = self.part(place);
@@ -44,7 +44,8 @@ impl BackwardPass<'_, '_> {
             }
             None => self.find_delay(part, after, &given)?,
         };
-        // Change of L by a delay of the event of 1 s: the motion before it continues, the motion after it is lost.
+        // Change of L if the event is delayed by 1 s: the motion before the event continues, and the motion after it
+        // loses this time.
         let mut by_delay = -scalar_product(&self.adjoint, &to);
         let row = recorded.inputs().last_sample_index(near.0);
         if let Some(impact) = impact {
@@ -69,7 +70,7 @@ impl BackwardPass<'_, '_> {
         Ok(())
     }
 
-    /// Returns the places of the rates of the degrees of freedom in the state.
+    /// Returns the indices of the rates of the degrees of freedom in the state.
     pub fn rate_places(&self) -> Range<usize> {
         let degrees = self
             .recorded
@@ -80,7 +81,7 @@ impl BackwardPass<'_, '_> {
         degrees..2 * degrees
     }
 
-    /// Returns the impact by which the rates jump.
+    /// Returns the index of the impact whose jump equals the jump of the rates.
     fn find_impact(&mut self, part: &Part, given: &[f64]) -> Result<usize, Error> {
         let degrees = self.rate_places();
         let at = (part.start.0, &part.start.1[..]);

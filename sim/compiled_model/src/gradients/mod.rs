@@ -1,12 +1,16 @@
-//! Gradients of trajectories by the initial state, the parameters and held inputs, through events.
+//! Gradients of trajectories with respect to initial state, parameters and held inputs, through events.
 //!
-//! `recorder` keeps the steps and events of a motion. `pull_back` follows them backwards (discrete adjoint): it repeats
-//! every step and multiplies by the transposed Jacobians of its stages; `events` multiplies by the transposed saltation
-//! matrix of every event (R. I. Leine and H. Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems*,
-//! Springer 2004, section 7.3), and `surfaces` rejects motions that touch a surface. `start` follows the correction of the
-//! initial state onto the constraints, and `moved_start` that of a state far from them. `mode_evaluator` evaluates rates
-//! and products in the mode of a step: with the sides of the step, and those of surfaces that hold the motion. The work
-//! does not depend on the number of parameters.
+//! - `recorder` keeps the steps and events of a motion.
+//! - `pull_back` follows them backwards (discrete adjoint): it repeats every step and multiplies by the transposed
+//!   Jacobians of its stages.
+//! - `events` multiplies by the transposed saltation matrix of every event (R. I. Leine and H. Nijmeijer, *Dynamics and
+//!   Bifurcations of Non-Smooth Mechanical Systems*, Springer 2004, section 7.3).
+//! - `surfaces` rejects motions that touch a surface without crossing it.
+//! - `start` and `moved_start` follow the projection of the initial state onto the constraints, from near and from far.
+//! - `mode_evaluator` evaluates rates and products in the mode of a step: with its fixed sides, and with the sides of
+//!   surfaces that hold the motion.
+//!
+//! The computation time does not depend on the number of parameters.
 
 mod derivatives;
 mod events;
@@ -31,47 +35,48 @@ use crate::simulation::{Request, new_motion, with_early_stop};
 use recorder::{Recorder, Recording};
 use support::check_support;
 
-/// A motion with its steps and events, for gradients.
+/// Motion with its steps and events, for gradients.
 pub struct RecordedMotion<'m> {
     instance: Instance<'m>,
     motion: Motion,
-    /// Requested state at the start.
+    /// Requested initial state.
     requested: Vec<f64>,
-    /// State at the start, on the constraints.
+    /// Initial state on the constraints.
     initial: Vec<f64>,
     tolerance: f64,
     recording: Recording,
 }
 
-/// Derivatives of a number L by the states and observables of each sample.
+/// Derivatives of a number L with respect to the states and observables of each sample.
 #[derive(Clone, Debug, Default)]
 pub struct SampleWeights {
-    /// Derivatives by the states, SI: one row for each sample, or no row.
+    /// Derivatives with respect to the states, SI: one row per sample, or no rows.
     pub states: Vec<Vec<f64>>,
-    /// Derivatives by the observables, SI: one row for each sample, or no row.
+    /// Derivatives with respect to the observables, SI: one row per sample, or no rows.
     pub observables: Vec<Vec<f64>>,
 }
 
-/// Gradient of a number L of the samples of a motion, SI.
+/// Gradient of a number L that depends on the samples of a motion, SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrajectoryGradient {
-    /// By the requested state at the first sample, which is moved onto the constraints. `None` if friction holds the motion
-    /// from there: its speed cannot change then.
+    /// Derivatives with respect to the requested initial state, which is projected onto the constraints. `None` if
+    /// friction holds the motion at the start, because the speed cannot change then.
     pub initial_state: Option<Vec<f64>>,
-    /// By the independent parameters, at constant initial state, in the order of
+    /// Derivatives with respect to the independent parameters at constant initial state, in the order of
     /// [`CompiledModel::parameter_names`](crate::CompiledModel::parameter_names).
     pub parameters: Vec<f64>,
-    /// By the held inputs: one row for each sample of the inputs. Inputs that are prescribed or functions have NaN.
+    /// Derivatives with respect to the held inputs: one row per sample of the inputs. Prescribed inputs and functions
+    /// of time have NaN.
     pub inputs: Vec<Vec<f64>>,
 }
 
 impl<'m> Instance<'m> {
-    /// Simulates a request with the Runge-Kutta method and records it for gradients. The motion is that of
-    /// [`Instance::simulate_until_stop`]: it may stop early, and then has no gradient. Calls `progress` with the time
-    /// reached, s.
+    /// Simulates a request with the Runge-Kutta method and records it for gradients. The motion equals that of
+    /// [`Instance::simulate_until_stop`]. It may stop early, and then has no gradient. Calls `progress` with the
+    /// current time, s.
     ///
     /// # Errors
-    /// The errors of a simulation, and models without gradients: controllers, friction of contacts, jumps of the energies,
+    /// Errors of a simulation, and models without gradients: controllers, friction of contacts, jumps of the energies,
     /// friction along v/norm(v), and switching functions over modes.
     pub fn record_motion(
         &self,
@@ -135,12 +140,12 @@ impl RecordedMotion<'_> {
         &self.motion
     }
 
-    /// Returns the gradient of a number of which `weights` are the derivatives by the samples.
+    /// Returns the gradient of a number L whose derivatives with respect to the samples are `weights`.
     ///
     /// # Errors
-    /// [`Error::Stopped`] for a motion that stopped early, weights of another shape or that are not finite, and derivatives
-    /// that are not finite. No gradient exists if the motion touches a switching surface, crosses several at once, or rests
-    /// in a contact.
+    /// [`Error::Stopped`] for a motion that stopped early; weights of wrong shape; weights or derivatives that are not
+    /// finite. No gradient exists if the motion touches a switching surface, crosses several at once, or rests in a
+    /// contact.
     pub fn gradient(&self, weights: &SampleWeights) -> Result<TrajectoryGradient, Error> {
         match &self.motion.early_stop {
             Some(stop) => Err(stop.clone().into()),

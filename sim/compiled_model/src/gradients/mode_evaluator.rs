@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::jacobians::JacobianLayout;
 use crate::sticking::{MAX_SETTLED_CHANGE, MAX_SIDE_ITERATIONS, side_of};
 
-/// Jacobians of one kind of rows by state, inputs and parameters.
+/// Jacobians of rates or observables with respect to state, inputs and parameters.
 struct RowJacobians {
     layouts: [JacobianLayout; 3],
     dense: [Vec<f64>; 3],
@@ -30,7 +30,7 @@ impl RowJacobians {
         }
     }
 
-    /// Adds the product of a factor with a row.
+    /// Adds `factor` times a row to `sum`.
     fn add_row(&self, row: usize, factor: f64, sum: &mut Derivatives) {
         let sums = [&mut sum.state, &mut sum.inputs, &mut sum.parameters];
         for ((layout, dense), sum) in self.layouts.iter().zip(&self.dense).zip(sums) {
@@ -42,24 +42,24 @@ impl RowJacobians {
     }
 }
 
-/// Side of a surface among the inputs of the program.
+/// Input of the program that is the side of a surface.
 struct SideInput {
     guard: usize,
     is_odd: bool,
-    /// Side that is fixed; `None` if it follows from the state or holds.
+    /// Fixed value of the side; `None` if the side follows from the state or the surface holds the motion.
     fixed: Option<f64>,
 }
 
 /// Evaluator of a model in one mode of its surfaces.
 pub(super) struct ModeEvaluator {
     evaluator: Evaluator,
-    /// Inputs of the model, then the sides.
+    /// Inputs of the model, followed by the sides.
     inputs: Vec<f64>,
     model_inputs: usize,
     sides: Vec<SideInput>,
     /// Index of the first side of a surface that can hold the motion.
     first_sliding: usize,
-    /// Surfaces that hold the motion, by their index among those that can.
+    /// Surfaces that hold the motion, as indices among the surfaces that can.
     held: Vec<usize>,
     is_linear: bool,
     sliding: Vec<SlidingValues>,
@@ -80,7 +80,7 @@ impl ModeEvaluator {
     /// Wraps an evaluator of a program for gradients, prepared at its parameters.
     ///
     /// # Errors
-    /// A program without these outputs.
+    /// A program without the required outputs.
     pub fn new(evaluator: Evaluator) -> Result<Self, Error> {
         let missing = || Error::Request("the program has no gradients".to_owned());
         let find = |names| RowJacobians::find(&evaluator, names).ok_or_else(missing);
@@ -150,13 +150,13 @@ impl ModeEvaluator {
         })
     }
 
-    /// Returns zero derivatives of the sizes of the program.
+    /// Returns zero derivatives with the sizes of the program.
     pub fn zeros(&self) -> Derivatives {
         let states = self.evaluator.program().states();
         Derivatives::zeros(states, self.inputs.len(), self.parameters)
     }
 
-    /// Sets the modes of the surfaces, by guards.
+    /// Sets the modes of the surfaces, in the order of the guards.
     pub fn set_modes(&mut self, modes: &[SurfaceMode]) {
         self.held.clear();
         for (place, side) in self.sides.iter_mut().enumerate() {
@@ -178,7 +178,7 @@ impl ModeEvaluator {
         side.map(|side| side.fixed = Some(value)).is_some()
     }
 
-    /// Sets the inputs at a point, with the sides of the surfaces.
+    /// Sets the model inputs and the sides of the surfaces at a point.
     fn set_inputs(&mut self, (t, state): (f64, &[f64]), inputs: &[f64]) -> Result<(), Error> {
         self.inputs[..self.model_inputs].copy_from_slice(&inputs[..self.model_inputs]);
         if self.sides.iter().any(|side| side.fixed.is_none()) {
@@ -223,7 +223,7 @@ impl ModeEvaluator {
         Ok(())
     }
 
-    /// Returns the derivatives of the rates of the functions that hold (rows) by their sides.
+    /// Returns the derivatives of the rates of the held functions (rows) with respect to the sides of their surfaces.
     fn held_matrix(&self) -> DMatrix<f64> {
         DMatrix::from_fn(self.held.len(), self.held.len(), |row, column| {
             self.sliding[self.held[row]].by_sides[self.held[column]]
@@ -283,8 +283,8 @@ impl ModeEvaluator {
         Ok(sum)
     }
 
-    /// Replaces the derivatives by the sides that hold by those of the condition that determines them: the rates of their
-    /// functions are zero.
+    /// Replaces the derivatives with respect to the sides of held surfaces, by the condition that the rates of their
+    /// switching functions are zero.
     fn follow_holding_sides(
         &mut self,
         (t, state): (f64, &[f64]),
@@ -308,7 +308,7 @@ impl ModeEvaluator {
         Ok(())
     }
 
-    /// Returns the number of surfaces: of switching functions, then of the distances of impacts.
+    /// Returns the number of surfaces: switching functions, then distances of impacts.
     pub fn surface_count(&self) -> usize {
         self.guards.len() + self.evaluator.program().impacts.len()
     }
@@ -323,7 +323,7 @@ impl ModeEvaluator {
         surface.checked_sub(self.guards.len())
     }
 
-    /// Writes the functions of the surfaces and their rates.
+    /// Writes the surface functions and their rates.
     pub fn write_surfaces(
         &mut self,
         (t, state): (f64, &[f64]),
@@ -363,7 +363,7 @@ impl ModeEvaluator {
         Ok(found)
     }
 
-    /// Returns for each impact the jump of the rates by this impact alone, one number for each degree of freedom.
+    /// Returns, for each impact, the jump of the rates by this impact alone, one number per degree of freedom.
     pub fn impact_jumps(
         &mut self,
         (t, state): (f64, &[f64]),
@@ -381,7 +381,7 @@ impl ModeEvaluator {
         Ok(jumps.collect())
     }
 
-    /// Returns the derivatives of the residuals of all constraints, and of the rates of these.
+    /// Returns the derivatives of the residuals of all constraints, and of the rates of these residuals.
     pub fn differentiate_constraints(
         &mut self,
         (t, state): (f64, &[f64]),
@@ -413,7 +413,7 @@ impl ModeEvaluator {
         DMatrix::from_row_slice(degrees, degrees, &mass)
     }
 
-    /// Returns the products of weights with the derivatives of the jump by an impact, and with that by time.
+    /// Returns the products of weights with the derivatives of the jump by an impact, and with its time derivative.
     pub fn pull_back_jump(
         &mut self,
         (t, state): (f64, &[f64]),

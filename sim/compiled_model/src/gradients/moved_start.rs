@@ -1,8 +1,9 @@
-//! The backward pass over the corrections of a requested state that does not satisfy the constraints.
+//! Backward pass over the corrections of a requested state that violates the constraints.
 //!
-//! Newton's method corrects coordinates and rates, x_(k+1) = x_k - (P g, P r)(x_k). P g and P r are linear combinations of
-//! accelerations at three stabilisation rates (`projection`), so that their derivatives are those of accelerations. The
-//! derivatives include the curvature of the constraints, and the change of the mass matrix along the corrections.
+//! Newton's method corrects coordinates and rates: x_(k+1) = x_k - (P g, P r)(x_k). P g and P r are linear combinations
+//! of accelerations at three stabilisation rates (`projection`), so their derivatives follow from those of
+//! accelerations. The derivatives include the curvature of the constraints, and the change of the mass matrix along the
+//! corrections.
 
 use eomgen_model_spec::model::STABILISATION_RATE;
 
@@ -15,7 +16,8 @@ use crate::motion_model::MotionModel;
 use crate::projection::LARGE_RATE_PER_S;
 
 impl BackwardPass<'_, '_> {
-    /// Replaces the derivatives by the consistent start by those by the requested start.
+    /// Converts the derivatives with respect to the consistent initial state into derivatives with respect to the
+    /// requested one.
     pub fn follow_corrections(&mut self) -> Result<(), Error> {
         let recorded = self.recorded;
         if recorded.motion.initial_changes.is_empty() {
@@ -35,7 +37,7 @@ impl BackwardPass<'_, '_> {
         for state in states.iter().rev() {
             self.follow_correction((t, state), &mut corrections)?;
         }
-        // Corrections do not depend on the stabilisation rate.
+        // The corrections do not depend on the stabilisation rate.
         if let (Some(place), Some(by_rate)) = (rate, by_rate) {
             self.parameters[place] = by_rate;
         }
@@ -48,7 +50,8 @@ impl BackwardPass<'_, '_> {
         }
     }
 
-    /// Replaces the derivatives by the state after a correction by those by the state before it.
+    /// Converts the derivatives with respect to the state after a correction into derivatives with respect to the state
+    /// before it.
     fn follow_correction(
         &mut self,
         at: (f64, &[f64]),
@@ -72,7 +75,7 @@ impl BackwardPass<'_, '_> {
     }
 }
 
-/// Accelerations at the stabilisation rate of the model, at a large one and at its negative.
+/// Evaluators of the accelerations at three stabilisation rates: that of the model, a large one and its negative.
 struct Corrections {
     stabilisation_rate: f64,
     degrees: usize,
@@ -102,7 +105,7 @@ impl Corrections {
         })
     }
 
-    /// Returns for each evaluator the weights of its rates in the product of `adjoint` with a correction.
+    /// Returns, for each evaluator, the weights of its rates in the product of `adjoint` with a correction.
     fn weigh(&mut self, adjoint: &[f64]) -> impl Iterator<Item = (&mut ModeEvaluator, Vec<f64>)> {
         let (own, large, degrees) = (self.stabilisation_rate, LARGE_RATE_PER_S, self.degrees);
         let mut weights = [(); 3].map(|()| vec![0.0; adjoint.len()]);

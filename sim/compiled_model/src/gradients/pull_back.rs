@@ -1,4 +1,4 @@
-//! The backward pass along a recorded motion.
+//! Backward pass along a recorded motion.
 
 use eomgen_sim::ode::{RepeatedStep, SurfaceMode};
 
@@ -9,7 +9,7 @@ use super::{RecordedMotion, SampleWeights, TrajectoryGradient};
 use crate::error::Error;
 use crate::evaluation::prepare_evaluator;
 
-/// Returns the gradient of a number with these derivatives by the samples.
+/// Returns the gradient of a number from its derivatives with respect to the samples.
 pub(super) fn pull_back(
     recorded: &RecordedMotion<'_>,
     weights: &SampleWeights,
@@ -62,19 +62,19 @@ fn check_weights(recorded: &RecordedMotion<'_>, weights: &SampleWeights) -> Resu
     Ok(())
 }
 
-/// Backward pass from the end of a motion, and the derivatives so far.
+/// State of a backward pass that starts at the end of a motion.
 pub(super) struct BackwardPass<'r, 'm> {
     pub recorded: &'r RecordedMotion<'m>,
     pub evaluator: ModeEvaluator,
     step: RepeatedStep,
-    /// Derivatives by the state at the present time.
+    /// Derivatives with respect to the state at the current time.
     pub adjoint: Vec<f64>,
     pub parameters: Vec<f64>,
-    /// Derivatives by the inputs, one row for each of their samples.
+    /// Derivatives with respect to the inputs, one row per sample of the inputs.
     pub inputs: Vec<Vec<f64>>,
-    /// Products of one stage.
+    /// Derivatives of one stage of a step.
     products: Derivatives,
-    /// Number of samples before the present time.
+    /// Number of samples before the current time.
     samples: usize,
     /// Largest magnitudes of the functions of all surfaces, and of their rates.
     pub surface_sizes: Vec<(f64, f64)>,
@@ -112,12 +112,13 @@ impl<'r, 'm> BackwardPass<'r, 'm> {
         &self.recorded.recording.parts[place]
     }
 
-    /// Returns the time (s) of an evaluation during a part: before the next change of the inputs.
+    /// Returns the time (s) at which the inputs of a part are evaluated: `t`, limited to times before the next change
+    /// of the inputs.
     pub fn clip(&self, part: &Part, t: f64) -> f64 {
         clip_before(self.recorded.inputs().next_change(part.start.0), t)
     }
 
-    /// Follows a step backwards, with the samples inside it.
+    /// Propagates the adjoint backwards over a step, including the samples inside it.
     fn follow_step(&mut self, place: usize, weights: &SampleWeights) -> Result<(), Error> {
         let part = self.part(place);
         self.evaluator.set_modes(&part.modes);
@@ -151,7 +152,7 @@ impl<'r, 'm> BackwardPass<'r, 'm> {
         Ok(())
     }
 
-    /// Computes the step of a part, of `length` s, again.
+    /// Repeats the step of a part, with `length` s.
     fn repeat(&mut self, part: &Part, length: f64) -> Result<(), Error> {
         let inputs = self.recorded.inputs();
         let change = self.recorded.inputs().next_change(part.start.0);
@@ -163,7 +164,8 @@ impl<'r, 'm> BackwardPass<'r, 'm> {
         })
     }
 
-    /// Replaces the derivatives by the end of the repeated step by those by its start.
+    /// Converts the derivatives with respect to the end of the repeated step into derivatives with respect to its
+    /// start.
     fn pull_back_step(&mut self, part: &Part, adjoint: &mut [f64]) -> Result<(), Error> {
         let inputs = self.recorded.inputs();
         let change = inputs.next_change(part.start.0);
@@ -181,7 +183,8 @@ impl<'r, 'm> BackwardPass<'r, 'm> {
         })
     }
 
-    /// Adds the derivatives of a sample by parameters and inputs, and returns those by its state.
+    /// Adds the derivatives of a sample with respect to parameters and inputs, and returns those with respect to its
+    /// state.
     fn follow_sample(
         &mut self,
         sample: usize,
@@ -210,7 +213,7 @@ impl<'r, 'm> BackwardPass<'r, 'm> {
         Ok(by_state)
     }
 
-    /// Adds the samples at the start, and returns the gradient.
+    /// Adds the samples at the start and returns the gradient.
     fn finish(mut self, weights: &SampleWeights) -> Result<TrajectoryGradient, Error> {
         let recorded = self.recorded;
         while let (Some(sample), Some(first)) = (
@@ -251,7 +254,7 @@ pub(super) fn add(sums: &mut [f64], parts: &[f64]) {
     add_product(sums, 1.0, parts);
 }
 
-/// Adds the products of a factor with these parts.
+/// Adds `factor` times `parts` to `sums`.
 pub(super) fn add_product(sums: &mut [f64], factor: f64, parts: &[f64]) {
     for (sum, part) in sums.iter_mut().zip(parts) {
         *sum += factor * part;

@@ -1,4 +1,4 @@
-//! The steps and events of a motion.
+//! Recorder of the steps and events of a motion.
 
 use std::cell::{Cell, RefCell};
 
@@ -10,13 +10,13 @@ use eomgen_sim::ode::{ObservedStep, SurfaceMode, System};
 pub(super) enum PartKind {
     /// A step of the solver.
     Step,
-    /// A crossing of a surface, without a step.
+    /// Crossing of a surface; the state is continuous.
     Crossing,
-    /// A crossing of a surface at which the state jumps.
+    /// Crossing of a surface at which the state jumps.
     Jump,
 }
 
-/// A part of a motion, with the modes of the surfaces during it.
+/// Part of a motion, with the modes of the surfaces during it.
 #[derive(Clone, Debug)]
 pub(super) struct Part {
     pub modes: Vec<SurfaceMode>,
@@ -35,18 +35,18 @@ pub(super) struct Recording {
 }
 
 impl Recording {
-    /// Returns the modes after the part at an index.
+    /// Returns the modes after a part.
     pub fn modes_after(&self, part: usize) -> &[SurfaceMode] {
         let next = self.parts.get(part + 1);
         next.map_or(&self.last_modes, |next| &next.modes)
     }
 }
 
-/// A system that records its steps.
+/// System of a solver that records its steps.
 pub(super) struct Recorder<'s> {
     system: &'s dyn System,
     parts: RefCell<Vec<Part>>,
-    /// Sides of the surfaces during the present step.
+    /// Sides of the surfaces during the current step.
     sides: RefCell<Vec<f64>>,
     kind: Cell<PartKind>,
     /// Modes before the event.

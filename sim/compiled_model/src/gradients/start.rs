@@ -1,4 +1,4 @@
-//! The backward pass over the consistent start of a model with constraints.
+//! Backward pass over the consistent initial state of a model with constraints.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -6,23 +6,23 @@ use super::derivatives::Derivatives;
 use super::pull_back::{BackwardPass, add_product, no_gradient};
 use crate::error::Error;
 
-/// A condition of a consistent state, and the change of the state that corrects it.
+/// Condition of a consistent state, and the change of the state that restores it.
 struct Condition {
     /// Derivatives of the residual or of its rate.
     derivatives: Derivatives,
-    /// True if it is corrected by rates, false if by coordinates.
+    /// True if the rates are corrected, false if the coordinates are.
     is_of_rates: bool,
-    /// True if corrections of others only maintain it: corrections of coordinates satisfy constraints of rates.
+    /// True if corrections of coordinates must keep the condition satisfied: constraints of rates.
     is_maintained: bool,
 }
 
-/// Singular value, relative to the largest, of conditions that depend on others.
+/// Conditions whose singular value is below this fraction of the largest depend on others.
 const RANK_TOLERANCE: f64 = 1e-10;
 
 impl BackwardPass<'_, '_> {
-    /// Replaces the derivatives by the consistent start by those by the given start. A simulation starts at the nearest state
-    /// that satisfies the constraints, in the norm of the kinetic energy: the correction is along M^-1 A^T, for coordinates
-    /// and for rates.
+    /// Converts the derivatives with respect to the consistent initial state into derivatives with respect to the given
+    /// one. A simulation starts at the nearest consistent state in the norm of the kinetic energy. The correction is
+    /// along M^-1 A^T, for coordinates and for rates.
     pub fn follow_start(&mut self) -> Result<(), Error> {
         let recorded = self.recorded;
         let first = recorded.recording.parts.first();

@@ -1,9 +1,9 @@
-//! Models whose trajectories have no gradient yet.
+//! Models whose trajectories do not support gradients.
 
 use crate::error::Error;
 use crate::instance::Instance;
 
-/// Rejects models with features that gradients do not follow, by their names.
+/// Rejects models with features that gradients do not support.
 pub(super) fn check_support(instance: &Instance<'_>) -> Result<(), Error> {
     let model = instance.model().model();
     let own = if let Some(impact) = model

@@ -1,4 +1,4 @@
-//! Sizes of the functions of surfaces over a motion, and motions that touch a surface.
+//! Magnitudes of surface functions over a motion, and rejection of motions that touch a surface.
 
 use eomgen_sim::ode::SurfaceMode;
 
@@ -6,15 +6,16 @@ use super::pull_back::{BackwardPass, no_gradient};
 use super::recorder::{Part, PartKind};
 use crate::error::Error;
 
-/// Largest jump of a rate over a surface, relative to its largest magnitude over the motion, that counts as none: at a
-/// kink the rates differ only by the change over the location of the event.
+/// Largest jump of a rate over a surface that counts as none, relative to its largest magnitude over the motion. At a
+/// kink the rates differ only by their change within the accuracy of the event location.
 const MAX_KINK_JUMP_FRACTION: f64 = 1e-9;
 
-/// Distance from a surface, in tolerances of its function, that counts as a contact.
+/// Distance from a surface at which the motion counts as touching it, in tolerances of the switching function.
 const MAX_TOUCH_TOLERANCES: f64 = 10.0;
 
 impl<'r> BackwardPass<'r, '_> {
-    /// Measures rates and switching functions over the motion, and rejects motions that touch a surface.
+    /// Determines the largest magnitudes of rates and switching functions over the motion. Rejects motions that touch a
+    /// surface.
     pub fn measure_surfaces(&mut self) -> Result<(), Error> {
         let recorded = self.recorded;
         let count = self.evaluator.surface_count();
@@ -66,7 +67,7 @@ impl<'r> BackwardPass<'r, '_> {
         self.check_start()
     }
 
-    /// Rejects motions that start on a surface on which rates or states jump, unless it holds them.
+    /// Rejects motions that start on a surface at which rates or states jump, unless the surface holds the motion.
     fn check_start(&mut self) -> Result<(), Error> {
         let Some(first) = self.recorded.recording.parts.first() else {
             return Ok(());
@@ -106,7 +107,7 @@ impl<'r> BackwardPass<'r, '_> {
         surface.map_or("", |surface| &surface.formula)
     }
 
-    /// Returns true if the surface belongs to an impact, or the rates differ on its sides at the end of a part.
+    /// Returns true if the surface belongs to an impact, or if the rates on its two sides differ at the end of a part.
     fn state_jumps(&mut self, part: &Part, surface: usize) -> Result<bool, Error> {
         if self.evaluator.impact_of(surface).is_some() {
             return Ok(true);
@@ -125,7 +126,7 @@ impl<'r> BackwardPass<'r, '_> {
         Ok(!self.is_kink(&from, &to))
     }
 
-    /// Returns true if rates on both sides of a surface are equal up to the change over its location.
+    /// Returns true if the rates on both sides of a surface are equal within the accuracy of the event location.
     pub fn is_kink(&self, from: &[f64], to: &[f64]) -> bool {
         let mut pairs = from.iter().zip(to).zip(&self.rate_sizes);
         pairs.all(|((from, to), size)| (to - from).abs() <= MAX_KINK_JUMP_FRACTION * size)

@@ -1,4 +1,4 @@
-//! Measurement of a motion in progress, step by step.
+//! Measurement of one quantity during a motion, step by step.
 
 use eomgen_codegen::program::evaluator::Enclosure;
 
@@ -6,51 +6,51 @@ use super::polynomial::{DEGREES, MAX_DEGREE, Polynomial, chebyshev_point};
 use super::step_quantities::QuantityInStep;
 use super::{Measurement, Statistic};
 
-/// Shortest panel, as a part of its step: a jump of the quantity inside a step is located to this part.
+/// Shortest panel, as a fraction of its step. A jump of the quantity inside a step is located with this accuracy.
 const MIN_PANEL_PART: f64 = 1e-12;
 
-/// Rounding of a quantity, relative to its typical size.
+/// Rounding error of a quantity, relative to its typical size.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Error of the mean square of a panel, in tolerances. Errors of panels have both signs.
+/// Allowed error of the mean square of a panel, in tolerances. Errors of panels have both signs and partly cancel.
 const MEAN_SQUARE_FACTOR: f64 = 10.0;
 
-/// Maximum number of panels of a step that resolves all transients: enough to locate three jumps of the quantity.
+/// Maximum number of panels of a step that resolves all transients; it suffices to locate three jumps of the quantity.
 const MAX_PANELS: usize = 128;
 
 /// Largest peak between the points of a polynomial that a maximum may miss, relative to the largest magnitude.
 const MAX_HIDDEN_PEAK_FRACTION: f64 = 1e-3;
 
-/// The same for a root mean square, relative to it.
+/// Largest such peak for a root mean square, relative to the root mean square.
 const MAX_HIDDEN_RMS_FRACTION: f64 = 0.25;
 
-/// Maximum number of divisions by bounds of a step, per panel that polynomials would resolve without them.
+/// Maximum number of additional divisions for bounds of a step, per panel that polynomials need.
 const MAX_DIVISIONS_PER_PANEL: usize = 16;
 
 /// Tolerance of a quantity of an exact motion, relative to its largest magnitude.
 const EXACT_TOLERANCE: f64 = 1e-7;
 
-/// Places, as parts of a panel, that are far from the points of all polynomials.
+/// Test points, as fractions of a panel, that are far from the points of all polynomials.
 const PROBES: [f64; 3] = [0.109, 0.4195, 0.7651];
 
-/// Place, as a part of a step, at which a transient from its start shows.
+/// Test point for a transient at the start of a step, as a fraction of the step.
 const TRANSIENT_PART: f64 = 1e-7;
 
-/// Part of a step between two times (s), with the values there.
+/// Part of a step between two times (s), with the values at both ends.
 struct Panel {
     from: f64,
     to: f64,
     ends: [f64; 2],
-    /// True if it is part of a panel that a polynomial represents.
+    /// True if the panel is part of a panel that a polynomial represents.
     is_resolved: bool,
 }
 
 /// Interpolation of the quantity over a panel.
 struct Interpolation {
     polynomial: Polynomial,
-    /// True if the polynomial represents the quantity well enough.
+    /// True if the polynomial represents the quantity within the tolerance.
     is_resolved: bool,
-    /// Value in the middle.
+    /// Value in the middle of the panel.
     middle: f64,
 }
 
@@ -59,12 +59,12 @@ struct Interpolation {
 pub(crate) struct Meter {
     pub measurement: Measurement,
     tolerance: f64,
-    /// True if a transient much shorter than a step may follow its start, as in exact steps.
+    /// True if a transient much shorter than a step may follow its start, as in steps of the exact solver.
     has_transients: bool,
     greatest: Option<f64>,
-    /// Largest magnitude so far.
+    /// Largest magnitude of the quantity so far.
     size: f64,
-    /// Integral of the square so far, and the time over which it was taken, s.
+    /// Integral of the squared quantity so far, and the time covered by it, s.
     square_integral: f64,
     duration: f64,
 }
@@ -83,7 +83,7 @@ impl Meter {
         }
     }
 
-    /// Continues with a solver of a relative tolerance.
+    /// Continues with a solver of another relative tolerance.
     pub fn continue_with(&mut self, tolerance: f64) {
         (self.tolerance, self.has_transients) = (tolerance, false);
     }
@@ -183,7 +183,7 @@ impl Meter {
                 .is_some_and(|greatest| high <= greatest + slack)
     }
 
-    /// Returns true if bounds of the quantity over a panel leave room for a peak that the polynomial does not have.
+    /// Returns true if the bounds of the quantity over a panel admit a peak that the polynomial does not have.
     fn exceeds_polynomial(
         &self,
         panel: &Panel,
@@ -208,7 +208,7 @@ impl Meter {
         }
     }
 
-    /// Returns true if the quantity at a short time (s) after the start of a panel does not match the polynomial.
+    /// Returns true if the quantity a short time (s) after the start of a panel does not match the polynomial.
     fn is_transient(
         &self,
         panel: &Panel,
@@ -228,8 +228,8 @@ impl Meter {
         }
     }
 
-    /// Interpolates the quantity over a panel with the lowest degree that resolves it, or else the highest. Measures a panel
-    /// whose interior is unknown or not finite, and returns `None`.
+    /// Interpolates the quantity over a panel with the lowest degree that resolves it, or else the highest. If values
+    /// inside the panel are unknown or not finite, measures the panel by its ends and returns `None`.
     fn interpolate(
         &mut self,
         panel: &Panel,
@@ -279,7 +279,8 @@ impl Meter {
         last
     }
 
-    /// Returns true if a polynomial has values of the quantity between its points: those of a fast oscillation may look slow.
+    /// Returns true if a polynomial matches the quantity between the interpolation points. Samples of a fast
+    /// oscillation may look slow.
     fn matches_probes(
         &self,
         polynomial: &Polynomial,
@@ -296,11 +297,11 @@ impl Meter {
         })
     }
 
-    /// Returns true if a polynomial represents the quantity over a panel of this length (s) well enough.
+    /// Returns true if a polynomial represents the quantity over a panel of `length` s within the tolerance.
     fn is_resolved(&self, polynomial: &Polynomial, length: f64) -> bool {
         let error = match self.has_transients {
             false => polynomial.error(),
-            // A fast oscillation of small amplitude does not decay.
+            // The coefficients of a fast oscillation with a small amplitude do not decay.
             true => polynomial.last_terms(),
         };
         if error <= ROUNDING * self.measurement.typical_size {
@@ -347,7 +348,7 @@ impl Meter {
         }
     }
 
-    /// Measures a panel whose interior is unknown by its chord.
+    /// Measures a panel whose interior values are unknown by its chord.
     fn add_chord(&mut self, panel: &Panel) {
         let [a, b] = panel.ends;
         self.add_square((a * a + a * b + b * b) / 3.0, panel.to - panel.from);
@@ -359,12 +360,13 @@ impl Meter {
     }
 }
 
-/// Returns the bounds of the quantity over a panel, from bounds of its values and, with the values at the ends, of its rate.
+/// Returns the bounds of the quantity over a panel, from bounds of its values, or from bounds of its rate and the
+/// values at the ends.
 fn bound_between(panel: &Panel, bound: &Enclosure) -> (f64, f64) {
     let (value, rate) = (bound.value(), bound.rate());
     let [first, last] = panel.ends;
     let length = panel.to - panel.from;
-    // Two lines from the ends with the steepest slopes meet at the highest value.
+    // The highest value is at the intersection of two lines from the ends with the steepest slopes.
     let highest = |low: f64, high: f64, first: f64, last: f64| {
         if low >= 0.0 {
             last

@@ -6,7 +6,7 @@ use super::meter::Meter;
 use super::step_quantities::{Observables, QuantityCache, StepQuantities};
 use super::{Measurement, Quantity};
 
-/// Meters of a motion. The result of each does not depend on the others.
+/// Meters of a motion. Their results are independent of each other.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Meters {
     meters: Vec<Meter>,
@@ -14,8 +14,8 @@ pub(crate) struct Meters {
 }
 
 impl Meters {
-    /// Creates meters of a motion with a relative tolerance (`None` for an exact motion) of a model with this number of
-    /// observables.
+    /// Creates meters of a motion with a relative tolerance (`None` for an exact motion). `observables` is the number
+    /// of observables of the model.
     pub fn new(measurements: &[Measurement], tolerance: Option<f64>, observables: usize) -> Self {
         let meters = measurements.iter();
         Self {
@@ -24,7 +24,7 @@ impl Meters {
         }
     }
 
-    /// Continues with a solver of a relative tolerance.
+    /// Continues with a solver of another relative tolerance.
     pub fn continue_with(&mut self, tolerance: f64) {
         for meter in &mut self.meters {
             meter.continue_with(tolerance);

@@ -1,7 +1,8 @@
 //! Maximum and RMS of quantities over a motion.
 //!
-//! Both follow from the steps of the solver and from the states inside them, not from a grid of times. Each step is
-//! divided into panels until polynomials represent the quantity. The values on both sides of every event are ends of steps.
+//! Both are computed from the steps of the solver and from the states inside them, not from a grid of times. Each step
+//! is divided into panels until polynomials represent the quantity. Every event ends a step, so its values on both
+//! sides are used.
 
 mod meter;
 mod meters;
@@ -15,9 +16,9 @@ pub(crate) use step_quantities::Observables;
 /// Quantity of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
-    /// State of this index.
+    /// State, by its index.
     State(usize),
-    /// Observable of this index.
+    /// Observable, by its index.
     Observable(usize),
 }
 
@@ -35,9 +36,9 @@ pub enum Statistic {
 pub struct Measurement {
     /// Measured quantity.
     pub quantity: Quantity,
-    /// Its statistic.
+    /// Statistic of the quantity.
     pub statistic: Statistic,
-    /// Time from which on it is measured, s.
+    /// Time at which the measurement starts, s.
     pub begin: f64,
     /// Typical size of the quantity, SI; see [`CompiledModel::typical_size`](crate::CompiledModel::typical_size).
     pub typical_size: f64,

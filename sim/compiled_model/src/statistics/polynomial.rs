@@ -3,27 +3,27 @@
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
-/// Highest degree.
+/// Highest degree of a polynomial.
 pub(super) const MAX_DEGREE: usize = 16;
 
-/// Degrees of the polynomials of a panel; the points of each include those of the one before.
+/// Degrees of the polynomials of a panel; the points of each degree include those of the lower degrees.
 pub(super) const DEGREES: [usize; 3] = [4, 8, MAX_DEGREE];
 
-/// Least assumed ratio of two consecutive pairs of coefficients.
+/// Smallest assumed ratio of two consecutive pairs of coefficients.
 const MIN_DECAY: f64 = 0.1;
 
-/// Points of the grid of the maximum, per degree.
+/// Number of grid points for the maximum, per degree.
 const GRID_POINTS_PER_DEGREE: usize = 4;
 
-/// Iterations of the search for the maximum between points of the grid; each shortens the interval to 0.62 of its length.
+/// Iterations of the search for the maximum between grid points; each reduces the interval to 0.62 of its length.
 const MAX_SEARCH_ITERATIONS: usize = 40;
 
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Number of equal angles of [`COSINES`] in a half turn, a multiple of the points of every grid.
+/// Number of angles in [`COSINES`] per half turn, a multiple of the number of points of every grid.
 const ANGLES: usize = MAX_DEGREE * GRID_POINTS_PER_DEGREE;
 
-/// Cosines of the multiples of `PI / ANGLES` in a turn.
+/// Cosines of the multiples of `PI / ANGLES` over a full turn.
 static COSINES: LazyLock<[f64; 2 * ANGLES]> =
     LazyLock::new(|| std::array::from_fn(|place| (PI * place as f64 / ANGLES as f64).cos()));
 
@@ -41,7 +41,7 @@ fn mean_product(i: usize, j: usize) -> f64 {
     0.5 / (1.0 - sum * sum) + 0.5 / (1.0 - difference * difference)
 }
 
-/// Returns the point of this index among those of a degree, as a part of the panel, 0 to 1.
+/// Returns an interpolation point of a degree, as a fraction of the panel, 0 to 1.
 pub(super) fn chebyshev_point(index: usize, degree: usize) -> f64 {
     0.5 * (1.0 - cosine(index, degree))
 }
@@ -50,7 +50,7 @@ pub(super) fn chebyshev_point(index: usize, degree: usize) -> f64 {
 pub(super) struct Bounds {
     pub low: f64,
     pub high: f64,
-    /// Place of the largest value of a grid, as a part of the panel.
+    /// Position of the largest value on a grid, as a fraction of the panel.
     pub largest_place: f64,
 }
 
@@ -68,7 +68,7 @@ impl Polynomial {
         let halved = |index: usize, value: f64| if is_end(index) { 0.5 * value } else { value };
         let coefficient = |order: usize| {
             let terms = values.iter().enumerate().map(|(index, value)| {
-                // The points begin at -1.
+                // The interpolation points start at -1.
                 halved(index, *value) * cosine(order * (degree - index), degree)
             });
             halved(order, 2.0 / degree as f64 * terms.sum::<f64>())
@@ -83,10 +83,10 @@ impl Polynomial {
         &self.coefficients
     }
 
-    /// Returns the derivative by the part of the panel.
+    /// Returns the derivative with respect to the fraction of the panel.
     pub fn derivative(&self, part: f64) -> f64 {
         let x = 2.0 * part - 1.0;
-        // The derivative of T_n is n U_(n-1).
+        // Uses that the derivative of T_n is n U_(n-1).
         let (mut before, mut own, mut sum) = (0.0, 1.0, 0.0);
         for (order, coefficient) in self.coefficients.iter().enumerate().skip(1) {
             sum += order as f64 * coefficient * own;
@@ -99,7 +99,7 @@ impl Polynomial {
         self.coefficients.len() - 1
     }
 
-    /// Returns the value at a part of the panel, 0 to 1 (Clenshaw's algorithm).
+    /// Returns the value at a fraction of the panel, 0 to 1 (Clenshaw's algorithm).
     pub fn value(&self, part: f64) -> f64 {
         let x = 2.0 * part - 1.0;
         let (mut later, mut last) = (0.0, 0.0);
@@ -109,7 +109,7 @@ impl Polynomial {
         self.coefficients[0] + x * last - later
     }
 
-    /// Estimates the error of the interpolation, from the decay of the last coefficients.
+    /// Estimates the interpolation error from the decay of the last coefficients.
     pub fn error(&self) -> f64 {
         let (last, before) = (self.terms_before(0), self.terms_before(2));
         if last == 0.0 {
@@ -124,7 +124,7 @@ impl Polynomial {
         self.terms_before(0)
     }
 
-    /// Returns the larger magnitude of the two terms before the last ones, of which there are `count`.
+    /// Returns the larger magnitude of the two terms before the last `count` terms.
     fn terms_before(&self, count: usize) -> f64 {
         let earlier = self.coefficients.iter().rev().skip(count);
         earlier
@@ -143,10 +143,10 @@ impl Polynomial {
         sum.max(0.0)
     }
 
-    /// Estimates the error of [`Polynomial::mean_square`] from that of the interpolation.
+    /// Estimates the error of [`Polynomial::mean_square`] from the interpolation error.
     pub fn mean_square_error(&self, error: f64) -> f64 {
         let degree = self.degree();
-        // The first omitted terms have the values of the terms as far below the degree at all points.
+        // At the interpolation points, the first omitted terms equal the terms as far below the degree (aliasing).
         let omitted = |by: usize, order: usize| {
             mean_product(order, degree + by) - mean_product(order, degree - by)
         };
@@ -175,7 +175,7 @@ impl Polynomial {
                 greatest = (value, part);
             }
         }
-        // H. Ehlich and K. Zeller, Math. Z. 86 (1964): the excess over such a grid is bounded.
+        // The excess over such a grid is bounded (H. Ehlich and K. Zeller, Math. Z. 86, 1964).
         let excess = 1.0 / (0.5 * PI / GRID_POINTS_PER_DEGREE as f64).cos() - 1.0;
         let margin = excess * 0.5 * (greatest.0 - least);
         Bounds {
@@ -185,7 +185,7 @@ impl Polynomial {
         }
     }
 
-    /// Returns the place of the maximum next to a point of the grid.
+    /// Returns the position of the maximum next to a grid point.
     pub fn maximum_near(&self, part: f64) -> f64 {
         let points = (GRID_POINTS_PER_DEGREE * self.degree()) as f64;
         let angle = (1.0 - 2.0 * part).clamp(-1.0, 1.0).acos();
@@ -222,7 +222,7 @@ mod tests {
         for part in [0.0, 0.1, 0.37, 0.5, 0.99, 1.0] {
             assert!((polynomial.value(part) - function(part)).abs() < 1e-14);
         }
-        // Integral of (1 + 2 s - 3 s^2 + s^4)^2.
+        // Expected value: integral of (1 + 2 s - 3 s^2 + s^4)^2.
         let expected = 1.0 + 2.0 - 2.0 / 3.0 - 3.0 + 2.2 + 2.0 / 3.0 - 6.0 / 7.0 + 1.0 / 9.0;
         let found = polynomial.mean_square();
         assert!(

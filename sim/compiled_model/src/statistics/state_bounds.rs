@@ -1,7 +1,7 @@
 //! Bounds of the states over a panel, from their values at Chebyshev points.
 //!
-//! A polynomial through the values bounds a state, up to the error of the interpolation. A fast oscillation may have values
-//! that look slow; the derivative of the polynomial of a coordinate then differs from the rate, which is a state too.
+//! A polynomial through the values bounds a state, up to the interpolation error. Samples of a fast oscillation may
+//! look slow. The derivative of the polynomial of a coordinate then differs from the rate, which is a state too.
 
 use std::sync::LazyLock;
 
@@ -16,8 +16,8 @@ pub(super) const STATE_DEGREE: usize = DEGREE + 1;
 
 static BASIS: LazyLock<BernsteinBasis> = LazyLock::new(BernsteinBasis::new);
 
-/// Returns the bounds of the states over a panel of a length (s). `states` has the states at the Chebyshev points of
-/// [`STATE_DEGREE`], and `degrees` is the number of coordinates, whose rates follow them in the state.
+/// Returns the bounds of the states over a panel of `length` s. `states` has the states at the Chebyshev points of
+/// [`STATE_DEGREE`]. `degrees` is the number of coordinates, whose rates follow them in the state.
 pub(super) fn bound_states(states: &[Vec<f64>], degrees: usize, length: f64) -> Vec<Enclosure> {
     let count = states.first().map_or(0, Vec::len);
     let column = |place: usize| -> Vec<f64> { states.iter().map(|state| state[place]).collect() };
@@ -36,7 +36,7 @@ pub(super) fn bound_states(states: &[Vec<f64>], degrees: usize, length: f64) -> 
             let part = chebyshev_point(index, STATE_DEGREE);
             (polynomial.derivative(part) - rate * length).abs()
         });
-        // A term of degree n with this error of the derivative is n times smaller, at least.
+        // If a term of degree n causes this error of the derivative, the term is at least n times smaller.
         last.max(differences.fold(0.0, f64::max) / STATE_DEGREE as f64)
     };
     let errors: Vec<f64> = polynomials.iter().enumerate().map(error).collect();
@@ -49,7 +49,7 @@ pub(super) fn bound_states(states: &[Vec<f64>], degrees: usize, length: f64) -> 
         piece.bound(length, &mut bounds);
     }
     let with_rest = |(bound, error): (Enclosure, f64)| {
-        // Markov's inequality bounds the rate of the rest.
+        // Markov's inequality bounds the rate of the interpolation error.
         let rate = 2.0 * (STATE_DEGREE * STATE_DEGREE) as f64 * error / length;
         bound.add_enclosure(Enclosure::from_bounds(symmetric(error), symmetric(rate)))
     };

@@ -9,32 +9,32 @@ use super::Quantity;
 use super::polynomial::chebyshev_point;
 use super::state_bounds::{STATE_DEGREE, bound_states};
 
-/// Observables of a model at a point and over a stretch of time.
+/// Observables of a model at a point and over a time interval.
 pub(crate) trait Observables {
     /// Writes the observables at a time (s) and a state.
     fn write(&mut self, at: (f64, &[f64]), out: &mut [f64]);
 
-    /// Writes the bounds of the observables between two times (s) with these bounds of the state. Returns false without
-    /// bounds, as while a surface or a contact holds the motion.
+    /// Writes the bounds of the observables between two times (s) from bounds of the state. Returns false if no bounds
+    /// are known, for example while a surface or a contact holds the motion.
     fn bound(&mut self, span: (f64, f64), state: &[Enclosure], out: &mut [Enclosure]) -> bool;
 
     /// Returns the number of coordinates and modes.
     fn degrees_of_freedom(&self) -> usize;
 }
 
-/// Memory of the quantities in a step.
+/// Cache of the quantities in a step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct QuantityCache {
-    /// Observables at the last of the times.
+    /// Observables at the last cached time.
     observables: Vec<f64>,
     bounds: Vec<Enclosure>,
-    /// Rows of the times at which the quantities are known, by the bits of a time in s.
+    /// Rows of `values` by time; the key is the bit pattern of the time in s.
     times: HashMap<u64, usize>,
-    /// Quantities at these times, one row per time; `None` if the state is unknown.
+    /// Quantities at the cached times, one row per time; `None` if the state is unknown.
     values: Vec<Option<f64>>,
-    /// Rows of the panels with known bounds, by the bits of both times in s.
+    /// Rows of `panel_bounds` by panel; the key is the bit pattern of both times in s.
     panels: HashMap<[u64; 2], usize>,
-    /// Bounds of the quantities over these panels, one row per panel.
+    /// Bounds of the quantities over the cached panels, one row per panel.
     panel_bounds: Vec<Option<Enclosure>>,
 }
 
@@ -64,7 +64,7 @@ pub(super) struct StepQuantities<'q, 's> {
 }
 
 impl<'q, 's> StepQuantities<'q, 's> {
-    /// Returns the quantity at a place.
+    /// Returns the quantity with an index.
     pub fn quantity(&mut self, place: usize) -> QuantityInStep<'_, 'q, 's> {
         QuantityInStep {
             inside: self,
@@ -168,19 +168,19 @@ impl<'q, 's> StepQuantities<'q, 's> {
     }
 }
 
-/// One of the quantities inside a step.
+/// One quantity inside a step.
 pub(super) struct QuantityInStep<'p, 'q, 's> {
     inside: &'p mut StepQuantities<'q, 's>,
     place: usize,
 }
 
 impl QuantityInStep<'_, '_, '_> {
-    /// Returns the value at a time, s; `None` if the state there is unknown.
+    /// Returns the value at a time (s); `None` if the state is unknown.
     pub fn value(&mut self, t: f64) -> Option<f64> {
         self.inside.value(self.place, t)
     }
 
-    /// Returns the bounds between two times, s; `None` without bounds.
+    /// Returns the bounds between two times (s); `None` if no bounds are known.
     pub fn bound(&mut self, panel: (f64, f64)) -> Option<Enclosure> {
         self.inside.bound(self.place, panel)
     }

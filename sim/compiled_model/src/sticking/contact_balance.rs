@@ -1,6 +1,6 @@
-//! Surfaces that hold the motion while contacts are closed. In given modes of the contacts their forces follow from the
-//! sides: they keep the distances, and the slips of contacts that stick, from accelerating. With these forces the rates of
-//! the switching functions are linear in the sides.
+//! Surfaces that hold the motion while contacts are closed. In given modes of the contacts, their forces depend on the
+//! sides: they keep the distances, and the slips of contacts that stick, from accelerating. With these forces the rates
+//! of the switching functions are linear in the sides.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::contact_friction::ContactMode;
@@ -8,11 +8,11 @@ use eomgen_sim::contact_friction::ContactMode;
 use super::sided_model::{SidedModel, TimeAndState};
 use crate::contacts::{contact_problem, free_accelerations, rates_and_slips};
 
-/// Rest of the effect of a surface's force on its own function, with closed contacts, that is rounding. A smaller rate of
-/// the function is rounding, too.
+/// With closed contacts, a surface force whose effect on its own function falls below this fraction has no effect. A
+/// rate of the function below it is rounding too.
 const MAX_STOPPED_FRACTION: f64 = 1e-8;
 
-/// Sum of two opposed effects, relative to one of them, that is rounding.
+/// The sum of two opposed effects counts as zero below this fraction of one of them.
 const MAX_BALANCED_FRACTION: f64 = 1e-12;
 
 impl SidedModel {
@@ -26,8 +26,8 @@ impl SidedModel {
         &self.closed_contacts
     }
 
-    /// Closes the contacts that touch, do not move and push at a state, which has rounding of these sizes in its coordinates
-    /// and rates.
+    /// Closes the contacts that touch, do not move and push at a state. The distances and
+    /// rates of the state have the given rounding errors.
     pub(super) fn close_resting_contacts(
         &mut self,
         (t, state): TimeAndState<'_>,
@@ -59,7 +59,7 @@ impl SidedModel {
             .extend(closed.filter(|(_, mode)| *mode != ContactMode::Open));
     }
 
-    /// Returns the evaluator and its inputs: those of the model and the sides.
+    /// Returns the evaluator and its inputs: the inputs of the model, followed by the sides.
     pub(super) fn evaluator_with_sides(&mut self) -> (&mut Evaluator, &[f64]) {
         (&mut self.evaluator, &self.inputs)
     }
@@ -71,16 +71,16 @@ impl SidedModel {
             && self.at[surface].by_sides[surface].abs() <= MAX_STOPPED_FRACTION * own
     }
 
-    /// Returns the side, -1 or 1, to which closed contacts that prevent the motion of a surface's force move it across the
-    /// surface; `None` if they stop it.
+    /// Returns the side, -1 or 1, to which closed contacts move the motion across the surface; `None` if they stop it.
+    /// The contacts prevent the motion that the force of the surface resists.
     pub(super) fn side_of_contact_motion(&self, surface: usize) -> Option<f64> {
         let own = self.own_effects.get(surface).copied().unwrap_or(0.0);
         let rate = self.at[surface].rate;
         (rate.abs() > MAX_STOPPED_FRACTION * own).then(|| rate.signum())
     }
 
-    /// Adds the effects of the contact forces to those of the surfaces, as last evaluated. The switching functions are
-    /// linear in the rates.
+    /// Adds the effects of the contact forces to the last evaluated effects of the surfaces. The switching functions
+    /// are linear in the rates.
     pub(super) fn add_contact_forces(&mut self, (t, state): TimeAndState<'_>) {
         let diagonal = self.at.iter().enumerate();
         self.own_effects = diagonal
@@ -165,7 +165,7 @@ impl SidedModel {
     }
 }
 
-/// Returns the sum of an effect and that of the contact forces, 0 if they balance up to rounding.
+/// Returns the sum of the effects of a surface and of the contact forces, 0 if they cancel up to rounding.
 fn add_opposed(own: f64, by_contacts: f64) -> f64 {
     let sum = own + by_contacts;
     match sum.abs() <= MAX_BALANCED_FRACTION * own.abs() {

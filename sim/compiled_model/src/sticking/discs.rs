@@ -1,34 +1,34 @@
-//! Friction against the direction of sliding, with the unit vector v/norm(v) of a sliding velocity v.
+//! Friction opposite to the sliding velocity v, along the unit vector v/norm(v). Its force is limited to a disc.
 //!
-//! During sliding the direction at the last step is kept as a reference: a motion that stops goes through
-//! v = 0 along it, so v times the reference is the switching function. Beyond zero the stages of a step
-//! use the mirrored velocity, with which the unit vector of a straight motion is constant and the rates are
-//! smooth; near zero they use a small velocity along the reference. A velocity that only turns passes the surface as well and gets a new reference.
+//! During sliding, the direction at the last step is the reference. A motion that stops passes v = 0 along this
+//! direction, so the switching function is v times the reference. Beyond zero, the stages of a step use the mirrored
+//! velocity. The unit vector of a straight motion is then constant and the rates are smooth. Near zero the stages use a
+//! small velocity along the reference. A velocity that only turns crosses the surface as well and gets a new reference.
 
 use std::ops::Range;
 
 use eomgen_sim::friction_discs::{DiscArrival, DiscVerdict};
 
-/// Smallest velocity with a direction, in roundings of the velocity, which then turn it by little.
+/// Smallest velocity with a defined direction, in rounding errors of the velocity, which then hardly turn it.
 const SLOWEST_ROUNDINGS: f64 = 1000.0;
 
-/// Smallest velocity with a direction, in allowed errors of the velocity. They turn a smaller one, and explicit steps of
-/// that length oscillate about the direction of the force.
+/// Smallest velocity with a defined direction, in allowed errors of the velocity. The errors turn a smaller velocity,
+/// and explicit steps of that length oscillate about the direction of the force.
 const SLOWEST_ERRORS: f64 = 10.0;
 
-/// State of a disc.
+/// State of a friction disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum DiscState {
     /// The velocity determines the unit vector.
     Sliding,
-    /// The disc holds the motion since this time, s.
+    /// The disc has held the motion since this time, s.
     Holding { since: f64 },
-    /// The motion begins to slide in a constant direction, because its velocity is still within
-    /// rounding; the switching function is displaced by `moved`.
+    /// The motion begins to slide. It keeps a constant direction while its velocity is within rounding. The switching
+    /// function is displaced by `moved`.
     Leaving { moved: f64 },
 }
 
-/// Disc of friction along a motion.
+/// Friction disc along a motion.
 #[derive(Clone, Debug)]
 pub(super) struct Disc {
     /// Rows of the components of v among the functions with sides.
@@ -36,10 +36,10 @@ pub(super) struct Disc {
     pub state: DiscState,
     /// Unit vector of the direction of the motion at the last step.
     pub along: Vec<f64>,
-    /// Velocity that counts as zero.
+    /// Largest velocity that counts as zero.
     floor: f64,
-    /// Smallest velocity with a direction. A smaller one keeps the reference, because rounding or the error within the
-    /// tolerance turns it.
+    /// Smallest velocity with a defined direction. A smaller velocity keeps the reference, because rounding or allowed
+    /// errors turn it.
     slowest: f64,
     /// Speed at the last step.
     speed: f64,
@@ -67,7 +67,7 @@ impl Disc {
         matches!(self.state, DiscState::Leaving { .. })
     }
 
-    /// Returns the arrival of a motion that did not rest.
+    /// Returns the arrival of a motion that was sliding.
     pub fn arrival(&self) -> DiscArrival {
         DiscArrival {
             rows: self.rows.clone(),
@@ -76,18 +76,18 @@ impl Disc {
         }
     }
 
-    /// Returns true if the unit vector turns faster and faster on the way to zero.
+    /// Returns true if the turning rate of the unit vector grows beyond all bounds towards zero velocity.
     pub fn is_singular(&self) -> bool {
         !self.is_holding() && self.speed > self.slowest
     }
 
-    /// Returns the smallest velocity with a direction.
+    /// Returns the smallest velocity with a defined direction.
     pub fn slowest(&self) -> f64 {
         self.slowest
     }
 
-    /// Sets the velocity that counts as zero, its rounding, and the smallest one with a direction, for an error of the
-    /// velocity that the solver allows.
+    /// Sets the velocity that counts as zero, which is its rounding error, and the smallest velocity with a defined
+    /// direction. `allowed_error` is the error of the velocity that the solver allows.
     pub fn set_roundings(&mut self, rounding: f64, allowed_error: f64) {
         self.floor = rounding;
         self.slowest = (SLOWEST_ROUNDINGS * rounding).max(SLOWEST_ERRORS * allowed_error);
@@ -99,7 +99,7 @@ impl Disc {
         matches!(self.state, DiscState::Leaving { moved } if speed <= 2.0 * moved)
     }
 
-    /// Returns v, given the functions of all rows.
+    /// Returns v from the functions of all rows.
     pub fn velocity<'f>(&self, functions: &'f [f64]) -> &'f [f64] {
         &functions[self.rows.clone()]
     }
@@ -111,13 +111,13 @@ impl Disc {
         }
     }
 
-    /// Returns the switching function of a disc that does not hold.
+    /// Returns the switching function of a disc that does not hold the motion.
     pub fn guard(&self, functions: &[f64]) -> f64 {
         dot(self.velocity(functions), &self.along) + self.displacement()
     }
 
-    /// Appends the components of the unit vector; 0 if the disc holds. With fixed sides the unit vector
-    /// continues smoothly beyond zero.
+    /// Appends the components of the unit vector; 0 if the disc holds the motion. With fixed sides the unit vector is
+    /// smooth beyond zero velocity.
     pub fn write_sides(&self, functions: &[f64], is_fixed: bool, sides: &mut Vec<f64>) {
         if self.is_holding() {
             return sides.extend(self.rows.clone().map(|_| 0.0));
@@ -129,7 +129,8 @@ impl Disc {
         sides.extend(unit_vector(&velocity, Some(&self.along)));
     }
 
-    /// Returns the velocity whose unit vector acts. With fixed sides it has a positive component along the reference.
+    /// Returns the velocity that defines the unit vector. With fixed sides it has a positive component along the
+    /// reference.
     fn continued_velocity(&self, functions: &[f64], is_fixed: bool) -> Vec<f64> {
         let mut velocity = self.velocity(functions).to_vec();
         let ahead = dot(&velocity, &self.along);
@@ -142,13 +143,13 @@ impl Disc {
         velocity
     }
 
-    /// Returns true if the velocity itself determines the unit vector with fixed sides.
+    /// Returns true if the velocity itself defines the unit vector when sides are fixed.
     pub fn has_own_direction(&self, functions: &[f64]) -> bool {
         self.state == DiscState::Sliding
             && dot(self.velocity(functions), &self.along) >= self.slowest
     }
 
-    /// Returns the change of the unit vector with a `change` of the velocity.
+    /// Returns the change of the unit vector due to a `change` of the velocity.
     pub fn change_of_sides(&self, functions: &[f64], is_fixed: bool, change: &[f64]) -> Vec<f64> {
         if self.is_holding() || self.is_within_rounding(functions) {
             return vec![0.0; change.len()];
@@ -186,7 +187,7 @@ impl Disc {
         }
     }
 
-    /// Enters the state of a verdict at time `t`, at a velocity with this rounding.
+    /// Enters the state that a decision determined at time `t`, for a velocity with the given rounding error.
     pub fn enter(&mut self, verdict: &DiscVerdict, t: f64, functions: &[f64], rounding: f64) {
         self.state = match (verdict, self.state) {
             (DiscVerdict::Holds(_), DiscState::Holding { since }) => DiscState::Holding { since },
@@ -194,7 +195,7 @@ impl Disc {
             (DiscVerdict::Slides(along), _) => {
                 self.along.clone_from(along);
                 DiscState::Leaving {
-                    // The switching function stays positive where the motion has left.
+                    // The displacement keeps the switching function positive on the side to which the motion leaves.
                     moved: rounding
                         .max(2.0 * norm(self.velocity(functions)))
                         .max(self.floor),

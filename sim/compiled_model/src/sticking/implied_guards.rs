@@ -1,8 +1,8 @@
-//! Switching functions that vanish with those of the held surfaces and with the rates of closed contacts, as
-//! dot(y) - dot(x) does if dot(x) and dot(y) are held. Their values are rounding, so their signs have no meaning.
+//! Switching functions that vanish whenever held functions and rates of closed contacts do: dot(y) - dot(x) if dot(x)
+//! and dot(y) are held. Their values are rounding, so their signs have no meaning.
 //!
-//! Such a function is the sum of constant multiples of the held functions. Equal values at random points prove it, except
-//! for a set of points of measure zero (J. T. Schwartz, J. ACM 27 (1980) 701-717).
+//! Such a function is a linear combination of the held functions with constant coefficients. Equality at random points
+//! proves this, except for a set of points of measure zero (J. T. Schwartz, J. ACM 27 (1980) 701-717).
 
 use eomgen_analysis::qr_iteration;
 use eomgen_codegen::program::evaluator::{ImpactValues, Point};
@@ -11,14 +11,14 @@ use nalgebra::{DMatrix, DVector};
 
 use super::sided_model::SidedModel;
 
-/// Number of points beyond the number of functions that can be held.
+/// Number of random points beyond the number of functions that can be held.
 const ADDITIONAL_POINTS: usize = 4;
 
-/// Largest difference from the sum, relative to the largest value of the function.
+/// Largest difference from the linear combination, relative to the largest value of the function.
 const MAX_DIFFERENCE: f64 = 1e-10;
 
 impl SidedModel {
-    /// Finds the guards and the rates of contacts that vanish with the functions of these held rows and the rates of closed
+    /// Finds the guards and contact rates that vanish with the functions of the `held` rows and the rates of closed
     /// contacts.
     pub(super) fn find_implied_guards(&mut self, held: &[usize]) {
         self.implied_guards.clear();

@@ -1,5 +1,5 @@
-//! Observables and rates of a motion with sticking. During sticking the friction is the force that
-//! holds, not that of sign(0) = 0.
+//! Observables and rates of a motion with sticking. During sticking they use the friction force that holds the motion,
+//! not the force for sign(0) = 0.
 
 use std::ops::Range;
 
@@ -13,12 +13,10 @@ use eomgen_sim::sliding_modes::Arrival;
 use super::SidedModel;
 use super::discs::{norm, unit_vector};
 
-/// Largest distance of a state on a surface, relative to the largest value of the function in the
-/// motion.
+/// Largest distance of a state on a surface, relative to the largest value of the function in the motion.
 const MAX_DISTANCE_FRACTION: f64 = 1e-10;
 
-/// Additional distance, relative to the effect of the surface's own force over the time of the
-/// motion.
+/// Additional distance, relative to the effect of the surface's own force over the time of the motion.
 const MAX_FORCE_DISTANCE_FRACTION: f64 = 1e-11;
 
 pub(crate) struct ObservedMotion {
@@ -27,7 +25,7 @@ pub(crate) struct ObservedMotion {
 }
 
 impl ObservedMotion {
-    /// Combines an evaluator with the model with sides if surfaces can hold the motion.
+    /// Combines an evaluator with the model with sides, if surfaces can hold the motion.
     pub fn new(
         own: Evaluator,
         sided: Option<SidedModel>,
@@ -41,7 +39,7 @@ impl ObservedMotion {
         }
     }
 
-    /// Adds a point to the motion.
+    /// Adds a point at the end of the motion.
     pub fn extend(&mut self, point: Point<'_>) {
         if let Some(rest) = &mut self.rest {
             rest.extend(point);
@@ -78,7 +76,7 @@ impl ObservedMotion {
 /// Forces and rates during sticking, along a motion.
 pub struct StickingMotion {
     sided: SidedModel,
-    /// Largest value of each function, coordinate and rate.
+    /// Largest magnitude of each function, coordinate and rate.
     sizes: Vec<f64>,
     state_sizes: [f64; 2],
     /// First and last time, s.
@@ -86,7 +84,7 @@ pub struct StickingMotion {
 }
 
 impl StickingMotion {
-    /// Prepares a motion with these times (s) and states.
+    /// Prepares a motion with the given times (s) and states.
     pub fn new(
         sided: SidedModel,
         (times, states): (&[f64], &[Vec<f64>]),
@@ -105,7 +103,7 @@ impl StickingMotion {
         motion
     }
 
-    /// Adds a point after the last one to the motion.
+    /// Adds a point at the end of the motion.
     pub fn extend(&mut self, Point { t, state, inputs }: Point<'_>) {
         let functions = self.sided.evaluate_functions((t, state), inputs);
         for (size, value) in self.sizes.iter_mut().zip(functions) {
@@ -120,7 +118,7 @@ impl StickingMotion {
         self.span = Some((begin, t));
     }
 
-    /// Writes the rates at a point of the motion and returns true, if surfaces hold it there.
+    /// If surfaces hold the motion at a point, writes its rates and returns true.
     pub fn write_rates(&mut self, point: Point<'_>, out: &mut [f64]) -> bool {
         let is_held = self.find_holding_sides(point);
         if is_held {
@@ -130,8 +128,7 @@ impl StickingMotion {
         is_held
     }
 
-    /// Writes the observables at a point of the motion and returns true, if surfaces hold it
-    /// there.
+    /// If surfaces hold the motion at a point, writes its observables and returns true.
     pub fn write_observables(&mut self, point: Point<'_>, out: &mut [f64]) -> bool {
         let is_held = self.find_holding_sides(point);
         if is_held {
@@ -159,7 +156,7 @@ impl StickingMotion {
     }
 }
 
-/// Computes the sides that hold a motion at a state; returns false if it is on no surface.
+/// Computes the sides that hold a motion at a state. Returns false if the state is on no surface.
 fn set_holding_sides(
     sided: &mut SidedModel,
     at: (f64, &[f64]),

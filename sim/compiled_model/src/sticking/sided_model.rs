@@ -1,4 +1,4 @@
-//! A model with given sides of its surfaces: rates, observables and the sides that hold.
+//! Model with given sides of its surfaces: rates, observables and the sides that hold the motion.
 
 use std::ops::Range;
 
@@ -20,27 +20,27 @@ pub(super) const CORRECTION_COUNT: usize = 2;
 /// Largest change of a side that counts as rounding.
 pub(crate) const MAX_SETTLED_CHANGE: f64 = 1e-14;
 
-/// Relative change of a state for its effect on a function.
+/// Relative change of a state, for a difference quotient of a function.
 const RELATIVE_CHANGE: f64 = 1e-6;
 
-/// Rounding of a function, relative to the sum of its terms.
+/// Rounding error of a function, relative to the sum of its terms.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Smallest jump on a surface, relative to the jump near the surface, that counts as a jump.
+/// Smallest jump on a surface that counts as a jump, relative to the jump near the surface.
 const MIN_JUMP_FRACTION: f64 = 0.5;
 
 pub(super) type TimeAndState<'p> = (f64, &'p [f64]);
 
-/// A model whose inputs include the sides of switching surfaces, at one set of parameters; see
-/// [`DrivenModel::with_sides`](crate::DrivenModel::with_sides). The sides of surfaces that can hold a motion are set,
-/// the others are fixed or follow from the state.
+/// Model whose inputs include the sides of switching surfaces, at one set of parameters; see
+/// [`DrivenModel::with_sides`](crate::DrivenModel::with_sides). The sides of surfaces that can hold a motion are set;
+/// the other sides are fixed or follow from the state.
 pub struct SidedModel {
     pub(super) evaluator: Evaluator,
     model_input_count: usize,
-    /// Index of the first side that is set among the inputs.
+    /// Index of the first side of a surface that can hold a motion, among the inputs.
     first_side: usize,
-    /// Inputs of the model, then the sides: those of surfaces that cannot hold a motion, those that can, and the
-    /// components of the unit vectors of discs, -1 to 1.
+    /// Inputs of the model, followed by the sides: surfaces that cannot hold a motion, surfaces that can, and the
+    /// components of the unit vectors of discs (-1 to 1).
     pub(super) inputs: Vec<f64>,
     /// Surfaces that cannot hold a motion; true if the side is fixed.
     others: Vec<(Side, bool)>,
@@ -49,16 +49,16 @@ pub struct SidedModel {
     pub(super) at: Vec<SlidingValues>,
     pub(super) guards: Vec<f64>,
     is_linear: bool,
-    /// Closed contacts with their modes; their forces follow from the sides.
+    /// Closed contacts with their modes; their forces depend on the sides.
     pub(super) closed_contacts: Vec<(usize, ContactMode)>,
     pub(super) impacts: Vec<ImpactValues>,
-    /// Effect of each surface's force on its own function without contact forces.
+    /// Effect of each surface's force on its own function, without contact forces.
     pub(super) own_effects: Vec<f64>,
     /// Guards and rates of the contacts at random points; empty before the first use.
     pub(super) drawn_values: Vec<Vec<f64>>,
     /// Guards that vanish with the held functions and the rates of closed contacts.
     pub(super) implied_guards: Vec<usize>,
-    /// Contacts whose rates vanish with them.
+    /// Contacts whose rates vanish with the held functions and the rates of closed contacts.
     pub(super) implied_contacts: Vec<usize>,
 }
 
@@ -109,8 +109,8 @@ impl SidedModel {
         self.side_count() > 0
     }
 
-    /// Fixes the sides of surfaces that cannot hold a motion, given those of all guards, -1, 1, or 0 (unknown). With `None`
-    /// they follow from the state.
+    /// Fixes the sides of surfaces that cannot hold a motion. `sides` has one entry per guard: -1, 1, or 0 (unknown).
+    /// With `None` the sides follow from the state.
     pub(super) fn fix_other_sides(&mut self, sides: Option<&[f64]>) {
         for (other, (surface, is_fixed)) in self.others.iter_mut().enumerate() {
             let side = sides.map_or(0.0, |sides| sides[surface.guard]);
@@ -119,7 +119,7 @@ impl SidedModel {
         }
     }
 
-    /// Lets the sides of surfaces that cannot hold a motion follow from the state, and returns them as they were.
+    /// Makes the sides of surfaces that cannot hold the motion follow from the state. Returns the previous sides.
     pub(super) fn release_other_sides(&mut self) -> Vec<(bool, f64)> {
         let first = self.model_input_count;
         let others = self.others.iter_mut().zip(&self.inputs[first..]);
@@ -127,7 +127,7 @@ impl SidedModel {
         released.collect()
     }
 
-    /// Restores sides that were released.
+    /// Restores the sides that `release_other_sides` returned.
     pub(super) fn restore_other_sides(&mut self, sides: Vec<(bool, f64)>) {
         for (other, (is_fixed, side)) in sides.into_iter().enumerate() {
             self.others[other].1 = is_fixed;
@@ -135,7 +135,7 @@ impl SidedModel {
         }
     }
 
-    /// Sets the inputs of the model; all sides remain.
+    /// Sets the inputs of the model; the sides are unchanged.
     pub(super) fn set_model_inputs(&mut self, inputs: &[f64]) {
         self.inputs[..self.model_input_count].copy_from_slice(inputs);
     }
@@ -145,7 +145,7 @@ impl SidedModel {
         self.others.iter().all(|(_, is_fixed)| *is_fixed)
     }
 
-    /// Returns true if all sides at a point are those with these `kept` sides (-1, 1, or 0 if unknown) and the fixed ones.
+    /// Returns true if the sides at a point equal the `kept` sides (-1, 1, or 0 if unknown) and the fixed ones.
     pub(super) fn has_own_sides(
         &mut self,
         (t, state): TimeAndState<'_>,
@@ -196,7 +196,7 @@ impl SidedModel {
         self.side_count() - self.discs.iter().map(Range::len).sum::<usize>()
     }
 
-    /// Returns true if a friction acts against the direction of sliding, as v/norm(v).
+    /// Returns true if the model has friction opposite to the sliding velocity, along v/norm(v).
     pub(crate) fn has_discs(&self) -> bool {
         !self.discs.is_empty()
     }
@@ -205,7 +205,7 @@ impl SidedModel {
         &self.discs
     }
 
-    /// Returns the number of guards of the model; those of the components of discs follow.
+    /// Returns the number of guards of the model. Guards of disc components follow them.
     pub(super) fn guard_count(&self) -> usize {
         self.guards.len() + self.surface_count() - self.side_count()
     }
@@ -240,7 +240,7 @@ impl SidedModel {
         values.collect()
     }
 
-    /// Returns the rounding of these functions.
+    /// Returns the rounding errors of the given functions.
     pub(super) fn function_roundings(
         &mut self,
         (t, state): TimeAndState<'_>,
@@ -265,13 +265,13 @@ impl SidedModel {
             .collect()
     }
 
-    /// Returns the side, 0 to 1, of a surface whose function has this value.
+    /// Returns the side, 0 to 1, of a surface whose function has the given value.
     pub(super) fn side_at_value(&self, surface: usize, value: f64) -> f64 {
         let is_odd = self.evaluator.program().outputs.sliding[surface].is_odd;
         side_of(value, is_odd)
     }
 
-    /// Sets the sides, and computes those of `held` surfaces so that these hold.
+    /// Sets the sides. Computes the sides of the `held` surfaces so that they hold the motion.
     pub(super) fn find_holding_sides(
         &mut self,
         at: TimeAndState<'_>,
@@ -300,7 +300,7 @@ impl SidedModel {
         }
     }
 
-    /// Moves the sides of held surfaces that depend on each other as far from their limits as possible.
+    /// Moves the sides of linearly dependent held surfaces as far from their limits as possible.
     fn share_forces(&mut self, held: &[usize]) {
         let first = self.first_side;
         let signs = held
@@ -313,7 +313,7 @@ impl SidedModel {
         }
     }
 
-    /// Returns the places of each surface and of each disc among held rows.
+    /// Returns the index range of each surface and disc among held rows.
     fn groups(&self, held: &[usize]) -> Vec<Range<usize>> {
         let disc = |row: &usize| self.discs.iter().position(|rows| rows.contains(row));
         let mut end = 0;
@@ -338,7 +338,7 @@ impl SidedModel {
         &self.inputs[self.first_side..]
     }
 
-    /// Writes the rates with these sides.
+    /// Writes the rates with the present sides.
     pub(super) fn write_rates(
         &mut self,
         (t, state): TimeAndState<'_>,
@@ -350,14 +350,14 @@ impl SidedModel {
         self.evaluator.rates(Point { t, state, inputs }, out);
     }
 
-    /// Writes the observables with these sides.
+    /// Writes the observables with the present sides.
     pub(super) fn write_observables(&mut self, (t, state): TimeAndState<'_>, out: &mut [f64]) {
         let inputs = &self.inputs;
         self.evaluator.observables(Point { t, state, inputs }, out);
     }
 
-    /// Decides the effect of the surfaces `touching` and of discs on a motion that is on them, with these sides
-    /// of all others. The rows of an arrival at a disc are among all sides.
+    /// Determines the effect of the surfaces `touching` and of discs on a motion that is on them, with the given sides
+    /// of all others. The rows of an arrival at a disc count all sides.
     pub(super) fn decide(
         &mut self,
         at: TimeAndState<'_>,
@@ -402,9 +402,9 @@ impl SidedModel {
         None
     }
 
-    /// Returns true for each surface of `touching` on which the rates jump, with these sides of
-    /// all others. The state is near these surfaces. A jump that vanishes on its surface, such as
-    /// that of `sign(p)*sqrt(abs(p))`, cannot hold a motion.
+    /// Returns, for each surface of `touching`, true if the rates jump on it, with the given sides of all others. The
+    /// state is near these surfaces. A jump that vanishes on its surface, such as that of `sign(p)*sqrt(abs(p))`,
+    /// cannot hold a motion.
     pub(super) fn has_jumps(
         &mut self,
         (t, state): TimeAndState<'_>,
@@ -426,8 +426,7 @@ impl SidedModel {
             .collect()
     }
 
-    /// Corrects a state, given these values of the functions, onto surfaces along the effects of
-    /// their forces.
+    /// Corrects a state onto surfaces whose functions have the given values, along the effects of the surface forces.
     pub(super) fn move_onto_surfaces(
         &mut self,
         t: f64,
@@ -444,7 +443,7 @@ impl SidedModel {
         }
     }
 
-    /// Adds the rounding of the rates by a surface's own force, as last evaluated.
+    /// Adds the rounding error of the rates by a surface's own force, from the last evaluation.
     pub(super) fn add_rate_rounding(&self, row: usize, out: &mut [f64]) {
         let degrees = self.evaluator.program().degrees_of_freedom();
         let columns = self.at.get(row).into_iter().flat_map(|at| &at.column);
@@ -453,7 +452,7 @@ impl SidedModel {
         }
     }
 
-    /// Returns the rate of a surface's function due to its own force, as last evaluated.
+    /// Returns the rate of a surface's function due to its own force, from the last evaluation.
     pub(super) fn own_force_rate(&self, surface: usize) -> f64 {
         let at = self.at.get(surface);
         at.map_or(0.0, |at| at.by_sides[surface].abs())
@@ -480,7 +479,7 @@ impl SidedModel {
         })
     }
 
-    /// Returns the effects of the signs of surfaces, -1 to 1, and of the components of discs.
+    /// Returns the effects of the signs of surfaces (-1 to 1) and of the components of discs.
     fn matrix_by_signs(&self, rows: &[usize]) -> DMatrix<f64> {
         let mut matrix = self.matrix(rows);
         for (mut column, row) in matrix.column_iter_mut().zip(rows) {
@@ -489,7 +488,7 @@ impl SidedModel {
         matrix
     }
 
-    /// Returns the side of a surface with this sign, -1 to 1; the sides of discs are components of unit vectors.
+    /// Returns the side of a surface for a sign from -1 to 1; sides of discs are components of unit vectors.
     fn side_of_sign(&self, row: usize, sign: f64) -> f64 {
         match row < self.surface_count() {
             true => 0.5 + 0.5 * sign,
@@ -497,7 +496,7 @@ impl SidedModel {
         }
     }
 
-    /// Returns the sign of a surface, -1 to 1, with this side.
+    /// Returns the sign of a surface, -1 to 1, for a side.
     fn sign(&self, row: usize, side: f64) -> f64 {
         match row < self.surface_count() {
             true => 2.0 * side - 1.0,
@@ -517,7 +516,7 @@ impl SidedModel {
     }
 }
 
-/// Returns the side, 0 to 1, of a surface whose function has this value.
+/// Returns the side, 0 to 1, of a surface whose function has the given value.
 pub(crate) fn side_of(value: f64, is_odd: bool) -> f64 {
     match value {
         value if value > 0.0 => 1.0,

@@ -1,4 +1,4 @@
-//! Sides at a point of the motion, and corrections of states onto surfaces that hold.
+//! Sides at a point of the motion, and corrections of states onto surfaces that hold it.
 
 use crate::contacts::HeldDirection;
 
@@ -10,7 +10,7 @@ use super::surface_states::{
 };
 
 impl SurfaceStates {
-    /// Returns the sides of all surfaces at a point, 0.5 for those that hold, 0 for the components of discs that hold.
+    /// Returns the sides of all surfaces at a point: 0.5 for surfaces and 0 for disc components that hold the motion.
     /// Functions are evaluated only if needed.
     pub(super) fn current_sides(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<f64> {
         let kept = self.kept.clone().unwrap_or_default();
@@ -62,7 +62,7 @@ impl SurfaceStates {
         }
     }
 
-    /// Returns the surfaces that hold, and the rows of the discs that hold.
+    /// Returns the surfaces that hold the motion, followed by the rows of the discs that do.
     pub(super) fn holding_rows(&self) -> Vec<usize> {
         let holds = |surface: &usize| matches!(self.places[*surface], SurfaceState::Holding { .. });
         let discs = self.discs.iter().filter(|disc| disc.is_holding());
@@ -72,7 +72,7 @@ impl SurfaceStates {
             .collect()
     }
 
-    /// Returns the directions in which surfaces hold the motion, as last evaluated.
+    /// Returns the directions in which surfaces hold the motion, from the last evaluation.
     pub fn held_directions(&self) -> Vec<HeldDirection> {
         let degrees = self.sided.degrees_of_freedom();
         let rows = self.holding_rows().into_iter();
@@ -91,7 +91,7 @@ impl SurfaceStates {
         rows.filter_map(direction).collect()
     }
 
-    /// Returns the time since which the surface or the disc of a row holds, s.
+    /// Returns the time (s) at which the surface or disc of a row began to hold the motion.
     fn held_since(&self, row: usize) -> Option<f64> {
         if let Some(place) = self.places.get(row) {
             return match place {
@@ -142,7 +142,7 @@ impl SurfaceStates {
             && self.sided.are_other_sides_fixed()
     }
 
-    /// Corrects a state onto the surfaces that hold it, if it has drifted or `always`.
+    /// Corrects a state onto the surfaces that hold it, if it has drifted or if `always` is true.
     pub(super) fn correct_onto_surfaces(
         &mut self,
         (t, state): (f64, &mut [f64]),

@@ -5,25 +5,25 @@
 pub(super) enum SurfaceState {
     /// The sign of the function determines the side.
     Free,
-    /// The surface holds the motion, which came from this side, -1 or 1, at this time, s.
+    /// The surface holds the motion, which came from the side `from`, -1 or 1, at the time `since`, s.
     Holding { from: f64, since: f64 },
-    /// The surface exerts its largest force to this side, and other surfaces hold the motion since this time, s, while its
-    /// function stays within the errors `allowed` at once and per second.
+    /// The surface exerts its largest force towards this side. Other surfaces hold the motion since this time, s. This
+    /// ends when its function exceeds the errors `allowed`: constant part, and growth per second.
     Bearing {
         from: f64,
         side: f64,
         since: f64,
         allowed: [f64; 2],
     },
-    /// Closed contacts stop the motion since this time, s, and the surface exerts no force while its function stays within
-    /// the errors `allowed` at once and per second.
+    /// Closed contacts stop the motion since this time, s, and the surface exerts no force. This ends when its function
+    /// exceeds the errors `allowed`: constant part, and growth per second.
     Unloaded {
         from: f64,
         since: f64,
         allowed: [f64; 2],
     },
-    /// The surface has released the motion to this side, but its function is still within
-    /// rounding; the surface is displaced by `moved`.
+    /// The surface has released the motion to this side, but its function is still within rounding; the surface is
+    /// displaced by `moved`.
     Leaving { side: f64, moved: f64 },
 }
 
@@ -42,8 +42,8 @@ impl SurfaceState {
         }
     }
 
-    /// Returns true if contacts or other surfaces stopped the motion, and it moves at this time (s) and value of the
-    /// function.
+    /// Returns true if contacts or other surfaces stopped the motion, but the function has the given value at a time
+    /// (s) and is no longer within the allowed errors.
     pub(super) fn is_moved_by_others(self, (t, function): (f64, f64)) -> bool {
         match self {
             Self::Unloaded { since, allowed, .. } | Self::Bearing { since, allowed, .. } => {
@@ -62,13 +62,14 @@ impl SurfaceState {
     }
 }
 
-/// Returns the side, -1 or 1, from which a motion came to a surface in this state, given the sign of its function.
+/// Returns the side, -1 or 1, from which a motion came to a surface in the given state. `sign` is the sign of its
+/// function.
 pub(super) fn side_of_arrival(state: SurfaceState, sign: f64) -> f64 {
     let by_sign = if sign < 0.0 { -1.0 } else { 1.0 };
     state.came_from().unwrap_or(by_sign)
 }
 
-/// Returns the allowed error of a function after a time, s, from those at once and per second.
+/// Returns the allowed error of a function after a time (s), from its constant part and its growth per second.
 pub(super) fn find_allowed([at_once, per_second]: [f64; 2], elapsed: f64) -> f64 {
     at_once + per_second * elapsed.abs() + f64::MIN_POSITIVE
 }

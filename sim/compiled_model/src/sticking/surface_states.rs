@@ -1,4 +1,4 @@
-//! The surfaces along a motion: the rates, observables and guards that follow from their states.
+//! States of surfaces along a motion, and the resulting rates, observables and guards.
 
 use eomgen_codegen::program::evaluator::{Enclosure, Evaluator};
 use eomgen_sim::contact_friction::ContactMode;
@@ -8,27 +8,27 @@ use super::discs::{Disc, DiscState, norm};
 use super::sided_model::SidedModel;
 use super::surface_state::{SurfaceState, find_allowed};
 
-/// Largest distance of a state from a surface that holds it, relative to the largest value of the
-/// switching function. Beyond it the state is corrected.
+/// Largest distance of a state from a surface that holds it, relative to the largest value of the switching function.
+/// Beyond this distance the state is corrected.
 pub(super) const MAX_DRIFT_FRACTION: f64 = 1e-12;
 
-/// Additional distance, relative to the effect of the surface's own force on its function since
-/// the surface holds.
+/// Additional distance, relative to the effect of the surface's own force on its function since the surface began to
+/// hold the motion.
 pub(super) const MAX_FORCE_DRIFT_FRACTION: f64 = 1e-13;
 
-/// Change of a component of a unit vector for its effect on the rates.
+/// Change of a component of a unit vector, for a difference quotient of the rates.
 const SIDE_DIFFERENCE: f64 = 1e-6;
 
-/// Points at which the sides of the model are right.
+/// Points at which the present sides of the model are valid.
 pub(super) enum KnownSides {
     Nothing,
-    /// At this time (s) and state.
+    /// One time (s) and state.
     At(f64, Vec<f64>),
-    /// Everywhere: no surface holds the motion, and all sides are fixed.
+    /// All points: no surface holds the motion, and all sides are fixed.
     Everywhere,
 }
 
-/// States of surfaces and discs with the fixed sides.
+/// States of surfaces and discs, and the fixed sides.
 pub(crate) struct SavedStates {
     places: Vec<SurfaceState>,
     discs: Vec<Disc>,
@@ -38,23 +38,23 @@ pub(crate) struct SavedStates {
 /// States of all surfaces along a motion.
 pub(crate) struct SurfaceStates {
     pub(super) sided: SidedModel,
-    /// False if no surface can hold the motion.
+    /// True if some surface can hold the motion.
     pub(super) can_hold: bool,
     /// Index of the guard of the first disc.
     pub(super) first_disc_guard: usize,
     pub(super) places: Vec<SurfaceState>,
-    /// Frictions against the direction of sliding.
+    /// Friction discs.
     pub(super) discs: Vec<Disc>,
     pub(super) sizes: Vec<f64>,
     /// Relative tolerance of the states.
     pub(super) tolerance: f64,
     pub(super) begin: Option<f64>,
-    /// Fixed sides, -1 or 1, of free surfaces, independent of their functions.
+    /// Fixed sides of free surfaces, -1 or 1, which do not depend on the functions.
     pub(super) kept: Option<Vec<f64>>,
     pub(super) known: KnownSides,
-    /// True if surfaces were decided since the last call of [`SurfaceStates::take_decided`].
+    /// True if the states of surfaces were determined since the last call of [`SurfaceStates::take_decided`].
     pub(super) has_decided: bool,
-    /// Rows of surfaces and discs, and closed contacts, of the implied guards.
+    /// Held rows of surfaces and discs, and closed contacts, for which the implied guards were found.
     held: (Vec<usize>, Vec<(usize, ContactMode)>),
 }
 
@@ -87,7 +87,7 @@ impl SurfaceStates {
         self.can_hold
     }
 
-    /// Returns the guards of the surfaces that can hold the motion, without those of discs.
+    /// Returns the guards of the surfaces that can hold the motion, without guards of discs.
     pub fn holding_guards(&self) -> Vec<usize> {
         let surfaces = 0..self.places.len();
         surfaces
@@ -95,12 +95,13 @@ impl SurfaceStates {
             .collect()
     }
 
-    /// Places the guards of discs behind those of so many contacts.
+    /// Places the guards of discs after `count` guards of contacts.
     pub fn skip_contact_guards(&mut self, count: usize) {
         self.first_disc_guard = self.sided.guard_count() + count;
     }
 
-    /// Sets the closed contacts with their modes, whose forces act with those of the surfaces. Returns true if they changed.
+    /// Sets the closed contacts with their modes; their forces act together with those of the surfaces. Returns true if
+    /// they changed.
     pub fn set_closed_contacts(&mut self, closed: &[(usize, ContactMode)]) -> bool {
         if self.sided.closed_contacts() == closed {
             return false;
@@ -110,17 +111,17 @@ impl SurfaceStates {
         true
     }
 
-    /// Returns true if surfaces were decided since the last call of [`SurfaceStates::take_decided`].
+    /// Returns true if the states of surfaces were determined since the last call of [`SurfaceStates::take_decided`].
     pub fn has_decided(&self) -> bool {
         self.has_decided
     }
 
-    /// Returns true if surfaces were decided since the last call.
+    /// Returns true if the states of surfaces were determined since the last call of this function.
     pub fn take_decided(&mut self) -> bool {
         std::mem::take(&mut self.has_decided)
     }
 
-    /// Returns the evaluator with the sides at a point, and its inputs: those of the model and the sides.
+    /// Returns the evaluator with the sides at a point, and its inputs: those of the model, followed by the sides.
     pub fn evaluator_with_sides(
         &mut self,
         at: (f64, &[f64]),
@@ -157,14 +158,14 @@ impl SurfaceStates {
         }
     }
 
-    /// Sets the surfaces and discs that hold the motion at the start, given the modes of all guards.
+    /// Sets the surfaces and discs that hold the motion at the start, from the modes of all guards.
     pub fn assume_modes(&mut self, modes: &[SurfaceMode]) {
         if !self.can_hold {
             return;
         }
         for (surface, place) in self.places.iter_mut().enumerate() {
             if modes[self.sided.guard_index(surface)] == SurfaceMode::Held {
-                // The start of the motion decides about the force.
+                // The first evaluation of the motion determines whether the surface exerts a force.
                 *place = SurfaceState::Unloaded {
                     from: 1.0,
                     since: 0.0,
@@ -178,7 +179,7 @@ impl SurfaceStates {
         }
     }
 
-    /// Adds the roundings of the rates by the forces that hold the motion.
+    /// Adds the rounding errors of the rates by the forces that hold the motion.
     pub fn add_rate_roundings(&self, out: &mut [f64]) {
         for row in self.holding_rows() {
             self.sided.add_rate_rounding(row, out);
@@ -199,7 +200,7 @@ impl SurfaceStates {
         self.sided.disc_formulas()
     }
 
-    /// Returns true if the derivatives of the rates grow without bound towards the surface of a guard.
+    /// Returns true if the derivatives of the rates grow beyond all bounds towards the surface of a guard.
     pub fn is_singular(&self, guard: usize) -> bool {
         let disc = guard.checked_sub(self.first_disc_guard);
         let disc = disc.and_then(|disc| self.discs.get(disc));
@@ -210,7 +211,8 @@ impl SurfaceStates {
         self.discs.len()
     }
 
-    /// Fixes the sides of the guards, -1, 1, or 0 (unknown); `None` restores the signs.
+    /// Fixes the sides of the guards: -1, 1, or 0 (unknown). With `None` the signs of the functions determine the
+    /// sides.
     pub fn fix_sides(&mut self, sides: Option<&[f64]>) {
         self.known = KnownSides::Nothing;
         self.sided.fix_other_sides(sides);
@@ -220,8 +222,8 @@ impl SurfaceStates {
         });
     }
 
-    /// Returns true if no surface holds the motion, the sides at a point are the fixed ones, and velocities determine
-    /// their unit vectors.
+    /// Returns true if three conditions hold: no surface holds the motion, the sides at a point equal the fixed ones,
+    /// and velocities determine their unit vectors.
     pub fn has_own_sides(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> bool {
         let kept = self.kept.clone().unwrap_or_default();
         if !self.is_free() || !self.sided.has_own_sides(at, inputs, &kept) {
@@ -235,21 +237,21 @@ impl SurfaceStates {
         discs.all(|disc| disc.has_own_direction(&functions))
     }
 
-    /// Writes the rates, if this is active.
+    /// Writes the rates, if [`SurfaceStates::is_active`].
     pub fn write_rates(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
         self.find_holding_sides(at, inputs);
         self.sided.write_rates(at, inputs, out);
     }
 
-    /// Writes the observables, if this is active.
+    /// Writes the observables, if [`SurfaceStates::is_active`].
     pub fn write_observables(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
         self.find_holding_sides(at, inputs);
         self.sided.write_observables(at, out);
     }
 
     /// Computes the derivatives of the rates with respect to the state by finite differences, if
-    /// this is active. Sides and sticking remain unchanged. Unit vectors are differentiated exactly, because they turn within
-    /// their velocity.
+    /// [`SurfaceStates::is_active`]. Sides and sticking remain unchanged. Unit vectors are differentiated exactly,
+    /// because they turn within their velocity.
     pub fn write_jacobian(
         &mut self,
         (t, state): (f64, &[f64]),
@@ -313,9 +315,9 @@ impl SurfaceStates {
         }
     }
 
-    /// Replaces the guards `out` of surfaces that hold or release the motion; the first call
-    /// starts the motion. The guard of a surface that holds changes its sign if its force reaches
-    /// a limit, that of a surface whose motion contacts or other surfaces stop if they move it.
+    /// Replaces the guards `out` of surfaces that hold or release the motion; the first call starts the motion. The
+    /// guard of a surface that holds the motion changes its sign when its force reaches a limit. If contacts or other
+    /// surfaces stop the motion at a surface, its guard changes its sign when they move it.
     pub fn write_guards(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
         if !self.can_hold {
             return;
@@ -367,7 +369,8 @@ impl SurfaceStates {
         }
     }
 
-    /// Returns true if surfaces that hold the motion, with closed contacts, keep the distance of a contact.
+    /// Returns true if surfaces that hold the motion, together with closed contacts, keep the distance of a contact
+    /// constant.
     pub fn keeps_distance(&mut self, contact: usize) -> bool {
         self.update_implied_guards();
         self.sided.implied_contacts.contains(&contact)
@@ -393,8 +396,8 @@ impl SurfaceStates {
         self.known = KnownSides::Nothing;
     }
 
-    /// Replaces the bounds of guards as [`SurfaceStates::write_guards`] replaces the guards. Those of
-    /// surfaces that hold are unknown.
+    /// Replaces the bounds of guards in the same way as [`SurfaceStates::write_guards`]. The bounds for surfaces that
+    /// hold the motion are unknown.
     pub fn bound_guards(&self, out: &mut [Enclosure]) {
         for guard in &self.sided.implied_guards {
             out[*guard] = Enclosure::UNKNOWN;
@@ -416,8 +419,8 @@ impl SurfaceStates {
         }
     }
 
-    /// Writes the guards of discs. While a disc holds, its guard becomes negative if its force
-    /// reaches the limit.
+    /// Writes the guards of discs. The guard of a disc that holds the motion becomes negative when its force reaches
+    /// the limit.
     fn write_disc_guards(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
         if self.discs.is_empty() {
             return;

@@ -1,4 +1,4 @@
-//! Changes of the states of surfaces: arrivals, releases, and decisions where several surfaces meet.
+//! Transitions of surfaces: arrivals, releases, and decisions at the intersection of several surfaces.
 
 use eomgen_sim::friction_discs::DiscArrival;
 use eomgen_sim::sliding_modes::{Arrival, Verdict};
@@ -9,28 +9,28 @@ use super::surface_states::{
     KnownSides, MAX_DRIFT_FRACTION, MAX_FORCE_DRIFT_FRACTION, SurfaceStates,
 };
 
-/// Largest distance of other surfaces that count as reached, relative to the change of their
-/// functions in the step across a surface.
+/// Largest distance of other surfaces that count as reached, relative to the change of their functions in the step
+/// across a surface.
 const NEAR_MOVE_FACTOR: f64 = 4.0;
 
-/// Limit of that distance, relative to the largest value of the function.
+/// Upper limit of this distance, relative to the largest value of the function.
 const MAX_NEAR_FRACTION: f64 = 1e-9;
 
-/// Speed of a motion that stops where the component along its reference reaches the slowest one, in slowest
-/// speeds: the rest is across.
+/// A motion stops if its component along the reference reaches the slowest velocity and its speed is below this
+/// multiple of it. The remaining speed is orthogonal to the reference.
 const MAX_SLOW_MULTIPLE: f64 = 2.0;
 
-/// Arrival on a surface on which the motion already is.
+/// Arrival at a surface on which the motion already is.
 const ARRIVAL_AT_REST: Arrival = Arrival {
     side: 1.0,
     exceeds_limit: false,
 };
 
-/// Surfaces on which a motion is with their arrivals, and discs with theirs.
+/// Surfaces on which a motion is, their arrivals, and discs with their arrivals.
 type Reached<'r> = (&'r [usize], &'r [Arrival], &'r [(usize, DiscArrival)]);
 
 impl SurfaceStates {
-    /// Decides the effect of all surfaces on which the motion is, after rates jumped or contacts changed.
+    /// Determines the effect of all surfaces on which the motion is, after a jump of rates or a change of contacts.
     pub fn decide_again(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
         if !self.can_hold || self.begin.is_none() {
             return;
@@ -49,20 +49,20 @@ impl SurfaceStates {
         self.decide_states(at, inputs, (&touching, &arrivals, &discs), &came_from);
     }
 
-    /// Lets the sides of surfaces that cannot hold the motion follow from the state, and returns them as they were.
+    /// Makes the sides of surfaces that cannot hold the motion follow from the state. Returns the previous sides.
     pub fn release_other_sides(&mut self) -> Vec<(bool, f64)> {
         self.known = KnownSides::Nothing;
         self.sided.release_other_sides()
     }
 
-    /// Restores sides that were released.
+    /// Restores the sides that `release_other_sides` returned.
     pub fn restore_other_sides(&mut self, sides: Vec<(bool, f64)>) {
         self.known = KnownSides::Nothing;
         self.sided.restore_other_sides(sides);
     }
 
-    /// Decides the state of all surfaces that the motion reached. `before` is on the near side of
-    /// a surface, `t` and `state` just beyond it.
+    /// Determines the states of all surfaces that the motion has reached. `before` is on the near side of a surface;
+    /// `t` and `state` are just beyond it.
     pub fn apply_crossing(
         &mut self,
         inputs: &[f64],
@@ -117,8 +117,8 @@ impl SurfaceStates {
         self.correct_onto_surfaces((t, state), inputs, true);
     }
 
-    /// Frees the surfaces whose motion other surfaces no longer stop, given the functions at a time (s). Returns them, and
-    /// true if the force of one changes its side.
+    /// Frees the surfaces whose motion other surfaces no longer stop, from the functions at a time (s). Returns these
+    /// surfaces, and true if the force of one changes its direction.
     fn free_left(&mut self, t: f64, functions: &[f64]) -> (Vec<usize>, bool) {
         let (mut left, mut has_new_force) = (Vec::new(), false);
         for (surface, place) in self.places.iter_mut().enumerate() {
@@ -140,7 +140,7 @@ impl SurfaceStates {
         (left, has_new_force)
     }
 
-    /// Releases the motion from surfaces that a jump of the rates moved it away from.
+    /// Releases the motion from surfaces that it has left by a jump of the rates.
     pub fn release_moved(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
         let (functions, allowed) = self.functions_and_roundings(at, inputs);
         for (surface, place) in self.places.iter_mut().enumerate() {
@@ -158,7 +158,7 @@ impl SurfaceStates {
         self.known = KnownSides::Nothing;
     }
 
-    /// Returns the switching functions, and the magnitude of each that counts as zero.
+    /// Returns the switching functions, and the largest magnitude of each that counts as zero.
     fn functions_and_roundings(
         &mut self,
         at: (f64, &[f64]),
@@ -185,9 +185,8 @@ impl SurfaceStates {
         (functions, allowed)
     }
 
-    /// Returns the discs that hold the motion, and those whose velocity came to zero between two
-    /// values of the functions. A velocity that passed zero at a distance has turned; it gets a new
-    /// reference.
+    /// Returns the discs that hold the motion, and discs whose velocity reached zero between two values of the
+    /// functions. A velocity that passed zero at a distance has only turned; it gets a new reference.
     fn disc_arrivals(
         &mut self,
         (t, state): (f64, &[f64]),
@@ -221,7 +220,7 @@ impl SurfaceStates {
         found
     }
 
-    /// Returns the discs that do not hold the motion although their velocity is within these values of the functions.
+    /// Returns the discs that do not hold the motion although their velocity is within `allowed`.
     fn stopped_discs(&self, functions: &[f64], allowed: &[f64]) -> Vec<(usize, DiscArrival)> {
         let stopped = self.discs.iter().enumerate().filter(|(_, disc)| {
             !disc.is_holding() && norm(disc.velocity(functions)) <= norm(disc.velocity(allowed))
@@ -230,7 +229,7 @@ impl SurfaceStates {
         arrivals.collect()
     }
 
-    /// Returns the discs that hold the motion; their force may exceed its limit.
+    /// Returns the discs that hold the motion, with forces that may exceed their limits.
     fn held_discs(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<(usize, DiscArrival)> {
         if !self.discs.iter().any(Disc::is_holding) {
             return Vec::new();
@@ -251,8 +250,8 @@ impl SurfaceStates {
         arrivals.collect()
     }
 
-    /// Returns the sides, -1 or 1, from which the motion came, given the values of the functions.
-    /// If a function is exactly zero, its fixed side counts.
+    /// Returns the sides, -1 or 1, from which the motion came, from the values of the functions. If a function is
+    /// exactly zero, its fixed side is used.
     fn arrival_sides(&self, near: &[f64]) -> Vec<f64> {
         let kept = |surface: usize| self.kept.as_ref().map(|kept| kept[surface]);
         let side = |(surface, value): (usize, &f64)| {
@@ -266,15 +265,14 @@ impl SurfaceStates {
         surfaces.enumerate().map(side).collect()
     }
 
-    /// Corrects a state that drifted from the surfaces that hold it; returns the number of
-    /// evaluations.
+    /// Corrects a state that has drifted from the surfaces that hold it. Returns the number of evaluations.
     pub fn correct_state(&mut self, t: f64, inputs: &[f64], state: &mut [f64]) -> u64 {
         self.correct_onto_surfaces((t, state), inputs, false)
     }
 
-    /// Updates the surfaces at a point, at which inputs may jump from `earlier`: releases the
-    /// motion if an input moves a surface away or a force exceeds its limit. The sides of surfaces that cannot hold the
-    /// motion must follow from the state.
+    /// Updates the surfaces at a point at which inputs may jump from `earlier`. Releases the motion if an input moves a
+    /// surface away or a force exceeds its limit. The sides of surfaces that cannot hold the motion must follow from
+    /// the state.
     pub fn update(&mut self, at: (f64, &[f64]), (earlier, inputs): (&[f64], &[f64])) {
         if !self.can_hold {
             return;
@@ -302,7 +300,7 @@ impl SurfaceStates {
             for (surface, place) in self.places.iter_mut().enumerate() {
                 let value = functions[surface];
                 let has_left = match *place {
-                    // Forces may turn back a motion that has barely left.
+                    // Forces may reverse a motion that has hardly left the surface.
                     SurfaceState::Leaving { moved, .. } => value.abs() > 2.0 * moved,
                     _ => jumps[surface],
                 };
@@ -339,14 +337,14 @@ impl SurfaceStates {
         }
     }
 
-    /// Notes the magnitudes of the functions.
+    /// Records the magnitudes of the functions.
     fn note_sizes(&mut self, functions: &[f64]) {
         for (size, value) in self.sizes.iter_mut().zip(functions) {
             *size = size.max(value.abs());
         }
     }
 
-    /// Releases the motion from surfaces whose force has vanished, as that of a brake that is lifted.
+    /// Releases the motion from surfaces whose force has vanished, for example that of a lifted brake.
     fn release_powerless(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
         self.find_holding_sides(at, inputs);
         let is_powerless = |row: usize| self.sided.own_effects.get(row) == Some(&0.0);
@@ -364,7 +362,7 @@ impl SurfaceStates {
         }
     }
 
-    /// Starts a motion: surfaces on which it is, or that are assumed to hold it, may hold it.
+    /// Starts a motion. Surfaces on which it is, or that are assumed to hold it, may hold it.
     pub(super) fn start_motion(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
         self.begin = Some(at.0);
         self.known = KnownSides::Nothing;
@@ -400,7 +398,7 @@ impl SurfaceStates {
         }
     }
 
-    /// Returns the surfaces whose force exceeds its limit, with the side.
+    /// Returns the surfaces whose force exceeds its limit, each with its side.
     pub(super) fn find_overcome(
         &mut self,
         at: (f64, &[f64]),
@@ -419,8 +417,8 @@ impl SurfaceStates {
         .collect()
     }
 
-    /// Decides the states of the surfaces `touching` and of discs, on which the motion is. It came
-    /// from the sides with these signs of the functions.
+    /// Determines the states of the surfaces `touching` and of discs on which the motion is. The signs give the sides
+    /// from which it came.
     fn decide_states(
         &mut self,
         at: (f64, &[f64]),
@@ -442,7 +440,7 @@ impl SurfaceStates {
         let arrived: Vec<DiscArrival> = discs.iter().map(|(_, arrival)| arrival.clone()).collect();
         let asked = (&touching[..], &arrivals[..], &arrived[..]);
         let Some((mut verdicts, vectors)) = self.sided.decide(at, inputs, asked, &sides) else {
-            // The functions decide, and the solver reports chattering.
+            // The signs of the functions determine the sides; if this fails, the solver reports chattering.
             for surface in passing
                 .into_iter()
                 .map(|(surface, _)| surface)
@@ -464,7 +462,7 @@ impl SurfaceStates {
         let mut roundings = self.sided.function_roundings(at, inputs);
         let passed = self.begin.map_or(0.0, |begin| at.0 - begin);
         for (surface, rounding) in roundings.iter_mut().enumerate() {
-            // A rate of rounding, accumulated over time.
+            // Distance by a rate of rounding size, accumulated over time.
             *rounding += MAX_FORCE_DRIFT_FRACTION * self.sided.own_force_rate(surface) * passed;
         }
         for ((index, _), verdict) in discs.iter().zip(&vectors) {
@@ -505,8 +503,8 @@ impl SurfaceStates {
         }
     }
 
-    /// Enters rest at the surfaces whose motion closed contacts stop. Returns the surfaces with arrivals whose force acts on
-    /// the motion, and those across which the contacts move it, with the side.
+    /// Sets the state of surfaces whose motion closed contacts stop. Returns the surfaces whose force acts on the
+    /// motion, with their arrivals. Also returns the surfaces across which contacts move the motion, with the side.
     fn unload_stopped(
         &mut self,
         (touching, arrivals): (Vec<usize>, Vec<Arrival>),
@@ -537,13 +535,14 @@ impl SurfaceStates {
         (touching, arrivals, passing)
     }
 
-    /// Returns the errors of a surface's function, at once and per second, within which others stop the motion.
+    /// Returns the allowed errors of a surface's function while others stop the motion: constant part, and growth per
+    /// second.
     fn find_allowed_errors(&self, surface: usize) -> [f64; 2] {
         let sizes = [self.sizes[surface], self.sided.own_effects[surface]];
         sizes.map(|size| self.tolerance * size)
     }
 
-    /// Frees the surfaces without a jump of the rates and returns the others.
+    /// Frees the surfaces at which the rates do not jump, and returns the others.
     fn free_without_jump(
         &mut self,
         (touching, arrivals): (&[usize], &[Arrival]),

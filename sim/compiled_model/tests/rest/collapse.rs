@@ -1,11 +1,11 @@
-//! A pile that settles on a floor by infinitely many impacts, in several coordinates.
+//! Tests of piles that settle on a floor by infinitely many impacts, in several coordinates.
 
 use eomgen_compiled_model::Solver;
 
 use super::{GENERAL, of_text, simulated};
 
-/// A heavy ball presses a light one to a floor, along an axis at the angle `a`. The light ball's position is `scale` times
-/// a coordinate.
+/// Returns two balls along an axis at the angle `a`; the heavy one presses the light one to a floor. The position of
+/// the light ball is `scale` times a coordinate.
 fn pile(scale: f64) -> String {
     let light = 0.185 / scale;
     format!(
@@ -79,7 +79,7 @@ fn pile_settles_at_the_same_time_in_any_unit_and_at_any_angle() {
     }
 }
 
-/// A light ball between a wall and a heavy one that approaches, without weight.
+/// Light ball between a wall and a heavy ball that approaches, without gravity.
 const LIGHT_BALL: &str = r#"
 [model]
 name = "light_ball"
@@ -98,8 +98,8 @@ wall = { when = "x", restitution = "e_wall" }
 balls = { when = "y - x", restitution = "e_balls" }
 "#;
 
-/// Returns the time (s) at which infinitely many impacts end and the heavy ball rests; `None` if it leaves. The distances
-/// are the unknowns, so that they fall far below the rounding of positions.
+/// Returns the time (s) at which infinitely many impacts end and the heavy ball rests; `None` if it moves away. The
+/// distances are the unknowns, so they can fall far below the rounding errors of positions.
 fn find_end_of_impacts(mass_ratio: f64, [wall, balls]: [f64; 2]) -> Option<f64> {
     let (mut t, mut gaps, mut v, mut w) = (0.0, [0.1, 0.2], 0.0, -1.0);
     for _ in 0..20_000 {
@@ -166,7 +166,7 @@ fn heavy_ball_stops_at_the_limit_of_the_impacts_of_a_light_one() {
     assert!(stopped > 4, "{stopped} machines");
 }
 
-/// Four balls, of which three touch at rest.
+/// Four balls; three of them touch at rest.
 const TOUCHING_BALLS: &str = r#"
 [model]
 name = "touching_balls"

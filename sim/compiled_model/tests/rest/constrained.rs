@@ -1,5 +1,5 @@
-//! Friction at rest with constraints, compared with the same machine in independent coordinates, and with closed
-//! contacts, compared with the same machine with constraints instead.
+//! Tests of friction at rest. Machines with constraints are compared with the same machines in independent coordinates.
+//! Machines with closed contacts are compared with the same machines with constraints.
 
 use std::fmt::Write as _;
 
@@ -48,7 +48,7 @@ drive = { on = "s", value = "2/sqrt(5)*A*sin(w*t)" }
 friction = { on = "s", value = "-F*sign(dot(s))" }
 "#;
 
-/// Bead on a ring with a force against its velocity, which has no value at rest, in Cartesian coordinates.
+/// Bead on a ring in Cartesian coordinates; a force opposite to its velocity is undefined at rest.
 const BEAD_ON_RING: &str = r#"
 [model]
 name = "bead_on_ring"
@@ -73,7 +73,7 @@ ring = { zero = "norm(position) - R" }
 friction = { on = "position", value = "-F*velocity/norm(velocity)" }
 "#;
 
-/// The same with its angle.
+/// The bead on a ring with its angle as coordinate.
 const RING_ANGLE: &str = r#"
 [model]
 name = "ring_angle"
@@ -210,8 +210,8 @@ fn pendulum_on_rod_comes_to_rest_as_in_its_angle() {
     }
 }
 
-/// Returns a machine of three coordinates with coupled inertias, dry friction at each, periodic drives, and a load that
-/// presses on a surface. `section` states that the machine is on the surface where `distance` is zero.
+/// Returns a machine of three coordinates with coupled inertias, dry friction at each coordinate, periodic drives, and
+/// a load that presses on a surface. `section` requires that the machine is on the surface where `distance` is zero.
 fn pressed_machine(seed: u64, section: &str) -> String {
     let mut numbers = Numbers(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
     let mut next = |low: f64, high: f64| low + (high - low) * numbers.next();
@@ -301,7 +301,7 @@ wall = { when = "d - x", restitution = 0 }
 friction = "-F*sign(dot(x))"
 "#;
     let model = of_text(sled);
-    // The wall holds it while the drive pushes, friction until the drive pulls with F.
+    // The wall holds the mass while the drive pushes, and friction holds it until the drive pulls with F.
     let pi = std::f64::consts::PI;
     let (parts, leaves) = (pi / 5.0, (pi + 0.25_f64.asin()) / 5.0);
     for solver in GENERAL {
@@ -317,7 +317,7 @@ friction = "-F*sign(dot(x))"
                 "{state:?}"
             );
         }
-        // At the wall friction exerts no force; then it balances the drive.
+        // At the wall friction exerts no force; after that it balances the drive.
         let run = model.with_declared_parameters().unwrap();
         let observables = run.observables(&motion).unwrap();
         let forces = observables.iter().map(|row| row[0]);
@@ -326,7 +326,7 @@ friction = "-F*sign(dot(x))"
             assert!((force - expected).abs() < 1e-6, "{solver} {t}: {force}");
         }
         let after = 0.7 - leaves;
-        // F + A sin(w t) is about A w cos(w t) (t - leaves).
+        // The net force F + A sin(w t) is about A w cos(w t) (t - leaves).
         let speed = 60.0 * (5.0 * leaves).cos() / 2.0 * after * after / 2.0;
         let last = motion.trajectory.states[4][1];
         assert!(
@@ -373,7 +373,7 @@ rock = { when = "D - b", restitution = 0 }
             assert!((entry - other).abs() < 1e-6, "{t}: {state:?} and {other:?}");
         }
     }
-    // The pile rests between blows, and at the end on the rock.
+    // The pile rests between impacts, and at the end on the rock.
     assert!((first.states[200][1] - 1.0).abs() < 1e-12);
     assert!(first.events.len() > 100, "{}", first.events.len());
 }

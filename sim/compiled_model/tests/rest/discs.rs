@@ -1,18 +1,17 @@
-//! Friction against the direction of sliding, -mu m g v/norm(v): stops, rest, release and turns,
-//! compared with closed forms, with scalar friction and with set-valued time stepping.
+//! Tests of friction opposite to the direction of sliding, -mu m g v/norm(v): stops, rest, release and turns. They
+//! compare with closed forms, with scalar friction and with set-valued time stepping.
 
 use eomgen_compiled_model::{CompiledModel, Motion, Request, Solver};
 
 use crate::{GENERAL, grid, of_text, simulated};
 
-/// A force that grows slowly beyond the friction releases a stiff motion, for which `auto` may change to
-/// `radau`.
+/// A force that slowly exceeds the friction releases a stiff motion; `auto` may change to `radau` for it.
 const RELEASING: [Solver; 2] = [Solver::Auto, Solver::Radau];
 
 const MU: f64 = 0.3;
 const G: f64 = 9.81;
 
-/// Returns a puck on axes rotated by an angle, with a force of this text along x.
+/// Returns a puck in axes rotated by an angle; `drive` is the expression of a force along x.
 fn puck(angle: f64, drive: &str, rate: [f64; 2]) -> CompiledModel {
     let (c, s) = (angle.cos(), angle.sin());
     let along = [c * rate[0] + s * rate[1], c * rate[1] - s * rate[0]];
@@ -70,7 +69,7 @@ fn puck_stops_at_its_closed_form() {
     for angle in [0.0, 0.4, 2.0] {
         let model = puck(angle, "0*F", [1.0, 2.0]);
         for solver in GENERAL {
-            // A sample exactly at the stop.
+            // One sample is exactly at the stop.
             let mut times = grid(2.0, 20);
             times.insert(8, stop);
             let motion = simulated(&model, &[], &times, solver);
@@ -196,7 +195,7 @@ drive = {{ on = "x", value = "F*sin(w*t)" }}
     }
 }
 
-/// Masses, levels, stiffness, positions and speeds of two pucks that a spring connects.
+/// Masses, friction levels, stiffness, positions and speeds of two pucks that a spring connects.
 struct Pair {
     masses: [f64; 2],
     levels: [f64; 2],
@@ -241,8 +240,8 @@ f1 = { on = "[x1, y1]", value = "-R1*v1/norm(v1)" }
         of_text(&text)
     }
 
-    /// Returns the positions after `steps` steps of set-valued time stepping: the friction impulse
-    /// stays within its disc and brings the velocity as near to zero as possible.
+    /// Returns the positions after `steps` steps of set-valued time stepping. The friction impulse stays within its
+    /// disc and brings the velocity as near to zero as possible.
     fn stepped(&self, until: f64, steps: u32) -> Vec<f64> {
         let h = until / f64::from(steps);
         let (mut q, mut v) = (self.start, self.rates);
@@ -337,8 +336,8 @@ fn random_pairs_agree_between_solvers_and_come_to_rest() {
     }
 }
 
-/// A puck on a spring that friction barely holds: near its stop the spring turns the small velocity, which
-/// no explicit step resolves within the tolerance.
+/// Friction barely holds a puck on a spring. Near its stop the spring turns the small velocity, which no explicit step
+/// resolves within the tolerance.
 #[test]
 fn puck_that_friction_barely_holds_stops_in_few_steps() {
     let model = of_text(

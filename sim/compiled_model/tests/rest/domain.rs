@@ -1,6 +1,5 @@
-//! Trial steps that leave the domain of a function or overflow although the motion does not.
-//! Compared with closed forms, and for an orifice with SciPy (LSODA and Radau at 1e-11, which
-//! agree to nine digits).
+//! Tests of trial steps that leave the domain of a function or overflow although the motion does not. They compare with
+//! closed forms, and for an orifice with SciPy (LSODA and Radau at 1e-11, which agree to nine digits).
 
 use eomgen_compiled_model::{CompiledModel, Solver};
 
@@ -8,7 +7,7 @@ use super::{GENERAL, of_text, simulated};
 
 const STEPPING: [Solver; 3] = [Solver::Rk, Solver::Radau, Solver::Adams];
 
-/// A mass on a spring, damped by an orifice with this law.
+/// Returns a mass on a spring, damped by an orifice with the flow law `law`.
 fn orifice(law: &str) -> CompiledModel {
     of_text(&format!(
         r#"
@@ -34,8 +33,7 @@ piston = {{ on = "x", value = "-A*p" }}
     ))
 }
 
-/// Returns deflection, rate and pressure of the orifice at these times, from rest at 0.1 m with
-/// this pressure.
+/// Times of deflection, rate and pressure of the orifice, s. The mass starts at rest at 0.1 m with a given pressure.
 const TIMES: [f64; 5] = [0.0, 0.01, 0.1, 0.5, 1.0];
 const ORIFICE: [(f64, [[f64; 3]; 4]); 3] = [
     (
@@ -95,8 +93,7 @@ fn orifice_flow_reversal_matches_scipy() {
     agrees_with_scipy("sign(p)*abs(p)^0.5", &GENERAL, 3);
 }
 
-/// After a pulse of pressure, the flow reverses at each end of the swing, at which pressure and
-/// speed vanish together.
+/// After a pulse of pressure, the flow reverses at each end of the swing. Pressure and speed vanish together there.
 #[test]
 fn many_flow_reversals_match_scipy() {
     let model = orifice("sign(p)*sqrt(abs(p))");
@@ -125,8 +122,8 @@ fn laws_undefined_beyond_their_sign_change_match_scipy() {
     agrees_with_scipy("(sqrt(max(p, 0)) - sqrt(max(-p, 0)))", &GENERAL, 3);
 }
 
-/// A mass at rest with cubic damping that is pushed from 3 s on: v = sqrt(F/c) tanh(sqrt(F c)(t -
-/// a)), in several units of the deflection. Steps are long before the push.
+/// A mass at rest with cubic damping is pushed from the time a = 3 s on: v = sqrt(F/c) tanh(sqrt(F c)(t - a)). The test
+/// uses several units of the deflection. Steps are long before the push.
 #[test]
 fn overflowing_steps_after_a_push_are_shortened() {
     let model = of_text(
@@ -167,8 +164,8 @@ damper = { on = "x", value = "-c*dot(x)*abs(dot(x))" }
     }
 }
 
-/// States that start at or near the edge of the domain of their rates: z' = -z ln z, so that ln z
-/// decays, and z' = -arcsin z from 1, at which the slope is infinite.
+/// States start at or near the edge of the domain of their rates. For z' = -z ln z, ln z decays. For z' = -arcsin z
+/// from 1, the slope is infinite at the start.
 #[test]
 fn states_starting_at_edge_of_domain_match_closed_forms() {
     let model = of_text(
@@ -188,7 +185,7 @@ m = "1/2*m*dot(x)^2"
 "#,
     );
     let times = [0.0, 0.5, 1.0, 2.0];
-    // With s = sin u, by quadrature of cos u/u.
+    // Reference values with s = sin u, by quadrature of cos u/u.
     let right = [
         1.0,
         0.561_217_178_396_959_3,
@@ -211,7 +208,7 @@ m = "1/2*m*dot(x)^2"
     }
 }
 
-/// sqrt(0.5 - t) is undefined after 0.5 s: the message names the state and the cause.
+/// sqrt(0.5 - t) is undefined after 0.5 s; the message must name the state and the cause.
 #[test]
 fn leaving_the_domain_stops_with_state_and_cause() {
     let model = of_text(
@@ -247,8 +244,8 @@ m = "1/2*m*dot(x)^2"
     }
 }
 
-/// h' = -k sign(h) |h|^a from h = b is b (1 - t/T)^(1/(1 - a)) and ends at T = b^(1 - a)/(k (1 - a)) in rest at 0, where
-/// the slope of the rate has no bound.
+/// h' = -k sign(h) |h|^a from h = b has the solution b (1 - t/T)^(1/(1 - a)). It ends at T = b^(1 - a)/(k (1 - a)) at
+/// rest at 0, where the slope of the rate is infinite.
 #[test]
 fn states_that_end_at_zero_of_root_stay_there() {
     let laws = [
@@ -293,7 +290,7 @@ m = "1/2*m*dot(x)^2"
     }
 }
 
-/// A mass that a force -c sign(v) sqrt(|v|) stops at 2 v0^(3/2)/(3 c).
+/// The force -c sign(v) sqrt(|v|) stops a mass after the distance 2 v0^(3/2)/(3 c).
 #[test]
 fn root_drag_stops_mass() {
     let model = of_text(
@@ -328,8 +325,8 @@ drag = { on = "x", value = "-c*sign(dot(x))*sqrt(abs(dot(x)))" }
     }
 }
 
-/// Three chambers that exchange their contents through roots of the differences end with equal contents at one time:
-/// several surfaces meet.
+/// Three chambers exchange their contents through roots of the differences. Their contents become equal at the same
+/// time, so several surfaces are reached at once.
 #[test]
 fn chambers_joined_by_orifices_come_to_rest_together() {
     let model = of_text(
@@ -350,7 +347,7 @@ m = "1/2*m*dot(x)^2"
 "#,
     );
     let times = [0.0, 0.5, 1.0, 3.0, 20.0];
-    // SciPy, LSODA at 1e-12; at the end the mean of the contents.
+    // Reference: SciPy, LSODA at 1e-12; at the end, the mean of the contents.
     let right = [
         [1.0, 0.0, 0.0],
         [0.60552625754, 0.25120973860, 0.14326400387],

@@ -1,4 +1,5 @@
-//! Motions whose steps another solver makes: bounces, rest under friction, release by an input, and continued rest.
+//! Tests of motions whose steps are made by an external solver: bounces, rest under friction, release by an input, and
+//! continued rest.
 
 use std::cell::RefCell;
 
@@ -29,7 +30,7 @@ fn signs(motion: &mut Motion, t: f64, y: &[f64], surfaces: usize) -> Vec<bool> {
     values.iter().map(|value| *value > 0.0).collect()
 }
 
-/// One step of the classical Runge-Kutta method.
+/// Makes one step of the classical Runge-Kutta method.
 fn advance(motion: &mut Motion, t: f64, y: &[f64], h: f64) -> Vec<f64> {
     let mut rates = |t: f64, y: &[f64]| {
         let mut out = vec![0.0; y.len()];
@@ -49,7 +50,7 @@ fn advance(motion: &mut Motion, t: f64, y: &[f64], h: f64) -> Vec<f64> {
     moved(h, &mean)
 }
 
-/// Moves to a time (s), with events located by bisection. Returns the number of events.
+/// Continues to a time (s) and locates events by bisection. Returns the number of events.
 fn simulate(
     motion: &mut Motion,
     t: &mut f64,
@@ -93,7 +94,7 @@ fn ball_bounces_and_rests_as_in_its_closed_form() {
     );
     let (mut t, mut y) = (0.0, vec![0.2, 0.0]);
     let mut motion = start(&model, &y, &[]);
-    // It hits at 0.2 s with 2 m/s, then after 0.2 s, 0.1 s and so on, and rests from 0.6 s on.
+    // The ball hits at 0.2 s with 2 m/s, then after 0.2 s, 0.1 s and so on, and rests from 0.6 s on.
     simulate(&mut motion, &mut t, &mut y, 0.3, 1);
     assert!((y[0] - 0.05).abs() < 1e-9 && y[1].abs() < 1e-8, "{y:?}");
     let events = simulate(&mut motion, &mut t, &mut y, 1.0, 1);
@@ -117,7 +118,8 @@ fn contact_opens_when_friction_reverses_at_an_impact() {
     );
     let (mut t, mut y) = (0.0, vec![1.0, 0.0, -4.0, 0.0]);
     let mut motion = start(&model, &y, &[]);
-    // The rod hits with sqrt(10) m/s and leaves with half of it. Both then have a third of that.
+    // The rod hits with sqrt(10) m/s and rebounds with half this speed. Both bodies then have a third of the rebound
+    // speed.
     let events = simulate(&mut motion, &mut t, &mut y, 1.0, 3);
     let speed = 10.0_f64.sqrt() / 6.0;
     assert!(
@@ -143,7 +145,7 @@ fn friction_holds_until_an_input_releases_the_block() {
     assert!((y[0] + 0.05).abs() < 1e-9 && y[1].abs() < 1e-12, "{y:?}");
     assert_eq!(motion.modes(), [SurfaceMode::Held]);
 
-    // The same rest from a speed that rounding moved off zero.
+    // The friction also holds the mass if rounding moved its speed off zero.
     let beside = [y[0], 1e-13];
     let mut rates = [0.0; 2];
     let mut continued = start(&model, &beside, &motion.modes());
@@ -153,7 +155,7 @@ fn friction_holds_until_an_input_releases_the_block() {
     decided.rates(0.0, &beside, &mut rates);
     assert!((rates[1] + 1.0).abs() < 1e-9, "{rates:?}");
 
-    // Input and spring push with 2 N each, and the friction takes 3 N.
+    // Input and spring push with 2 N each, and friction resists with 3 N.
     let jump = HeldInputs::new(vec![t.next_down(), t], vec![0.0, 2.0], 1);
     motion.system_mut().set_inputs(jump.unwrap());
     motion.apply_event(t, &mut y);

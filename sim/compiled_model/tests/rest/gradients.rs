@@ -1,5 +1,5 @@
-//! Gradients of trajectories against differences of motions: smooth motions, crossed surfaces, friction that holds, held
-//! inputs, fields and first-order states; and the motions without a gradient.
+//! Tests of gradients of trajectories against finite differences: smooth motions, crossed surfaces, sticking, held
+//! inputs, fields and first-order states. Motions without a gradient must be rejected.
 
 use eomgen_compiled_model::{
     CompiledModel, Error, Instance, Orders, Request, SampleWeights, Solver, TrajectoryGradient,
@@ -8,14 +8,14 @@ use eomgen_sim::inputs::HeldInputs;
 
 const TOLERANCE: f64 = 1e-12;
 
-/// Times of the samples, s.
+/// Returns times of samples up to `until`, s.
 fn times(until: f64) -> Vec<f64> {
     (0..=20)
         .map(|sample| until * f64::from(sample) / 20.0)
         .collect()
 }
 
-/// Returns weights of all samples that repeat no value.
+/// Returns random weights for all samples; no value occurs twice.
 fn drawn_weights(samples: usize, states: usize, observables: usize) -> SampleWeights {
     let row = |sample: usize, width: usize, shift: f64| -> Vec<f64> {
         (0..width)
@@ -78,8 +78,8 @@ impl Case<'_> {
     }
 }
 
-/// Compares a derivative with four-point differences by several steps, in fractions of `size`: large ones lead over events,
-/// small ones have rounding. A wrong derivative equals none of them to 6 digits.
+/// Compares a derivative with four-point differences by several steps, in fractions of `size`. Large steps cross
+/// events, and small steps have large rounding errors. A wrong derivative agrees with none of them to 6 digits.
 fn compare(
     what: &str,
     found: f64,
@@ -101,7 +101,7 @@ fn compare(
     Ok(())
 }
 
-/// Compares the gradient with differences by all states, parameters and inputs.
+/// Compares the gradient with finite differences with respect to all states, parameters and inputs.
 fn compare_with_differences(case: &Case<'_>) -> Result<(), Error> {
     let model = case.run.model();
     let observables = model.observable_names().len();
@@ -342,7 +342,7 @@ fn rejection(text: &str, until: f64) -> String {
     found.expect_err("no gradient").to_string()
 }
 
-/// Oscillator whose damper acts beyond a place.
+/// Returns an oscillator with a damper that acts only beyond the position `place`.
 fn oscillator(x: f64, v: f64, place: f64, more: &str) -> String {
     format!(
         r#"
@@ -425,7 +425,8 @@ fn motion_that_starts_at_rest_has_no_gradient_by_its_start() -> Result<(), Error
     Ok(())
 }
 
-/// Work of a gradient in simulations: each step is made twice, and its products are computed once.
+/// Compares the computation time of a gradient with that of simulations. A gradient makes each step twice and computes
+/// its products once.
 #[test]
 fn gradient_by_fifty_parameters_costs_less_than_six_simulations() -> Result<(), Error> {
     let parts = 16;
@@ -473,7 +474,7 @@ fn gradient_by_fifty_parameters_costs_less_than_six_simulations() -> Result<(), 
     Ok(())
 }
 
-/// Pendulum on a cart with a wall that moves and a bumper of the pendulum.
+/// Pendulum on a cart, with a moving wall and a bumper on the pendulum.
 const BUMPED: &str = r#"
 [model]
 name = "bumped"
@@ -546,7 +547,7 @@ fn contact_that_stays_closed_has_no_gradient() {
     );
 }
 
-/// Two masses on rods in Cartesian coordinates, and a skate on the second that keeps its direction.
+/// Two masses on rods in Cartesian coordinates; a skate on the second mass keeps its direction.
 const LINKED: &str = r#"
 [model]
 name = "linked"
@@ -590,7 +591,7 @@ fn gradients_with_constraints_equal_differences() -> Result<(), Error> {
     Ok(())
 }
 
-/// Pendulum in Cartesian coordinates, with a mass that slides on an inclined rail.
+/// Pendulum in Cartesian coordinates with a mass that slides on an inclined rail.
 const SWINGING: &str = r#"
 [model]
 name = "linked"

@@ -1,11 +1,11 @@
-//! Motions that begin at a late time, as records with Unix times do, and events late in a long motion.
+//! Tests of motions that begin at a late time, as records with Unix times do, and of late events in a long motion.
 
 use eomgen_compiled_model::{Request, Solver};
 use eomgen_sim::inputs::HeldInputs;
 
 use super::{GENERAL, of_text};
 
-/// Start times, s. The last one is a Unix time; times there are rounded to 2.4e-7 s.
+/// Start times, s. The last one is a Unix time, which is rounded to 2.4e-7 s.
 const STARTS: [f64; 4] = [0.0, 1e6, 1e8, 1.7e9];
 
 const OSCILLATOR: &str = r#"
@@ -22,7 +22,7 @@ t = "1/2*m*dot(x)^2"
 v = "1/2*k*x^2"
 "#;
 
-/// A ball that an input pushes off the floor.
+/// Ball that an input pushes off the floor.
 const BALL: &str = r#"
 [model]
 name = "ball"
@@ -44,7 +44,7 @@ push = { on = "y", value = "u" }
 floor = { when = "y", restitution = 0.8 }
 "#;
 
-/// Returns the height (m) of a ball `after` s from rest at the height `h` (m), with restitution 0.8.
+/// Returns the height (m) of a ball `after` s after its release from rest at the height `h` (m), with restitution 0.8.
 fn bounced(h: f64, after: f64) -> f64 {
     let g = 9.81;
     let mut speed = (2.0 * g * h).sqrt();

@@ -1,13 +1,12 @@
-//! Friction that holds, vanishes and acts again: the motion begins when it vanishes, and is braked
-//! afterwards instead of stopped at once.
+//! Tests of friction that holds a mass, vanishes and acts again. The motion begins when the friction vanishes. Friction
+//! that returns brakes the mass but does not stop it at once.
 
 use eomgen_compiled_model::EventKind;
 use eomgen_sim::inputs::HeldInputs;
 
 use crate::{GENERAL, grid, of_text};
 
-/// Returns a mass of 1 kg that a force of 1 N drives, with this friction, and a body at a speed of
-/// 1 m/s.
+/// Returns a mass of 1 kg with friction and a driving force of 1 N, and a body with a speed of 1 m/s.
 fn braked_mass(friction: &str) -> String {
     format!(
         r#"
@@ -38,7 +37,7 @@ drive = {{ on = "x", value = "D" }}
 
 #[test]
 fn brake_that_is_lifted_and_applied_again_stops_the_mass_in_time() {
-    // Lifted from 1 s to 3 s: 2 m/s at x = 2 m, then a deceleration of 2 m/s^2 for 1 s.
+    // The brake is lifted from 1 s to 3 s. The mass reaches 2 m/s at x = 2 m; then it decelerates with 2 m/s^2 for 1 s.
     let by_input = "brake = { on = \"x\", value = \"-F*u*sign(dot(x))\" }";
     let by_body = "brake = { on = \"x\", value = \"-F*(1 - above(y - one) + above(y - 3*one))*sign(dot(x))\" }";
     let by_time =
@@ -70,7 +69,8 @@ fn brake_that_is_lifted_and_applied_again_stops_the_mass_in_time() {
     }
 }
 
-/// A mass on a spring stops at its first reversal while the brake is lifted, and rests at the next one when it is applied.
+/// A mass on a spring stops at its first reversal while the brake is lifted. At the next reversal the brake acts and
+/// holds it.
 #[test]
 fn brake_that_is_lifted_at_a_reversal_holds_at_the_next_one() {
     let model = of_text(
@@ -92,7 +92,7 @@ V = "1/2*k*x^2"
 brake = { on = "x", value = "-F*above(t/s - 4)*sign(dot(x))" }
 "#,
     );
-    // cos(t) until 4 s, then an oscillation about -0.8 m to its first reversal.
+    // The mass follows cos(t) until 4 s, then oscillates about -0.8 m until its first reversal.
     let amplitude = (4.0_f64.cos() + 0.8).hypot(4.0_f64.sin());
     let run = model.with_declared_parameters().expect("values");
     let inputs = run.default_inputs();

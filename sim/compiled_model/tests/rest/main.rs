@@ -1,6 +1,6 @@
-//! Sticking in the general solvers, compared with a set-valued time stepping (without surfaces,
-//! regimes and events; its friction impulses stay within their bounds and bring the speeds as near
-//! to zero as possible), with closed forms, and with the exact solver if it supports the motion.
+//! Tests of sticking in the general solvers. They compare with closed forms, with the exact solver if it supports the
+//! motion, and with set-valued time stepping. The time stepping has no surfaces, regimes and events: its friction
+//! impulses stay within their bounds and bring the speeds as near to zero as possible.
 
 mod collapse;
 mod constrained;
@@ -74,14 +74,14 @@ fn pendulum_sticks_off_the_vertical_with_friction_equal_to_weight() {
         let motion = simulated(&model, &[], &times, solver);
         let states = &motion.trajectory.states;
         machine.comes_to(([1.0], [0.0]), 10.0, &states[100], 2e-4);
-        // While sticking nothing moves, not even by accumulated rounding.
+        // During sticking nothing moves, not even by accumulated rounding.
         assert!(states[100][0].abs() > 1e-3, "{:?}", states[100]);
         assert!((states[100][0] - states[60][0]).abs() < 1e-13);
         assert!(states[60..].iter().all(|state| state[1].abs() < 1e-14));
         let run = model.with_declared_parameters().unwrap();
         let observables = run.observables(&motion).unwrap();
         for (row, state) in observables[60..].iter().zip(&states[60..]) {
-            // Observable `rubs`, energy and power.
+            // The observable `rubs`, energy and power during sticking.
             assert!(
                 (row[0] - m * g * l * state[0].sin()).abs() < 1e-12,
                 "{row:?}"
@@ -92,7 +92,7 @@ fn pendulum_sticks_off_the_vertical_with_friction_equal_to_weight() {
     }
 }
 
-/// Returns true if the friction is at its level during sliding.
+/// Returns true if the observables show the friction level of sliding.
 fn row_of_sliding(observables: &[Vec<f64>], states: &[Vec<f64>]) -> bool {
     let mut pairs = observables.iter().zip(states);
     pairs.all(|(row, state)| state[1].abs() < 1e-6 || row[0] == -0.02 * state[1].signum())
@@ -172,9 +172,8 @@ fn turning_points_and_rest_of_pendulum_match_energy() {
                 "{solver} {level} {speed}"
             );
         }
-        // The time stepping reaches the same point. Its error depends on the time of the stop
-        // within a step h, from nothing to a h^2/8 with the deceleration a, so it has no fixed
-        // order.
+        // The time stepping converges to the same state. Its error is between 0 and a h^2/8 (step h, deceleration a),
+        // depending on the time of the stop within a step, so it has no fixed order.
         let machine = Machine {
             inverse_mass: &|_| [[1.0 / inertia]],
             forces: &|_, [theta], _| [-weight * f64::sin(theta)],
@@ -219,7 +218,7 @@ fn belt_with_falling_friction_sticks_and_slips() {
     }
     let motion = simulated(&model, &[], &grid(20.0, 20), Solver::Auto);
     assert_eq!(motion.solver, Solver::Rk);
-    // It sticks and is released once per period of 0.907 s.
+    // The mass sticks and is released once per period of 0.907 s.
     let switches = &motion.trajectory.events;
     assert!(switches.len() > 40, "{}", switches.len());
 }
@@ -293,7 +292,7 @@ drive = { on = "x", value = "A*sin(omega*t)" }
 #[test]
 fn drive_breaks_away_a_thousand_times_at_known_times() {
     let (f, a, omega) = (3.0_f64, 4.0_f64, 5.0_f64);
-    // It breaks away if A |sin(omega t)| = F, once per half period, and sticks in between.
+    // The mass breaks away when A |sin(omega t)| = F, once per half period, and sticks in between.
     let half = std::f64::consts::PI / omega;
     let away = |turn: usize| (f / a).asin() / omega + half * turn as f64;
     let until = 1000.0 * half;
@@ -324,7 +323,7 @@ fn drive_breaks_away_a_thousand_times_at_known_times() {
                 "{solver} {turn}"
             );
         }
-        // After every period it rests at the same position.
+        // After every period the mass rests at the same position.
         let states = &motion.trajectory.states;
         for turn in (2..1000).step_by(2) {
             let moved = states[turn][0] - states[2][0];
@@ -368,7 +367,7 @@ both = { value = "-F*sign(dot(x)) - G*sign(3*dot(x))", unit = "N" }
             .iter()
             .zip(rows.iter().zip(&motion.trajectory.states))
         {
-            // It breaks away if r t = F + G.
+            // The mass breaks away when r t = F + G.
             let gone = (t - 3.0).max(0.0);
             assert!(
                 (state[0] - gone.powi(3) / 6.0).abs() < 1e-8,
@@ -400,8 +399,8 @@ pull = { on = "x", value = "u" }
 "#;
     let model = of_text(text);
     let run = model.with_declared_parameters().unwrap();
-    // Sticking for 1 s, accelerated by 1 m/s^2 for 1 s, then decelerated by 2 m/s^2 to rest at 2.5
-    // s. At 3 s the belt starts at 1 m/s, which the block reaches after 0.5 s.
+    // The block sticks for 1 s, accelerates with 1 m/s^2 for 1 s, then decelerates with 2 m/s^2 to rest at 2.5 s. At 3
+    // s the belt starts with 1 m/s; the block reaches this speed after 0.5 s.
     let times = vec![0.0, 1.0, 2.0, 3.0];
     let values = vec![1.5, 0.0, 3.0, 0.0, 0.0, 0.0, 0.0, 1.0];
     let inputs = HeldInputs::new(times, values, 2).unwrap();
@@ -452,7 +451,7 @@ swing = { on = "x", value = "K*sin(x*0.3/l)" }
     for solver in GENERAL {
         let motion = simulated(&model, &[], &grid(4.0, 40), solver);
         let states = &motion.trajectory.states;
-        // On the surface x + s x' = 0 the motion decays with s; y follows 0.2 t.
+        // On the surface x + s x' = 0 the motion decays with the time constant s, and y = 0.2 t.
         for (t, pair) in motion
             .trajectory
             .times
@@ -475,8 +474,8 @@ swing = { on = "x", value = "K*sin(x*0.3/l)" }
 
 #[test]
 fn friction_sticks_with_constraints_and_with_modes() {
-    // A bead on a circle, by a constraint, with friction along the horizontal. It rests if the
-    // weight along the circle is less than the friction along it.
+    // A bead on a circle, by a constraint, with friction along the horizontal. The bead sticks if the weight along the
+    // circle is less than the friction along the circle.
     let text = r#"
 [model]
 name = "bead"
@@ -520,7 +519,7 @@ rub = { on = "x", value = "-F*sign(dot(x))" }
         machine.comes_to(([start], [0.0]), 6.0, &[angle, 0.0], 1e-4);
         assert!(motion.trajectory.final_state[2].abs() < 1e-10);
     }
-    // A disc with a brake on an elastic shaft, whose modes continue to vibrate.
+    // A disc with a brake on an elastic shaft; the modes of the shaft continue to vibrate during sticking.
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../model-spec/models");
     let text = std::fs::read_to_string(folder.join("shaft_and_disc.toml")).unwrap();
     let brake = "brake = { on = \"theta_d\", value = \"-T_b*sign(dot(theta_d))\" }";
@@ -589,7 +588,7 @@ fn sticking_costs_few_steps_at_tight_tolerances() {
             assert!(motion.early_stop.is_none(), "{solver}");
             motion.trajectory.statistics.evaluations
         });
-        // Without rounding, orders 8 and 5 need 2.4 and 4 times as many.
+        // Without rounding errors, methods of order 8 and 5 need 2.4 and 4 times as many evaluations.
         let [coarse, tight] = evaluations;
         assert!(tight < 8 * coarse, "{solver}: {evaluations:?}");
     }

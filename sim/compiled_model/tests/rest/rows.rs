@@ -1,11 +1,11 @@
-//! Random rows of masses with springs and dry friction.
+//! Tests of random rows of masses with springs and dry friction.
 
 use eomgen_compiled_model::Solver;
 
 use super::time_stepping::{Machine, Rubbing};
 use super::{GENERAL, grid, of_text, simulated};
 
-/// Pseudorandom numbers between 0 and 1.
+/// Generator of pseudorandom numbers between 0 and 1.
 pub(super) struct Numbers(pub(super) u64);
 
 impl Numbers {
@@ -43,9 +43,8 @@ s = {{ value = 1, unit = "s" }}
     )
 }
 
-/// Returns a random row of masses between springs, each with friction at the ground, on a belt or
-/// at the preceding mass, with a periodic force. No two frictions hold one motion, because their
-/// forces would not be unique.
+/// Returns a random row of masses between springs with periodic forces. Each mass has friction at the ground, on a belt
+/// or at the preceding mass. No motion is resisted by two frictions, because their forces would not be unique.
 fn random_row(seed: u64) -> String {
     let mut numbers = Numbers(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
     let mut number = |least: f64, most: f64| least + (most - least) * numbers.next();
@@ -119,7 +118,7 @@ fn random_rows_match_exact_solver() {
             let mut worst = 0.0_f64;
             for (place, (a, b)) in pairs.enumerate() {
                 worst = worst.max(difference(a, b));
-                // Powers as well, except for a row at an event.
+                // Powers must agree as well, except in a row at an event.
                 let power = (rows[place][1] - reference[place][1]).abs();
                 assert!(power < 1e-3, "{seed} {solver} {place}: power {power:e}");
             }
@@ -131,8 +130,8 @@ fn random_rows_match_exact_solver() {
     assert!(compared >= 25 && held > 300, "{compared} {held}");
 }
 
-/// A row of up to three masses between springs with periodic forces, each with dry friction at the
-/// ground, on a belt and at the preceding mass.
+/// Row of up to three masses between springs with periodic forces. Each mass has dry friction at the ground, on a belt
+/// and at the preceding mass.
 struct Row {
     count: usize,
     masses: [f64; 3],

@@ -1,4 +1,4 @@
-//! Machines at rest most of the time, released by short events that long steps must not miss.
+//! Tests of machines that are at rest most of the time; short events release them, which long steps must not miss.
 
 use std::f64::consts::PI;
 
@@ -36,7 +36,7 @@ fn force_slightly_above_friction_breaks_away_every_period() {
             let settings = [("A", a), ("omega", omega)];
             let motion = simulated(&model, &settings, &[0.0, until], solver);
             let switches = &motion.trajectory.events;
-            // It breaks away and sticks twice per period.
+            // The mass breaks away and sticks twice per period.
             assert_eq!(switches.len(), 4 * turns as usize, "{solver} {a} {omega}");
             for (turn, pair) in switches.chunks(2).enumerate() {
                 let away = first + PI / omega * turn as f64;
@@ -67,8 +67,7 @@ fn short_pulses_move_resting_mass() {
 
 #[test]
 fn relay_is_crossed_until_it_slides_and_decays() {
-    // x'' = -F sign(x + tau x'): parabolas between the crossings until |x'| < tau F, then x' =
-    // -x/tau.
+    // For x'' = -F sign(x + tau x') the motion is parabolic between crossings until |x'| < tau F; then x' = -x/tau.
     let text = r#"
 [model]
 name = "relay"
@@ -97,7 +96,8 @@ relay = { on = "x", value = "-F*sign(x + tau*dot(x))" }
             let a = pieces
                 .last()
                 .map_or(-1.0, |piece: &(f64, f64, f64, f64)| piece.3);
-            // x + tau v + (v + tau a) s + a s^2/2 = 0, without the root s = 0 after a crossing.
+            // The next crossing satisfies x + tau v + (v + tau a) s + a s^2/2 = 0; after a crossing the root s = 0 is
+            // excluded.
             let (b, c) = (
                 v + tau * a,
                 if pieces.len() > 1 { 0.0 } else { x + tau * v },

@@ -1,8 +1,8 @@
-//! Motions that start on a switching surface with a fast state.
+//! Tests of motions with a fast state that start on a switching surface.
 
 use super::{GENERAL, grid, of_text, simulated};
 
-/// A motor whose switched voltage is on its surface at time 0; its current settles within 50 us.
+/// Motor whose switched voltage is on its surface at time 0; its current settles within 50 us.
 const MOTOR: &str = r#"
 [model]
 name = "motor"

@@ -1,15 +1,14 @@
-//! Set-valued time stepping without surfaces, regimes and events (J. J. Moreau). The friction
-//! impulses of every step stay within their bounds and bring the speeds as near to zero as
-//! possible.
+//! Set-valued time stepping without surfaces, regimes and events (J. J. Moreau). The friction impulses of every step
+//! stay within their bounds and bring the speeds as near to zero as possible.
 
-/// A dry friction: the sliding speed is J v - b; the level bounds the force.
+/// Dry friction with the sliding speed J v - b and a force up to its level.
 pub struct Rubbing<const N: usize> {
     pub along: [f64; N],
     pub drift: f64,
     pub level: f64,
 }
 
-/// A machine for the time stepping: M(q) v' = f(t, q, v) + friction.
+/// Machine for the time stepping: M(q) v' = f(t, q, v) + friction.
 pub struct Machine<'m, const N: usize> {
     pub inverse_mass: &'m dyn Fn([f64; N]) -> [[f64; N]; N],
     pub forces: &'m dyn Fn(f64, [f64; N], [f64; N]) -> [f64; N],
@@ -65,7 +64,7 @@ impl<const N: usize> Machine<'_, N> {
         [q, v].concat()
     }
 
-    /// Asserts that the stepping converges to this state with order one.
+    /// Asserts that the time stepping converges to the `wanted` state with order one.
     pub fn comes_to(&self, start: ([f64; N], [f64; N]), until: f64, wanted: &[f64], step: f64) {
         let difference = |steps: u32| {
             let found = self.stepped(start, until, steps);

@@ -1,10 +1,10 @@
-//! A box that tips about an edge: corrections onto the contact are below the rounding of its height.
+//! Test of a box that tips about an edge. Corrections onto the contact are below the rounding error of its height.
 
 use eomgen_compiled_model::Request;
 
 use super::{GENERAL, of_text};
 
-/// A box on a slope, whose lower edge sticks. Heights are above a floor at `f`.
+/// Box on a slope whose lower edge sticks. Heights are measured from a floor at the height `f`.
 const BOX: &str = r#"
 [model]
 name = "tipping"
