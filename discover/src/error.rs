@@ -13,17 +13,17 @@ use eomgen_sim::piecewise_linear::ExactError;
 /// Message after a stop on request.
 const STOPPED: &str = "stopped on request";
 
-/// Message after the limit of work.
+/// Message if the limit on work is reached.
 const TOO_MUCH_WORK: &str = "the limit on evaluations of the rates is reached";
 
-/// Error between reading a specification and returning a result.
+/// Error of a comparison or search.
 #[derive(Clone, Debug)]
 pub enum DiscoverError {
     /// The specification is invalid or its equations cannot be derived.
     Model(Box<ModelError>),
     /// An edit of the specification is impossible.
     Edit(Box<EditError>),
-    /// An effect of the user that makes a specification invalid.
+    /// A user-defined effect makes the specification invalid.
     Effect {
         /// Name of the effect.
         effect: String,
@@ -36,15 +36,15 @@ pub enum DiscoverError {
     Records(Box<Refusal>),
     /// Initial states must be read from the record, but no channel measures this state.
     StateNotMeasured(String),
-    /// No motion can be simulated in these windows.
+    /// No motion can be simulated in some windows.
     SimulationFailed(FailedWindows),
     /// The motion of a candidate's model cannot be simulated.
     CandidateSimulationFailed,
-    /// The candidate changes no output.
+    /// The candidate does not change any output.
     NotExcited,
     /// Stop was requested.
     Stopped,
-    /// A fit needs more than this number of evaluations of the rates.
+    /// A fit needs more evaluations of the rates than this limit.
     TooMuchWork(u64),
 }
 
@@ -57,7 +57,7 @@ pub struct FailedWindows {
     pub total: usize,
     /// Start of the first failed window, s.
     pub first_start: f64,
-    /// Record of that window.
+    /// Path of the record that contains the first failed window.
     pub record: String,
 }
 
@@ -79,9 +79,9 @@ impl FailedWindows {
 pub enum SimulationError {
     /// The mass matrix is not positive definite at these parameters.
     IndefiniteMassMatrix,
-    /// The exact propagator rejects the part that is linear between switches.
+    /// The exact propagator rejects the linear part of the model.
     Propagator(ExactError),
-    /// The exponential integrator failed for this reason.
+    /// The exponential integrator failed for the given reason.
     Integrator(String),
     /// The solver with error control failed.
     Solver(SolveError),
@@ -89,13 +89,13 @@ pub enum SimulationError {
     TooFast,
     /// The state diverged.
     Diverged,
-    /// No state near that of the motion satisfies the constraints.
+    /// No state near the motion satisfies the constraints.
     OffConstraints,
-    /// The records give the motion, but not that of all states.
+    /// The motion is given by the records, which do not contain all states.
     StateNotRecorded,
     /// Stop was requested.
     Stopped,
-    /// The limit of work is exceeded.
+    /// The limit on work is reached.
     TooMuchWork,
 }
 

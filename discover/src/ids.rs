@@ -1,6 +1,6 @@
-//! Typed indices, one type for each kind of object, so that they cannot be confused. Lists are
-//! indexed by them; [`index`](ChannelId::index) returns the number for rows and columns of
-//! matrices.
+//! Typed indices, with one type for each kind of object, so that the compiler finds wrong indices.
+//! Lists are indexed by them; [`index`](ChannelId::index) returns the number for rows and columns
+//! of matrices.
 
 /// Consecutive windows.
 pub type WindowRange = std::iter::Map<std::ops::Range<usize>, fn(usize) -> WindowId>;
@@ -13,28 +13,28 @@ impl WindowId {
 }
 
 eomgen_model_spec::ids! {
-    /// A channel of a dataset.
+    /// Channel of a dataset.
     ChannelId;
-    /// A window of training or test records.
+    /// Window of training or test records.
     WindowId;
-    /// An independent parameter of a model, among the values that it is run at.
+    /// Independent parameter of a model, as an index into its parameter values.
     ParameterId;
-    /// An unknown of a fit.
+    /// Unknown of a fit.
     UnknownId;
-    /// An observable of a model.
+    /// Observable of a model.
     ObservableId;
-    /// An equation of motion in which a force may be missing.
+    /// Equation of motion in which a force may be missing.
     EquationId;
-    /// A family of basis functions of a regression.
+    /// Family of basis functions of a regression.
     FamilyId;
-    /// A basis function of a regression, of whatever family: a column.
+    /// Basis function of a regression, that is, a column; counted over all families.
     BasisFunctionId;
-    /// A candidate of a list that was screened.
+    /// Candidate in a list of screened candidates.
     CandidateId;
-    /// The response of a candidate that changes the outputs.
+    /// Candidate whose response changes the outputs, in a list of responses.
     ResponseId;
-    /// An effect of those that a hypothesis holds together, or that were accepted.
+    /// Effect in a list of accepted effects, or in a hypothesis.
     EffectId;
-    /// A hypothesis of those that were fitted in full.
+    /// Hypothesis in a list of fully fitted hypotheses.
     FittedId;
 }

@@ -1,4 +1,4 @@
-//! A closed interval of admissible values.
+//! Closed interval of admissible values.
 
 /// Closed interval from `low` to `high`. An end may be infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,9 +10,9 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// The real line.
+    /// All real numbers.
     pub const ALL: Self = Self::new(f64::NEG_INFINITY, f64::INFINITY);
-    /// The single value 0.
+    /// Interval that contains only 0.
     pub const ZERO: Self = Self::new(0.0, 0.0);
 
     /// Creates the interval from `low` to `high`.
@@ -20,7 +20,7 @@ impl Interval {
         Self { low, high }
     }
 
-    /// Returns true if the interval is a single value.
+    /// Returns true if both ends are equal.
     pub fn is_point(self) -> bool {
         self.low == self.high
     }

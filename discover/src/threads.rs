@@ -1,17 +1,18 @@
-//! Threads of parallel work.
+//! Thread pool for parallel computations.
 
 use std::sync::Once;
 
-/// Stack size of a thread. A thread that waits for a part of its work takes other work meanwhile, and derives models with
-/// nested formulas, so that its stack becomes deeper than that of a single fit. Unused memory is not allocated.
+/// Stack size of a thread. While a thread waits for a subtask, it executes other tasks, which may
+/// derive models with nested expressions. Its stack is therefore deeper than the stack of a single
+/// fit. Unused memory is not allocated.
 const STACK_BYTES: usize = 64 << 20;
 
-/// Creates the threads of parallel work with stacks that are large enough, unless the process already has some.
+/// Creates the thread pool with a sufficient stack size, unless the process already has a pool.
 pub fn prepare_threads() {
     static PREPARED: Once = Once::new();
     PREPARED.call_once(|| {
         let threads = rayon::ThreadPoolBuilder::new().stack_size(STACK_BYTES);
-        // An error means that there are threads, which the caller created.
+        // If the caller has already created a pool, an error is returned and ignored.
         drop(threads.build_global());
     });
 }

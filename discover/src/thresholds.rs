@@ -1,4 +1,4 @@
-//! Constants that decide the search and the estimation, each with its reason.
+//! Limits and settings of search and estimation, each with its reason.
 
 use crate::interval::Interval;
 
@@ -8,24 +8,24 @@ pub const GAIN_PRIOR_SD: f64 = 0.01;
 /// Prior standard deviation of the bias of a sensor, in standard deviations of its noise.
 pub const BIAS_PRIOR_IN_NOISE_SD: f64 = 10.0;
 
-/// Prior standard deviation of the delay of a sensor, in samples: the value is held at an unknown
-/// time between two samples.
+/// Prior standard deviation of the delay of a sensor, in samples: the sampling time within an
+/// interval is unknown.
 pub const DELAY_PRIOR_SAMPLES: f64 = 0.5;
 
-/// Prior standard deviation of the initial state of a window around the end of the previous window,
-/// in ranges of the state. It carries almost no information, but keeps states that the window does
-/// not show near the prior.
+/// Prior standard deviation of the initial state of a window around the final state of the previous
+/// window, in ranges of the state. It keeps states that the window does not determine near the
+/// prior, and hardly affects the others.
 pub const INITIAL_STATE_PRIOR_IN_RANGES: f64 = 0.02;
 
-/// Ratio of two ranges of a state above which the larger one is used. The ratio is not measured; it ends
-/// the repeated fits of first states.
+/// Ratio of two estimates of a state's range above which the larger one is used. It only limits the
+/// number of repeated fits of first states.
 pub const MUCH_LARGER_RANGE: f64 = 2.0;
 
-/// Maximum number of fits of first states for the ranges of the states. The free decay of a drive from a
-/// twisted shaft needs two.
+/// Maximum number of fits of first states that estimate the ranges of the states. The free decay of
+/// a drive with an initially twisted shaft needs two.
 pub const MAX_RANGE_FITS: usize = 6;
 
-/// Range of a state that nothing excites: the change that moves the outputs by this fraction of the
+/// Output change that defines the range of a state that nothing excites, as a fraction of the
 /// noise.
 pub const UNMOVED_STATE_IN_NOISE: f64 = 1e-3;
 
@@ -37,10 +37,9 @@ pub const MAX_RECORD_HALVINGS: u32 = 6;
 /// adds, because the parameters of the candidate are still unknown.
 pub const ADDED_STATE_PRIOR_FACTOR: f64 = 10.0;
 
-/// Factors of the typical size within which a shape parameter is searched, such as the Stribeck
-/// speed or the deflection of an end stop. The typical size for friction is a tenth of the usual
-/// speed. A friction that has not fallen at that speed is no Stribeck friction: it would replace
-/// another friction at every speed.
+/// Limits of a shape parameter, relative to its typical size. Examples are the Stribeck speed and
+/// the deflection of an end stop. For friction, the typical size is a tenth of the usual speed. A
+/// larger Stribeck speed would imitate other friction laws at every speed.
 pub const SHAPE_SEARCH_RANGE: Interval = Interval::new(0.02, 10.0);
 
 /// Relative squared difference below which two columns are equal: the limit of double precision.
@@ -50,50 +49,52 @@ pub const MIN_COLUMN_REMAINDER: f64 = 1e-11;
 /// reduction has no practical value and can be due to chance.
 pub const MIN_HELD_OUT_REDUCTION: f64 = 0.05;
 
-/// Minimum of that reduction in standard errors over blocks of time.
+/// Minimum of the held-out reduction in standard errors over blocks of time.
 pub const MIN_REDUCTION_STANDARD_ERRORS: f64 = 2.0;
 
-/// Minimum of half the reduction of the whitened squares. The best of a hundred useless candidates
-/// reaches ln 100 = 5.
+/// Minimum of half the reduction of the whitened sum of squares. The best of a hundred candidates
+/// without effect reaches ln 100 = 5.
 pub const MIN_INFORMATION_GAIN: f64 = 10.0;
 
-/// Minimum size of the parameters of an accepted effect in standard deviations, with correlated
-/// residuals included.
+/// Minimum size of the parameters of an accepted effect, in standard deviations that include the
+/// correlation of residuals.
 pub const MIN_SIGNIFICANCE: f64 = 5.0;
 
 /// Minimum influence of an effect on the channel that shows it best, in standard deviations of the
-/// noise. Only the part that no other unknown explains counts. A smaller influence may be anything
-/// that repeats by chance.
+/// noise. Only the part that no other unknown explains counts. A smaller influence may be due to
+/// any repeating disturbance.
 pub const MIN_EFFECT_OVER_NOISE: f64 = 1.0;
 
-/// Ratio of the gap to the noise floor below which nothing is left to find. Short records have a
+/// Ratio of the gap to the noise floor below which the model is complete. Short records have a
 /// larger limit, because their residual varies by chance; see [`FALSE_ALARM_QUANTILE`].
 pub const MAX_FLOOR_RATIO_AT_FLOOR: f64 = 1.1;
 
-/// Quantile of the normal distribution for the probability of 1 % that the residual of a correct model
-/// exceeds the limit of its training records; likewise for its test records.
+/// Quantile of the normal distribution for a probability of 1 %. With this probability, the
+/// residual of a correct model exceeds the limit of its training records, and likewise that of its
+/// test records.
 pub const FALSE_ALARM_QUANTILE: f64 = 2.326;
 
-/// Similarity of the response of an undeclared parameter or of an input to that of the named effect above which it is fitted.
-/// Along the motion of a wrong model, the gains of a sensor and of an input of one linear oscillator had 0.69.
+/// Minimum similarity of responses for the fit of an undeclared parameter or an input instead of
+/// the named effect. Along the motion of an incorrect model, the gains of a sensor and of an input
+/// of one linear oscillator had 0.69.
 pub const MIN_SIMILARITY_TO_FIT: f64 = 0.5;
 
 /// Similarity of two responses above which both candidates are fitted.
 pub const MIN_SIMILARITY_OF_RIVALS: f64 = 0.95;
 
 /// Relative difference below which two candidates form one class. Their held-out gaps differ by
-/// less than this or by less than `MIN_REDUCTION_STANDARD_ERRORS`, and their training gaps by less
-/// than this or by less than `MIN_INFORMATION_GAIN`. A smaller difference may be due to the fit
-/// itself.
+/// less than this limit or by less than `MIN_REDUCTION_STANDARD_ERRORS`. Their training gaps differ
+/// by less than this limit or by less than `MIN_INFORMATION_GAIN`. Smaller differences may be due
+/// to the fit.
 pub const MAX_CLASS_DIFFERENCE: f64 = 0.01;
 
 /// Similarity of two responses above which the candidates are two names of one effect. They form
 /// one class unless their residuals differ by `MIN_HELD_OUT_REDUCTION`, because windows with
-/// impacts may end in different folds.
+/// impacts may end in different local minima.
 pub const MIN_SIMILARITY_OF_SAME_EFFECT: f64 = 1.0 - 1e-6;
 
 /// Fraction of a response that is independent of the nuisances, below which the candidate is
-/// indistinguishable from them, unless that fraction explains `MIN_EXPLAINED_FRACTION`.
+/// inseparable from them, unless this fraction explains `MIN_EXPLAINED_FRACTION`.
 pub const MIN_UNEXPLAINED_FRACTION: f64 = 0.01;
 
 /// Maximum number of added effects.
@@ -103,11 +104,11 @@ pub const MAX_EFFECTS: usize = 4;
 pub const MAX_FULL_FITS_PER_ROUND: usize = 4;
 
 /// Ratio of the gap to the noise floor below which no further excitation window is searched. Above
-/// it, an effect of one excitation window may replace another that a further window shows better.
+/// this ratio, another excitation window may show an effect better and change the selection.
 pub const MAX_FLOOR_RATIO_TO_STOP: f64 = 1.5;
 
-/// Remaining fraction of the residuals below which an accepted effect is most of the answer.
-/// Further effects show more clearly once it is in the model.
+/// Remaining fraction of the residuals below which an accepted effect explains most of the gap.
+/// Further effects show more clearly once this effect is in the model.
 pub const MAX_LEFT_OF_RESIDUALS: f64 = 0.3;
 
 /// Predicted reduction of the squares above which a candidate is fitted: a fifth of the reduction
@@ -115,20 +116,20 @@ pub const MAX_LEFT_OF_RESIDUALS: f64 = 0.3;
 /// saturating effects such as damping.
 pub const MIN_PROMISED_REDUCTION: f64 = 0.02;
 
-/// The same limit when the residuals are much larger than the noise. Effects are then large, and
-/// the linear prediction is too low.
+/// Minimum predicted reduction if the residuals are much larger than the noise. Effects are then
+/// large, and the linear prediction is too low.
 pub const MIN_PROMISED_REDUCTION_FAR: f64 = 0.005;
 
-/// Residual RMS above which the residuals are much larger than the noise, in standard deviations.
+/// RMS residual above which the residuals are much larger than the noise, in standard deviations.
 pub const FAR_FROM_NOISE: f64 = 3.0;
 
 /// Maximum remaining fraction of the squares after a preliminary fit that is continued with a full
-/// fit, if the gap exceeds `MAX_FLOOR_RATIO_TO_STOP` floors. Of a hundred candidates above this
-/// limit none was accepted.
+/// fit, if the gap exceeds `MAX_FLOOR_RATIO_TO_STOP` floors. None of a hundred candidates above
+/// this limit was accepted.
 pub const MAX_LEFT_BY_PRELIMINARY_FIT: f64 = 0.95;
 
-/// Number of candidates that are fitted in parallel before the next decision: one for each core of
-/// a small machine.
+/// Number of candidates that are fitted in parallel before the next decision: the number of cores
+/// of a small computer.
 pub const FITS_IN_PARALLEL: usize = 2;
 
 /// Predicted ratio of the squares of a pair to those of the best single candidate, below which the
@@ -136,12 +137,13 @@ pub const FITS_IN_PARALLEL: usize = 2;
 pub const MAX_PAIR_COST_RATIO: f64 = 0.8;
 
 /// Ratio of the influence of either effect to that of both, above which two effects cancel. With
-/// less noise neither would be selected.
+/// less noise, neither effect would be selected.
 pub const MIN_CANCELLATION_RATIO: f64 = 3.0;
 
 /// Fraction of the gap that makes further candidates unnecessary. Effects that repeat with an
-/// angle, a dozen for each angle, are screened only if no other candidate promises this fraction. A
-/// candidate that promises it is always fitted, even if it is similar to the nuisances.
+/// angle, a dozen for each angle, are screened only if no other candidate has this predicted
+/// reduction. A candidate with this predicted reduction is always fitted, even if it is similar to
+/// the nuisances.
 pub const MIN_EXPLAINED_FRACTION: f64 = 0.5;
 
 /// Maximum number of candidates, or pairs, with a preliminary fit in one round.
@@ -160,52 +162,51 @@ pub const MAX_PRIOR_SD_TO_ZERO: f64 = 3.0;
 /// estimate, is an effect; one in four hundred occurs by chance.
 pub const MAX_PRIOR_DEVIATION: f64 = 3.0;
 
-/// Factor on the linearised uncertainty of effects. The linearisation omits quantisation that
-/// depends on the signal, correlated initial states and the curvature of the model. Two in three of
-/// forty test estimates were within 1.645 narrower standard deviations.
+/// Factor on the linearised uncertainty of effects. The linearisation omits signal-dependent
+/// quantisation, correlated initial states and the curvature of the model. Without the factor, two
+/// thirds of forty test estimates were within 1.645 standard deviations.
 pub const UNCERTAINTY_FACTOR: f64 = 1.8;
 
-/// Fraction of the misfit above the noise floor that resembles the response of an effect and so
-/// biases its size. Chosen on one seed of the blind suite, with 62 sizes.
+/// Fraction of the misfit above the noise floor that resembles the response of an effect and
+/// therefore biases its size. Chosen on one seed of the blind suite with 62 sizes.
 pub const MISFIT_SIMILARITY: f64 = 0.3;
 
-/// Minimum fraction of the squares that a reported residual force explains. Every fitted record
-/// shows less than this.
+/// Minimum fraction of the squares that a reported residual force explains. In all records of
+/// complete models the fraction was smaller.
 pub const MIN_FORCE_FRACTION: f64 = 0.1;
 
-/// Minimum fraction, relative to a force that is free in each window, explained by a force that is
-/// reported as a function of rate or position.
+/// Minimum explained fraction of a force that is reported as a function of rate or position,
+/// relative to a force that is free in each window.
 pub const MIN_STATE_FRACTION: f64 = 0.6;
 
-/// Minimum fraction, relative to a piecewise linear force, explained by one or two simple functions
-/// that describe the force.
+/// Minimum explained fraction of one or two simple functions that describe the force, relative to a
+/// piecewise linear force.
 pub const MIN_SIMPLE_FRACTION: f64 = 0.9;
 
 /// Fraction, relative to the best equation, above which a force in another equation explains nearly
 /// as much.
 pub const MIN_FRACTION_OF_BEST: f64 = 0.9;
 
-/// Relative error of the linearised force at a wrong motion: hidden springs and friction were
-/// estimated with errors of 1 to 5 %.
+/// Relative error of the linearised force along an incorrect motion: hidden springs and friction
+/// were estimated with errors of 1 to 5 %.
 pub const LINEARISATION_ERROR: f64 = 0.05;
 
-/// Ratio of the gap to the noise floor, on training and on test records, above which an unnamed
+/// Ratio of the gap to the noise floor, on training and on test records, above which an empirical
 /// expression is searched. A smaller gap may remain from the fit of the named effects.
 pub const MIN_FLOOR_RATIO_FOR_EXPRESSION: f64 = 2.0;
 
-/// Minimum fraction of the gap to the floor, on training and on test records, that an accepted
-/// unnamed expression closes. A missing function of rates, positions and inputs can reach it; other
-/// effects cannot.
+/// Minimum closure of an accepted empirical expression, on training and on test records. A missing
+/// function of rates, positions and inputs can reach it; other effects cannot.
 pub const MIN_EXPRESSION_CLOSURE: f64 = 0.5;
 
-/// Maximum number of terms of an unnamed expression. More terms are unreadable.
+/// Maximum number of terms of an empirical expression. More terms are unreadable.
 pub const MAX_EXPRESSION_TERMS: usize = 3;
 
 /// Minimum fraction of the remaining squares that each further term explains.
 pub const MIN_TERM_REDUCTION: f64 = 0.25;
 
 /// Maximum number of equations of motion in which an expression is searched, among those whose
-/// force explains nearly as much. Stiffly coupled equations are indistinguishable.
+/// force explains nearly as much. Stiffly coupled equations are inseparable.
 pub const MAX_EXPRESSION_EQUATIONS: usize = 3;
 
 // Models and their records.
@@ -217,42 +218,43 @@ pub const MAX_INTERPOLATION_ERROR: f64 = 0.25;
 /// undersampled.
 pub const MAX_OUTPUTS_PER_SAMPLE: usize = 4;
 
-/// Cut-off frequency of the zero-phase smoothing, as a fraction of the sampling frequency. For an
-/// initial value, faster motion is noise or quantisation.
+/// Cut-off frequency of the zero-phase smoothing, as a fraction of the sampling frequency. Faster
+/// components of an initial value are noise or quantisation.
 pub const SMOOTHING_CUT_OFF: f64 = 0.02;
 
-/// Number of samples for the first value and slope of a column. A dozen samples average the noise,
-/// and a parabola still fits the motion over them.
+/// Number of samples for the initial value and slope of a column. A dozen samples average the
+/// noise, and a parabola still fits the motion.
 pub const INITIAL_SLOPE_SAMPLES: usize = 12;
 
-/// Number of samples at the beginning of a record over which columns are compared with the model.
-/// Later the missing effects have moved the model too far away.
+/// Number of samples at the beginning of a record that are compared with the model. Later the
+/// motion deviates too much because of missing effects.
 pub const CHECKED_SAMPLES: usize = 1000;
 
-/// Minimum detrended motion of a checked channel, in standard deviations of its noise.
+/// Minimum detrended motion of a channel that is compared with the model, in standard deviations of
+/// its noise.
 pub const MIN_CHECKED_MOTION_IN_NOISE: f64 = 20.0;
 
-/// Correlation above which two columns are one quantity.
+/// Correlation above which two columns contain the same quantity.
 pub const MIN_SAME_CORRELATION: f64 = 0.98;
 
-/// Correlation with the model below which a channel does not follow it. Missing effects leave most
-/// of the motion intact.
+/// Correlation with the model below which a channel does not follow the model. Most of the motion
+/// does not depend on the missing effects.
 pub const MAX_WRONG_CORRELATION: f64 = 0.5;
 
 /// Relative tolerance of a known unit factor between columns: 1 % for wrong parameters and 1 % for
 /// missing effects.
 pub const FACTOR_TOLERANCE: f64 = 0.02;
 
-/// Tolerance of a factor of one, or minus one, between a column and the model. Missing effects may
-/// change the amplitude this much.
+/// Tolerance of a factor of 1 or -1 between a column and the model. Missing effects may change the
+/// amplitude by this fraction.
 pub const UNIT_FACTOR_TOLERANCE: f64 = 0.2;
 
-/// Maximum number of switches per simulated second of a trial motion, 1/s: ten times the number of
-/// the stiffest contact of the shipped models.
+/// Maximum number of switches per simulated second of a trial motion, in 1/s: ten times that of the
+/// stiffest contact of the shipped models.
 pub const MAX_SWITCHES_PER_SECOND: f64 = 1e5;
 
-/// Maximum number of parts of one step between samples. A faster process, such as a drive with a
-/// lag of a thousandth of a sample, is not visible, and each part costs time.
+/// Maximum number of substeps of one step between samples. A faster process, such as a drive lag of
+/// a thousandth of a sample, is not visible, and each substep costs time.
 pub const MAX_PARTS_PER_STEP: f64 = 4096.0;
 
 /// Number of samples on which the number of steps per sample is tested.
@@ -262,24 +264,24 @@ pub const STEP_TEST_SAMPLES: usize = 100;
 /// control is used.
 pub const MAX_STEP_DOUBLINGS: u32 = 7;
 
-/// Maximum number of steps per sample of the explicit solver with error control before the implicit
-/// one is tried. Bristles that yield within 2 um need 1500 evaluations of the rates per sample with
-/// the explicit one and 18, at five times the cost, with the implicit one.
+/// Number of steps per sample of the explicit solver with error control above which the implicit
+/// solver is tried. For bristles that yield within 2 um, the explicit solver needs 1500 evaluations
+/// of the rates per sample. The implicit solver needs 18, each at five times the cost.
 pub const MAX_EXPLICIT_STEPS_PER_SAMPLE: u64 = 10;
 
-/// Maximum RMS error of fixed steps in a simulation that is compared, in standard deviations of the
-/// noise.
+/// Maximum RMS error of fixed steps in a compared simulation, in standard deviations of the noise.
 pub const MAX_STEP_ERROR: f64 = 0.2;
 
-/// Maximum root of the summed squared errors of fixed steps over all measured numbers, in
-/// standard deviations of the noise. It shifts each estimate by at most this fraction of its
-/// standard deviation.
+/// Maximum root of the summed squared errors of fixed steps over all measured values, in standard
+/// deviations of the noise. The errors shift each estimate by at most this fraction of its standard
+/// deviation.
 pub const MAX_SUMMED_STEP_ERROR: f64 = 0.1;
 
 /// Relative tolerance of the solver with error control: far below the noise of any sensor.
 pub const SOLVER_TOLERANCE: f64 = 1e-7;
 
-/// Maximum number of steps of that solver in one window: some seconds of computation.
+/// Maximum number of steps of the solver with error control in one window: some seconds of
+/// computation.
 pub const MAX_SOLVER_STEPS: u64 = 400_000;
 
 // Fits.
@@ -288,27 +290,27 @@ pub const MAX_SOLVER_STEPS: u64 = 400_000;
 /// linear in its initial state. Chosen on the development seeds of the blind suite.
 pub const INITIAL_STATE_HORIZONS: [f64; 4] = [0.08, 0.25, 0.5, 1.0];
 
-/// Fractions of a second attempt. If impacts fold the outputs, one sequence may end in a wrong
-/// local minimum and the other in the right one.
+/// Fractions of a second attempt. If impacts make the outputs non-monotonic in the initial state,
+/// one sequence may end in a wrong local minimum and the other in the correct one.
 pub const OTHER_INITIAL_STATE_HORIZONS: [f64; 5] = [0.05, 0.12, 0.3, 0.7, 1.0];
 
-/// Number of parts of a record that are processed in parallel from initial states of another
-/// estimate. It is independent of the machine, so that results are too.
+/// Number of chains of windows that are estimated in parallel, each from initial states of another
+/// estimate. It does not depend on the machine, so that results do not either.
 pub const PARALLEL_CHAINS: usize = 2;
 
 /// Relative decrease of the cost below which the continuation ends: each step simulates all windows
 /// again.
 pub const MIN_CONTINUATION_DECREASE: f64 = 0.02;
 
-/// Maximum number of secant steps if tangents fail. Chosen on the development seeds of the blind
+/// Maximum number of secant steps if derivatives fail. Chosen on the development seeds of the blind
 /// suite.
 pub const MAX_SECANT_STEPS: usize = 6;
 
 /// First change of an unknown for a secant, as a fraction of its scale.
 pub const FIRST_SECANT_IN_SCALES: f64 = 0.1;
 
-/// Output change of a secant, as a fraction of the residuals: far above the small folds due to
-/// impacts, and no larger than the error of the estimate.
+/// Output change of a secant, as a fraction of the residuals: far above the small irregularities
+/// due to impacts, and no larger than the error of the estimate.
 pub const SECANT_OUTPUT_CHANGE: f64 = 0.3;
 
 /// Factor within which the output change of a secant is accepted.
@@ -326,7 +328,7 @@ pub const STEP_FRACTIONS: [f64; 3] = [1.0, 0.3, 0.05];
 pub const STEP_DAMPING: [f64; 4] = [0.0, 0.03, 1.0, 30.0];
 
 /// Successive damping factors of the step of an initial state, in weights of its prior. If impacts
-/// fold the outputs, only short steps along well determined directions decrease the cost.
+/// make the outputs irregular, only short steps along well determined directions decrease the cost.
 pub const INITIAL_STATE_DAMPING: [f64; 5] = [0.0, 1e2, 1e4, 1e6, 1e9];
 
 /// Maximum number of steps of an initial state over one fraction of a window.
@@ -336,14 +338,15 @@ pub const MAX_INNER_STEPS: usize = 6;
 /// estimated again. Chosen on the development seeds of the blind suite.
 pub const MAX_FULL_STEPS: usize = 4;
 
-/// Maximum number of further steps over the beginnings of windows before whole windows are fitted.
+/// Maximum number of further steps over the initial segments of windows before whole windows are
+/// fitted.
 pub const MAX_FURTHER_STEPS: usize = 12;
 
-/// Residual RMS over whole windows, in standard deviations, above which the initial states are not
-/// estimated again. Also the ratio to the RMS of a fit above which a start is rejected.
+/// RMS residual over whole windows, in standard deviations, above which the initial states are not
+/// estimated again. Also the ratio to the RMS of a fit above which initial values are rejected.
 pub const MAX_RMS_TO_CONTINUE: f64 = 8.0;
 
-/// Ratio of the training RMS after the first steps to that of the fit of a warm start, above which
+/// Ratio of the training RMS after the first steps to the RMS of the warm-start fit, above which
 /// the result is judged without further steps.
 pub const MAX_WARM_START_RATIO: f64 = 3.0;
 
@@ -357,7 +360,7 @@ pub const MIN_REFRESH_DECREASE: f64 = 0.005;
 /// Screening a hundred candidates then costs less than one full fit.
 pub const MAX_SCREENING_WINDOWS: usize = 40;
 
-/// Number of windows that suffices to compare a few equations of motion.
+/// Number of windows for the comparison of a few equations of motion.
 pub const FEW_WINDOWS: usize = 20;
 
 /// Number of blocks of time for standard errors of a set of windows. Each block is longer than the
@@ -371,14 +374,14 @@ pub const MAX_CONTINUATION_STEPS: usize = 5;
 pub const MAX_PRELIMINARY_STEPS: usize = 3;
 
 /// Output change of a difference quotient, as a fraction of the residuals: far above rounding and
-/// above the small folds due to impacts.
+/// the small irregularities due to impacts.
 pub const QUOTIENT_OUTPUT_CHANGE: f64 = 0.3;
 
 /// Maximum difference for a quotient, as a fraction of the range of the state.
 pub const MAX_QUOTIENT_IN_RANGES: f64 = 0.03;
 
-/// Fraction of each window, from its beginning, for preliminary fits. The motion is nearly linear
-/// in the unknowns there. Chosen on the development seeds of the blind suite.
+/// Fraction of each window, from its beginning, for preliminary fits. In this segment the motion is
+/// nearly linear in the unknowns. Chosen on the development seeds of the blind suite.
 pub const PRELIMINARY_FRACTION: f64 = 0.25;
 
 /// Number of initial-state horizons of a preliminary fit.
@@ -391,34 +394,34 @@ pub const MIN_INNER_DECREASE: f64 = 1e-2;
 /// reaches this by chance.
 pub const MIN_AUTOCORRELATION: f64 = 0.05;
 
-/// Fraction of a step by which the time between samples may exceed it.
+/// Tolerance of the time between samples, as a fraction of a step, for which no further step is
+/// used.
 pub const SAMPLING_JITTER: f64 = 0.1;
 
-/// Difference for the quotient by a parameter, as a fraction of its scale.
+/// Difference for the quotient with respect to a parameter, as a fraction of its scale.
 pub const PARAMETER_QUOTIENT_IN_SCALES: f64 = 0.01;
 
 /// Difference for a central quotient, as a fraction of the scale of a parameter or the range of a
-/// state: far above rounding. Its error decreases with the square.
+/// state: far above rounding. The error of the quotient is proportional to its square.
 pub const CENTRAL_QUOTIENT_IN_SCALES: f64 = 0.001;
 
-/// Maximum number of final Gauss-Newton steps. A poorly determined direction is a curved valley and
-/// needs short steps.
+/// Maximum number of final Gauss-Newton steps. A poorly determined direction is a curved valley of
+/// the cost and needs short steps.
 pub const MAX_FINAL_STEPS: usize = 12;
 
-/// Maximum number of corrections of the initial states after a step of the unknowns. Each removes
-/// most of the remaining error.
+/// Maximum number of corrections of the initial states after a step of the unknowns. Each
+/// correction removes most of the remaining error.
 pub const MAX_STATE_CORRECTIONS: usize = 4;
 
-/// Ratio of the weight of the priors after the final steps to that before, below which the steps are
-/// repeated with the new weight.
+/// Ratio of the prior weight after the final steps to the prior weight before them, below which the
+/// steps are repeated with the new weight.
 pub const MAX_WEIGHT_DECREASE: f64 = 0.5;
 
-/// Decrease of the cost, as a fraction of one squared standard deviation, below which the final
-/// steps end.
+/// Decrease of the cost, in squared standard deviations, below which the final steps end.
 pub const MIN_FINAL_DECREASE: f64 = 0.01;
 
-/// Difference for the quotient by a sensor unknown, as a fraction of its scale. The outputs are
-/// linear in it.
+/// Difference for the quotient with respect to a sensor unknown, as a fraction of its scale. The
+/// outputs are linear in sensor unknowns.
 pub const SENSOR_QUOTIENT_IN_SCALES: f64 = 0.1;
 
 // The catalogue.
@@ -426,19 +429,19 @@ pub const SENSOR_QUOTIENT_IN_SCALES: f64 = 0.1;
 /// Maximum size of an effects file of the user, in bytes: a thousand effects.
 pub const MAX_EFFECTS_FILE_BYTES: u64 = 1 << 20;
 
-/// Shaft orders, per turn, of candidates that repeat with an angle, in addition to numbers of
-/// teeth: those of unbalance, joints, small pinions and motor poles.
+/// Shaft orders, in periods per turn, of periodic candidates, in addition to numbers of teeth:
+/// orders of unbalance, joints, small pinions and motor poles.
 pub const SHAFT_ORDERS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, 24];
 
-/// Maximum order, per turn, in the spectrum of the residual force over an angle: more than twice
-/// the number of poles of usual motors.
+/// Maximum order, in periods per turn, in the spectrum of the residual force over an angle: more
+/// than twice the number of poles of usual motors.
 pub const MAX_SHAFT_ORDER: u32 = 48;
 
-/// Maximum number of orders from that spectrum, per angle, in addition to `SHAFT_ORDERS`.
+/// Maximum number of orders from the spectrum, per angle, in addition to `SHAFT_ORDERS`.
 pub const MAX_SPECTRUM_ORDERS: usize = 4;
 
-/// Maximum number of neighbouring orders that are fitted for a named wave. In a record of 1.2 turns the
-/// spectrum was two orders off.
+/// Maximum number of neighbouring orders that are fitted for a named wave. In a record of 1.2
+/// turns, the order of the spectral peak was wrong by two.
 pub const MAX_FOLLOWED_ORDERS: usize = 8;
 
 // Screening.
@@ -447,27 +450,29 @@ pub const MAX_FOLLOWED_ORDERS: usize = 8;
 /// compared with rounding.
 pub const LINEARISATION_ACCELERATION_CHANGE: f64 = 1e-4;
 
-/// Factors within which such a change is accepted.
+/// Factors within which the relative change of the accelerations is accepted.
 pub const LINEARISATION_CHANGE_FACTORS: Interval = Interval::new(0.1, 1e3);
 
-/// Factors between successive sizes within which the search for a size ends, so that results are
-/// independent of units.
+/// Ratio of successive sizes within which the search for a size ends. It is close to 1, so that
+/// results do not depend on units.
 pub const SAME_SIZE_FACTORS: Interval = Interval::new(1.0 - 1e-9, 1.0 + 1e-9);
 
-/// Stride of the samples of a window in that search.
+/// Stride of the samples of a window in the search for a size.
 pub const SIZE_SAMPLE_STRIDE: usize = 5;
 
 /// Output change of a simulated response, as a fraction of the residuals.
 pub const RESPONSE_OUTPUT_CHANGE: f64 = 0.3;
 
-/// Fractions of the predicted size from which a fit begins; the best is used. The linear prediction
-/// is too large if impacts fold the outputs, and too small for effects that saturate.
+/// Fractions of the predicted size from which a fit starts; the best start is used. The linear
+/// prediction is too large if impacts make the outputs irregular, and too small for effects that
+/// saturate.
 pub const INITIAL_SIZE_FRACTIONS: [f64; 5] = [1.0, 0.3, 0.1, 3.0, 10.0];
 
-/// Factors of the typical shape from which a fit is restarted.
+/// Factors of the typical shape from which a fit is started again.
 pub const SHAPE_RESTART_FACTORS: [f64; 2] = [0.4, 2.5];
 
-/// Maximum number of corrections of a size that is close to the target. Each costs a simulation.
+/// Maximum number of corrections of a size that is close to the target. Each correction costs a
+/// simulation.
 pub const MAX_SIZE_CORRECTIONS: usize = 2;
 
 /// Maximum number of attempts to find the size for a linearisation or simulation.
@@ -481,7 +486,7 @@ pub const RESPONSE_CHANGE_FACTORS: Interval = Interval::new(0.2, 5.0);
 
 // The residual force.
 
-/// Shaft orders, per turn, of the profile of a residual force.
+/// Shaft orders, in periods per turn, of the profile of a residual force.
 pub const FORCE_ORDERS: [u32; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 36];
 
 /// Maximum number of frequencies of the profile of a residual force.
@@ -490,7 +495,7 @@ pub const MAX_FORCE_FREQUENCIES: usize = 12;
 /// Number of knots of a force over a whole turn.
 pub const TURN_KNOTS: usize = 12;
 
-/// Rate difference across a turning point, as a fraction of the largest rate.
+/// Width of the transition at the reversal of the rate, as a fraction of the largest rate.
 pub const TURNING_RATE_FRACTION: f64 = 1e-3;
 
 /// Output change due to a trial force, as a fraction of the residuals.
@@ -502,11 +507,11 @@ pub const FIRST_FORCE_ACCELERATION_CHANGE: f64 = 1e-4;
 /// Factor within which the output change of a trial force is accepted.
 pub const FORCE_CHANGE_FACTOR: f64 = 10.0;
 
-/// Factor by which a force is reduced if its motion leaves the domain of the model.
+/// Factor by which a trial force is reduced if its motion leaves the domain of the model.
 pub const FORCE_REDUCTION_FACTOR: f64 = 1e3;
 
-/// Number of iterations for the variance of a force that differs between windows. It then changes
-/// by less than 1 %.
+/// Number of iterations for the variance of a force that differs between windows. After these
+/// iterations it changes by less than 1 %.
 pub const VARIANCE_ITERATIONS: usize = 12;
 
 /// Maximum standard deviation of a drawn point of a profile, as a fraction of the largest force.
@@ -515,7 +520,7 @@ pub const MAX_DRAWN_SD: f64 = 0.5;
 /// Minimum number of points of a drawn profile.
 pub const MIN_DRAWN_POINTS: usize = 2;
 
-/// Number of knots of a force over the rate on each side of rest.
+/// Number of knots of a force over the rate for each direction of motion.
 pub const RATE_KNOTS: usize = 5;
 
 /// Number of knots of a force over the position.
@@ -540,68 +545,71 @@ pub const MIN_SAMPLES_PER_PERIOD: f64 = 4.0;
 pub const MAX_PRODUCT_DEGREE: u32 = 3;
 
 /// Trial positions of a kink of a force over a position, on each side, as fractions of the largest
-/// position. The position itself is fitted.
+/// position. The position of the kink is fitted afterwards.
 pub const KINK_FRACTIONS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 
 /// Width of the smoothed sign over the rate, as a fraction of the largest rate. Measured friction
-/// near rest is rarely steeper, and a smooth factor can be multiplied.
+/// near zero rate is rarely steeper, and a smooth factor can be multiplied.
 pub const SIGN_WIDTH_FRACTION: f64 = 0.03;
 
 // The report.
 
 /// Remaining gap of a channel, in noise floors, above which the name of an effect is provisional.
-/// An end stop that was named as friction and a spring left 41.
+/// The gap was 41 when an end stop was named as friction and a spring.
 pub const MAX_FLOORS_FOR_CERTAINTY: f64 = 3.0;
 
-/// Maximum number of unknowns of named effects that leave a gap above the noise floor. The weight of a beam
-/// and its payload was imitated with six, to 1.3 floors.
+/// Maximum number of unknowns of named effects that do not reach the noise floor. Six unknowns
+/// imitated the weight of a beam and its payload, with a gap of 1.3 noise floors.
 pub const MAX_UNKNOWNS_ABOVE_FLOOR: usize = 3;
 
-/// Maximum gap of a channel for a correct model, in noise floors. Noise differs in each record.
+/// Maximum gap of a channel for a correct model, in noise floors. The noise of each record is
+/// different.
 pub const MAX_FLOORS_OF_CORRECT_MODEL: f64 = 1.5;
 
-/// Deviation of a nuisance from its prior, in standard deviations, that is noted: one in twenty is larger by chance. A
-/// constant force of 1 N on an axis with a spring left a bias of 2.5.
+/// Minimum noted deviation of a nuisance from its prior, in standard deviations. One in twenty is
+/// larger by chance. A constant force of 1 N on an axis with a spring caused a bias of 2.5.
 pub const MIN_NOTED_PRIOR_DEVIATION: f64 = 2.0;
 
-/// Fraction of `MAX_PRIOR_DEVIATION` above which a nuisance is at its bound, because estimates end
-/// within rounding of it.
+/// Fraction of `MAX_PRIOR_DEVIATION` above which a nuisance is at its bound, because estimates
+/// reach the bound only within rounding.
 pub const BOUND_FRACTION: f64 = 0.99;
 
 /// Minimum ratio of the smallest to the largest delay of channels with a common delay.
 pub const MIN_DELAY_RATIO: f64 = 0.9;
 
-/// Lead of a channel, in sample intervals, that held inputs explain: half an interval, with its
+/// Lead of a channel that held inputs explain, in sample intervals: half an interval with its
 /// uncertainty.
 pub const HALF_INTERVAL_LEAD: std::ops::Range<f64> = 0.35..0.65;
 
-/// Minimum lead of a channel, in its standard deviations.
+/// Minimum lead of a channel, in standard deviations of its estimate.
 pub const MIN_LEAD_DEVIATIONS: f64 = 3.0;
 
-/// Minimum fraction of samples at which an input changes, of an input that changes continuously.
+/// Minimum fraction of samples at which an input changes if it is treated as continuous.
 pub const MIN_CHANGING_FRACTION: f64 = 0.5;
 
-/// Minimum change of an estimate, in its standard deviations, that is written back if no effect was
-/// found. With an effect, all estimates are written because they were estimated together.
+/// Minimum change of an estimate that is written back if no effect was found, in standard
+/// deviations of the estimate. With an effect, all estimates are written because they were
+/// estimated together.
 pub const MIN_WRITTEN_CHANGE_IN_SD: f64 = 0.5;
 
-/// Ratio of a spectral line to the mean of the others above which it is a peak, divided by the root
-/// of the number of windows. One spectrum of white noise in about a thousand has such a line.
+/// Minimum ratio of a spectral peak to the mean of the other lines, before division by the root of
+/// the number of windows. One spectrum of white noise in about a thousand has such a line.
 pub const MIN_SPECTRAL_PEAK_RATIO: f64 = 10.0;
 
-/// First line of the spectrum of a window that is interpreted as a frequency. Fewer periods cannot
-/// be distinguished from drift, which detrending and the taper spread.
+/// First line of the spectrum of a window that is interpreted as a frequency. Fewer periods per
+/// window cannot be distinguished from drift, which detrending and the taper spread over the first
+/// lines.
 pub const FIRST_SPECTRAL_LINE: usize = 3;
 
 /// Minimum reported ratio between the residuals of slow and of fast motion.
 pub const MIN_SPEED_RATIO: f64 = 1.5;
 
-/// Ratio of the RMS of the joint fit to that of the fit of each single record, above which records
+/// Ratio of the RMS of the joint fit to the RMS of the fits of single records, above which records
 /// contradict each other. A missing effect changes the parameters slightly in each record.
 pub const MIN_CONTRADICTION_RATIO: f64 = 2.0;
 
-/// Minimum relative difference of the values in records that contradict each other. One machine
-/// varies by less between two days.
+/// Minimum relative difference of the values in contradicting records. The parameters of one
+/// machine vary by less between two days.
 pub const MIN_CONTRADICTION_DIFFERENCE: f64 = 0.1;
 
 // The next experiment.
@@ -610,31 +618,31 @@ pub const MIN_CONTRADICTION_DIFFERENCE: f64 = 0.1;
 /// standard deviations of the noise: three noise floors.
 pub const MIN_SEPARATION_IN_NOISE: f64 = 3.0;
 
-/// Maximum number of samples of an experiment without a given duration. A hundred experiments are
-/// simulated.
+/// Maximum number of samples of an experiment without a given duration. It limits the cost, because
+/// a hundred experiments are simulated.
 pub const MAX_EXPERIMENT_SAMPLES: f64 = 4000.0;
 
-/// Maximum mean number of solver steps, and of switching surface crossings, per sample of an
-/// experiment. Slower inputs, such as a load that a machine holds by friction, are skipped;
-/// rattling teeth cross a few surfaces per sample.
+/// Maximum mean number of solver steps, and of switches, per sample of an experiment. Experiments
+/// with a slower simulation are skipped, such as a load that is held by friction. Rattling teeth
+/// cause a few switches per sample.
 pub const MAX_EXPERIMENT_STEPS_PER_SAMPLE: usize = 20;
 
 /// Trial amplitudes of an input, as fractions of its range. Large amplitudes may violate the
 /// limits.
 pub const EXPERIMENT_AMPLITUDES: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.05, 0.02];
 
-/// Maximum number of expanded terms of the rate of a spring or damper that is compared. Rates of
-/// real machines have a handful of terms.
+/// Maximum number of expanded terms in a compared rate of a spring or damper. Rates of real
+/// machines have a handful of terms.
 pub const MAX_RATE_TERMS: usize = 64;
 
-/// Maximum power in such a rate.
+/// Maximum power in a compared rate of a spring or damper.
 pub const MAX_RATE_POWER: u8 = 8;
 
 /// Fraction of the power of a recorded input that defines its frequency band.
 pub const RECORDED_POWER_FRACTION: f64 = 0.99;
 
-/// Fraction of the recorded range by which a channel may exceed it: records of one motion differ
-/// this much.
+/// Fraction of the recorded range by which a channel of an experiment may exceed this range:
+/// records of one motion differ by as much.
 pub const LIMIT_MARGIN_FRACTION: f64 = 0.05;
 
 /// Number of experiments, the best by linear prediction, for which the rivals are fitted again.
@@ -644,56 +652,59 @@ pub const MAX_REFITTED_EXPERIMENTS: usize = 3;
 /// `MIN_SEPARATION_IN_NOISE` less the error of the linearisation.
 pub const MIN_LINEAR_SEPARATION: f64 = 2.0;
 
-/// Maximum number of untestable effects for which an experiment is searched. The experiment of one
-/// often shows the next.
+/// Maximum number of untestable effects for which an experiment is searched. The experiment for one
+/// effect often shows the next.
 pub const MAX_DETECTION_SEARCHES: usize = 3;
 
-/// Output change of an effect of small size, in standard deviations of the noise. The linearisation
-/// holds there.
+/// Output change of a small effect, in standard deviations of the noise. The linearisation is valid
+/// for it.
 pub const SMALL_EFFECT_IN_NOISE: f64 = 3.0;
 
-/// Factors within which that size is accepted.
+/// Factors within which the output change of a small effect is accepted.
 pub const SMALL_EFFECT_FACTORS: Interval = Interval::new(1.0, 10.0);
 
-/// Maximum number of steps of such a fit. A rival that is not fully converged would appear to be
-/// separated.
+/// Maximum number of steps of the fit of a rival. A rival that is not fully converged would appear
+/// to be separated.
 pub const MAX_REFIT_STEPS: usize = 30;
 
-/// Successive trial fractions of a step of that fit.
+/// Successive trial fractions of a step of the fit of a rival.
 pub const REFIT_STEP_FRACTIONS: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
 
-/// Maximum number of Newton steps for the inputs of a given motion. One step suffices if second
-/// derivatives are linear in the inputs.
+/// Maximum number of Newton steps for the inputs of a given motion. One step suffices if the
+/// accelerations are linear in the inputs.
 pub const MAX_INVERSE_DYNAMICS_STEPS: usize = 12;
 
-/// Minimum difference for the quotient by such an input, as a fraction of the input. Otherwise the
-/// difference is the noise of its sensor.
+/// Minimum difference for the quotient with respect to an input of a given motion, as a fraction of
+/// the input.
 pub const MIN_INVERSE_DYNAMICS_QUOTIENT: f64 = 1e-6;
 
-/// Maximum relative error of the second derivatives at these inputs: far above rounding in a
-/// regular system, far below the resolution of any sensor.
+/// Maximum relative error of the accelerations at the inputs of a given motion: far above rounding
+/// in a regular system, far below the resolution of any sensor.
 pub const MAX_INVERSE_DYNAMICS_ERROR: f64 = 1e-9;
 
-/// Maximum number of samples of the reference motion of all training records; half as many of the
-/// test records. A scan of a law takes about a second for these.
+/// Maximum number of samples of the reference motion of all training records; half as many for the
+/// test records. With these samples, the scan of a law takes about a second.
 pub const MAX_REFERENCE_SAMPLES: usize = 3000;
 
-/// Steps of an unknown acceleration from sample to sample that a smoother tries, in usual
-/// accelerations; the likeliest is used.
+/// Trial standard deviations of the change of an unknown acceleration from sample to sample, in
+/// usual accelerations; the likeliest is used.
 pub const ACCELERATION_STEPS: [f64; 3] = [0.02, 0.2, 1.0];
 
-/// Least usual acceleration of a state: it moves the state through this part of its range in a sample.
+/// Least usual acceleration of a state. It moves the state through this fraction of its range in
+/// one sample interval.
 pub const MIN_ACCELERATION_IN_RANGES: f64 = 1e-3;
 
-/// Step of difference quotients by a state along a reference motion, in ranges of the state.
+/// Step of difference quotients with respect to a state along a reference motion, in ranges of the
+/// state.
 pub const REFERENCE_QUOTIENT_IN_RANGES: f64 = 1e-6;
 
-/// Step of the difference quotient by an added state, relative to the state and its change.
+/// Step of the difference quotient with respect to an added state, relative to the state and its
+/// change.
 pub const ADDED_STATE_QUOTIENT: f64 = 1e-4;
 
-/// Length of a segment of a reference motion, in windows. In a longer segment errors of the
-/// reference motion are integrated twice: a friction that yields by 0.1 mm leaves 40 floors over
-/// whole windows of 0.5 s.
+/// Length of a segment of a reference motion, in windows. In a longer segment, errors of the
+/// reference motion are integrated twice. For friction that yields by 0.1 mm, the residual over
+/// whole windows of 0.5 s was 40 noise floors.
 pub const SEGMENT_FRACTION: f64 = 0.2;
 
 /// Minimum number of samples of a segment.
@@ -702,41 +713,44 @@ pub const MIN_SEGMENT_SAMPLES: usize = 12;
 /// Decades around its typical size over which a shape is scanned.
 pub const SHAPE_SCAN_DECADES: (f64, f64) = (-3.0, 1.0);
 
-/// Decades around its typical size over which the only size of a law is scanned.
+/// Decades around the typical size over which a law with a single parameter is scanned.
 pub const SIZE_SCAN_DECADES: (f64, f64) = (-6.0, 4.0);
 
-/// Scanned values per decade.
+/// Number of scanned values per decade.
 pub const SCANNED_VALUES_PER_DECADE: f64 = 4.0;
 
-/// Halvings of the ratio of scanned values around the best one.
+/// Number of refinements around the best scanned value; each halves the logarithmic interval.
 pub const SCAN_REFINEMENTS: usize = 4;
 
-/// Number of knots of a curve. It resolves a twentieth of the range, less around zero.
+/// Number of knots of a curve. They resolve a twentieth of the range, and less around zero.
 pub const CURVE_KNOTS: usize = 21;
 
 /// Fraction of the samples beyond the knots of a curve at each end.
 pub const CURVE_TAIL: f64 = 0.002;
 
-/// Penalty of the level of a curve relative to that of its bends: small, but proper.
+/// Penalty on the level of a curve relative to the penalty on its second differences: small, but
+/// large enough for a positive definite matrix.
 pub const CURVE_LEVEL_PENALTY: f64 = 1e-4;
 
-/// Decades of the penalty of a curve, relative to the information of the records.
+/// Decades over which the penalty of a curve is tried, relative to the information of the records.
 pub const CURVE_PENALTY_DECADES: (f64, f64) = (-10.0, 2.0);
 
-/// Correlation of residuals below which further lags do not count.
+/// Correlation of residuals at which the sum over lags ends.
 pub const MIN_LAG_CORRELATION: f64 = 0.05;
 
-/// Ratio to the smallest residual of scanned laws up to which a law is fitted.
+/// Maximum ratio of the residual of a scanned law to the smallest residual of all scanned laws for
+/// which the law is fitted.
 pub const MAX_SCANNED_RIVAL_RATIO: f64 = 2.0;
 
-/// Maximum number of evaluations of the rates in the fit of a scanned law, per training sample. The fit
-/// of Dahl friction needs 10,000, and 50,000 to 200,000 on a record without noise.
+/// Maximum number of evaluations of the rates in the fit of a scanned law, per training sample. The
+/// fit of Dahl friction needs 10,000, on a record without noise 50,000 to 200,000.
 pub const MAX_FIT_EVALUATIONS_PER_SAMPLE: u64 = 200_000;
 
-/// Maximum ratio of the held-out residual of a curve to its training residual: a wrong pair leaves
-/// 2 to 26 times as much.
+/// Maximum ratio of the held-out residual of a curve to its training residual. For a wrong pair the
+/// ratio was 2 to 26.
 pub const MAX_HELD_OUT_RATIO: f64 = 1.5;
 
-/// Maximum fraction of the residual that an adequate curve leaves, and of the gap to the noise floor that
-/// a law leaves along the reference motion. A right law leaves up to 0.06 (a stop).
+/// Maximum remaining fraction of the residual with an adequate curve. Also the maximum remaining
+/// fraction of the gap to the noise floor with a law, along the reference motion. With a correct
+/// law, up to 0.06 remained (a stop).
 pub const MAX_LEFT_BY_CURVE: f64 = 0.3;

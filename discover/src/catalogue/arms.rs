@@ -1,4 +1,4 @@
-//! Flexible bodies of a model: fields whose deflection is a length, with their distributed mass.
+//! Flexible bodies of a model: fields with distributed mass whose deflection is a length.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use crate::catalogue::stiffness::find_stiffness;
 /// Returns the flexible bodies of a model.
 pub(super) fn find_arms(model: &Model) -> Vec<Site> {
     let arm = |term: &Term| {
-        // Distributed mass only; a mass at the end of the body is a separate term.
+        // Only distributed mass identifies the body; a mass at its end is a separate term.
         let velocity = find_square(
             find_integrand(&term.value)?,
             &|part| matches!(&part.kind, ExprKind::Dot(of) if matches!(of.kind, ExprKind::Field(_))),
@@ -40,7 +40,7 @@ pub(super) fn find_arms(model: &Model) -> Vec<Site> {
             .iter()
             .find_map(|term| find_stiffness(model, &term.value, &bent));
         let declared = &model.fields[field];
-        // Masses, springs and bending at an end are of a deflection: a shaft that twists has none.
+        // Effects at the end of a body act on a deflection; the twist of a shaft is an angle.
         if declared.unit.dimension != Dimension::LENGTH {
             return None;
         }
@@ -81,14 +81,14 @@ fn find_integrand(expr: &Expr) -> Option<&Expr> {
     }
 }
 
-/// Returns true if an expression holds a field.
+/// Returns true if an expression contains a field.
 fn holds_field(expr: &Expr, field: FieldId) -> bool {
     let mut found = false;
     expr.visit(&mut |part| found |= part.kind == ExprKind::Field(field));
     found
 }
 
-/// The distance of a body's end from its root.
+/// Returns the distance between the root and the end of a body.
 fn lever(model: &Model, from: &Expr, to: &Expr) -> String {
     match from.kind {
         ExprKind::Number(0.0) => format_expression(model, to),
@@ -100,7 +100,7 @@ fn lever(model: &Model, from: &Expr, to: &Expr) -> String {
     }
 }
 
-/// The base of a square that holds something wanted.
+/// Returns the base of the first square that contains a part with `wanted`.
 fn find_square<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Option<&'m Expr> {
     let holds = |expr: &Expr| {
         let mut found = false;

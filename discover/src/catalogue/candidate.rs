@@ -22,17 +22,17 @@ use crate::model::specification_texts::{SpecificationTexts, edited_source};
 use crate::model::unknowns::{UnknownKind, bounds_with_sign};
 use crate::thresholds;
 
-/// Effect name of a shifted parameter.
+/// Name of the effect that shifts a parameter.
 pub const PARAMETER_SHIFT: &str = "parameter_shift";
 
-/// An effect at a site.
+/// Effect at a site.
 #[derive(Clone, Debug)]
 pub struct Candidate {
     /// Name of the effect.
     pub effect: String,
     /// Name of the site.
     pub site: String,
-    /// Angle and order, per turn, of a periodic effect.
+    /// Angle and order, in periods per turn, of a periodic effect.
     pub angle_order: Option<(String, u32)>,
     /// Name of the spring or mesh whose load scales the effect.
     pub load: Option<String>,
@@ -40,23 +40,21 @@ pub struct Candidate {
     pub on_mesh: bool,
     /// Stiffness parameter of an effect that only scales a stiffness.
     pub scaled_stiffness: Option<String>,
-    /// Parameters of the effect.
     pub parameters: Vec<CandidateParameter>,
-    /// Description of the effect.
     pub description: String,
     /// Experiment that shows the effect best.
     pub experiment: String,
     pub(crate) changes: Vec<Edit>,
-    /// Changes for the linear part of the model, if the effect states the part of a force that is
+    /// Edits for the linear part of the model, if the effect declares which part of its force is
     /// linear between switches.
     pub(crate) linear_changes: Option<Vec<Edit>>,
-    /// Main line of the change.
+    /// Added line that represents the effect in reports.
     pub term: String,
-    /// Unknown of the null model that loses its prior, if that is the effect.
+    /// Unknown of the null model whose prior is removed, if this is the effect.
     pub dropped_prior: Option<UnknownKind>,
 }
 
-/// Multiple of the typical size at which a parameter counts as infinite.
+/// Multiple of the typical size that represents infinity.
 pub(super) const NEARLY_INFINITE_FACTOR: f64 = 1e12;
 
 /// Parameter of a candidate.
@@ -70,12 +68,12 @@ pub struct CandidateParameter {
     pub is_positive: bool,
     /// True if the effect vanishes at infinity instead of 0.
     pub is_inverse: bool,
-    /// Initial size of a shape parameter, which does not scale the effect.
+    /// Initial value of a shape parameter, which does not scale the effect.
     pub shape_size: Option<f64>,
-    /// Reference value and bounds of a parameter that exists already or that is not 0 without the
-    /// effect.
+    /// Reference value and bounds of a parameter that exists already, or whose value without the
+    /// effect is not 0.
     pub offset: Option<ParameterOffset>,
-    /// Typical size in the unit of the parameter, SI.
+    /// Typical size, SI.
     pub typical_size: f64,
     pub(crate) doc: String,
 }
@@ -87,14 +85,14 @@ pub struct ParameterOffset {
     pub reference: f64,
     /// Admissible values, SI.
     pub bounds: Interval,
-    /// The number of its units that one SI unit is.
+    /// Value of one SI unit in the unit of the parameter.
     per_si: f64,
-    /// True if the effect brings the parameter with it.
+    /// True if the effect adds the parameter.
     is_new: bool,
 }
 
 impl ParameterOffset {
-    /// Describes a parameter that an effect adds with this value if the effect is absent.
+    /// Describes a parameter that an effect adds. `from`: its value without the effect.
     pub(crate) fn with_reference(from: f64, bounds: Interval) -> Self {
         Self {
             reference: from,
@@ -144,7 +142,7 @@ impl CandidateParameter {
 }
 
 impl Candidate {
-    /// Returns effect and site, with order or load if there are several.
+    /// Returns effect and site, followed by the order or the load if there are several.
     pub fn label(&self) -> String {
         let plain = format!("{} on {}", self.effect, self.site);
         match (&self.angle_order, &self.load) {
@@ -162,7 +160,7 @@ impl Candidate {
             || faults.contains(&self.effect.as_str())
     }
 
-    /// Returns true if one candidate shifts the stiffness that the other scales. Both are one
+    /// Returns true if one candidate shifts the stiffness that the other scales. They are the same
     /// effect if the stiffness belongs to a single spring.
     pub(crate) fn is_alias_of(&self, other: &Self) -> bool {
         let shifts = |one: &Self, other: &Self| {
@@ -171,16 +169,16 @@ impl Candidate {
         shifts(self, other) || shifts(other, self)
     }
 
-    /// Returns true if effect and site are equal, at any order.
+    /// Returns true if effect and site are equal; the orders may differ.
     pub fn is_same_effect_as(&self, other: &Self) -> bool {
         (&self.effect, &self.site) == (&other.effect, &other.site)
     }
 
-    /// Returns a specification with the effect at these values of its parameters.
+    /// Returns a specification with the effect at these parameter values.
     ///
     /// # Errors
     ///
-    /// An edit whose place is missing in the text.
+    /// An edit whose old text is missing in the specification.
     pub fn write_effect(
         &self,
         text: &str,
@@ -191,7 +189,7 @@ impl Candidate {
         self.write_changes(&self.changes, text, name, values, source)
     }
 
-    /// Returns a specification with these changes and the parameters of the effect.
+    /// Returns a specification with the given edits and the parameters of the effect.
     fn write_changes(
         &self,
         changes: &[Edit],
@@ -208,11 +206,11 @@ impl Candidate {
         edit::apply(&edited_source(name, text), &edits)
     }
 
-    /// Returns the specification and its linear part with the effect at these values.
+    /// Returns the specification and its linear part with the effect at these parameter values.
     ///
     /// # Errors
     ///
-    /// An edit whose place is missing in the text.
+    /// An edit whose old text is missing in the specification.
     pub fn add_to_texts(
         &self,
         problem: &EstimationProblem<'_>,
@@ -223,7 +221,7 @@ impl Candidate {
             self.write_changes(changes, text, &problem.path, values, "")
         };
         let extended = written(&self.changes, &texts.full)?;
-        // Terms that are linear between switches belong to the linear part.
+        // Added terms that are linear between switches are part of the linear part too.
         let linear = written(
             self.linear_changes.as_ref().unwrap_or(&self.changes),
             &texts.linear,
@@ -239,7 +237,7 @@ impl Candidate {
     }
 }
 
-/// Returns the candidates for a model. `motion`: known motion of the sites.
+/// Returns the candidates of a model. `motion`: known motion at the sites.
 pub fn list_candidates<'e>(
     model: &Model,
     effects: impl IntoIterator<Item = &'e Effect>,
@@ -290,8 +288,8 @@ fn fits(wanted: SiteKind, there: SiteKind) -> bool {
     wanted == there || (wanted == SiteKind::Axis && there == SiteKind::Angle)
 }
 
-/// The usual shaft orders, those seen in the residual force, and the model's own numbers of teeth:
-/// whole numbers without a unit.
+/// Returns the usual shaft orders, the orders `seen` in the residual force, and the numbers of
+/// teeth of the model: whole numbers without a unit.
 fn orders(model: &Model, seen: &[u32]) -> Vec<u32> {
     let mut orders = [&thresholds::SHAFT_ORDERS[..], seen].concat();
     for parameter in &model.parameters {
@@ -418,14 +416,14 @@ pub fn drop_prior(
     }
 }
 
-/// Returns the candidate that shifts a parameter without a declared uncertainty; `None` if the
-/// parameter is 0 or not a number.
+/// Returns the candidate that shifts an undeclared parameter; `None` if the parameter is 0 or an
+/// expression.
 pub fn shift_parameter(parameter: &Parameter) -> Option<Candidate> {
     let ParameterValue::Number(from) = parameter.value else {
         return None;
     };
     let is_count = parameter.unit.text == "1" && from.fract() == 0.0;
-    // No effect on motions that satisfy the constraints.
+    // The stabilisation rate has no effect on motions that satisfy the constraints.
     let is_stabilisation = parameter.name == STABILISATION_RATE;
     if from == 0.0 || is_count || is_stabilisation {
         return None;
@@ -459,7 +457,7 @@ pub fn shift_parameter(parameter: &Parameter) -> Option<Candidate> {
     })
 }
 
-/// Returns the names that are used in the model.
+/// Returns the names of all quantities of the model.
 pub(crate) fn names_in_use(model: &Model) -> Vec<String> {
     let lists = [
         model
@@ -482,7 +480,7 @@ pub(crate) fn names_in_use(model: &Model) -> Vec<String> {
     lists.concat()
 }
 
-/// `N m s` for `N m s/rad`: an angle counts as a number.
+/// Replaces `N m s/rad` by `N m s`, because angles have no unit of their own.
 fn plain_unit(unit: &str) -> String {
     let powers = ["/rad^3", "/rad^2", "/rad"];
     powers

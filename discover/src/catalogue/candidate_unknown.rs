@@ -1,4 +1,4 @@
-//! Parameters of candidates as unknowns of an estimation.
+//! Parameters of candidates as unknowns of a fit.
 
 use crate::catalogue::candidate::{CandidateParameter, NEARLY_INFINITE_FACTOR};
 use crate::interval::Interval;
@@ -8,11 +8,11 @@ use crate::thresholds;
 /// Parameter of a candidate with bounds and trial size, SI.
 #[derive(Clone, Debug)]
 pub struct CandidateUnknown {
-    /// The unknown.
+    /// Unknown of the fit.
     pub unknown: Unknown,
     /// Value without the effect, SI.
     pub base: f64,
-    /// True if the parameter shapes the effect without scaling it. Its value is then fixed.
+    /// True for a shape parameter, which does not scale the effect and is fixed.
     pub is_shape: bool,
 }
 

@@ -33,17 +33,17 @@ const ADDED: [(&str, Added); 7] = [
 #[derive(Clone, Copy)]
 enum Replaced {
     Kinetic,
-    /// In the terms of a site of this kind.
+    /// Terms of a site of the given kind.
     Site(SiteKind),
-    /// In the dampers parallel to a spring.
+    /// Dampers parallel to a spring.
     Dampers,
     Measured,
-    /// In every occurrence of an input.
+    /// All occurrences of an input.
     Input,
 }
 
 impl Replaced {
-    /// Returns the only kind of site at which this scope exists, if there is one.
+    /// Returns the kind of site that this scope requires, if any.
     fn site(self) -> Option<SiteKind> {
         match self {
             Self::Site(kind) => Some(kind),
@@ -166,7 +166,7 @@ fn addition(
     })
 }
 
-/// Reads the unit of the added quantity.
+/// Reads the unit of an added quantity.
 fn unit(
     record: &Record<'_>,
     placeholders: &mut Placeholders,
@@ -177,7 +177,7 @@ fn unit(
     Some(unit.text)
 }
 
-/// Reads the description of the added quantity.
+/// Reads the description of an added quantity.
 fn doc(record: &Record<'_>, found: &mut Diagnostics) -> Option<String> {
     Some(read_text(record, "doc", "\"description of the quantity\"", found)?.text)
 }
@@ -195,7 +195,7 @@ fn substitution(
         }
     };
     let record = Record::read_with(entry, known, "{ substitute = \"mesh\", ... }", found)?;
-    // Nothing else fills this one.
+    // The placeholder of the damper is defined only in this scope.
     if let Replaced::Dampers = within {
         placeholders.known.push(DAMPER_PLACEHOLDER.to_owned());
     }

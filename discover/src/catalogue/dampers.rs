@@ -1,5 +1,5 @@
-//! Dampers parallel to a spring: parts `1/2*d*dot(p)^2` of the dissipation and `-d*dot(p)` of a
-//! force on `p`. Their rate is proportional to that of the deflection, in any notation.
+//! Dampers parallel to a spring: summands `1/2*d*dot(p)^2` of the dissipation and `-d*dot(p)` of a
+//! force on `p`. Their rate is proportional to the rate of the deflection, in any notation.
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::edit::Section;
@@ -48,8 +48,8 @@ pub(super) fn find_dampers(model: &Model, deflection: &Expr) -> Vec<Damper> {
     found
 }
 
-/// Returns true if a force acts on a deflection of this rate, and is no component of a vector, which a
-/// specification names otherwise.
+/// Returns true if a force acts on a deflection with the given rate. Components of vectors are
+/// excluded, because the specification names them differently.
 fn acts_along(model: &Model, force: &Force, rate: &Polynomial) -> bool {
     let named = model.source.text.get(force.span.start..force.span.end);
     let on = || Polynomial::from_expression(model, &force.on)?.differentiate();
@@ -66,7 +66,7 @@ fn split_terms(value: &Expr) -> Vec<&Expr> {
     }
 }
 
-/// The only factor of a product that is not fixed.
+/// Returns the only variable factor of a product.
 fn moving_factor<'m>(model: &Model, product: &'m Expr) -> Option<&'m Expr> {
     let is_fixed = |expr: &Expr| is_constant(model, expr, &mut Vec::new());
     match &product.kind {

@@ -7,13 +7,13 @@ use eomgen_model_spec::edit::Section;
 pub struct Effect {
     /// Name in results.
     pub name: String,
-    /// Kind of its sites.
+    /// Kind of site at which the effect can act.
     pub site_kind: SiteKind,
-    /// Description, as the end of a sentence.
+    /// Description, which completes a sentence.
     pub description: String,
-    /// Experiment that shows it best.
+    /// Experiment that shows the effect best.
     pub experiment: String,
-    /// True if the effect is periodic in an angle and tried at several shaft orders.
+    /// True if the effect is periodic in an angle; it is tried at several shaft orders.
     pub has_orders: bool,
     /// True if the effect is tried with the load of each spring or mesh.
     pub has_loads: bool,
@@ -21,35 +21,35 @@ pub struct Effect {
     pub parameters: Vec<EffectParameter>,
     /// Edits, at least one.
     pub edits: Vec<Change>,
-    /// True if the effect is from a file of the user.
+    /// True if the effect is defined in a user's file.
     pub is_user_defined: bool,
 }
 
-/// Returns names of effects in words, such as `Coulomb friction` for `coulomb_friction`.
+/// Converts the names of effects to words, for example `coulomb_friction` to `Coulomb friction`.
 pub fn effect_in_words(name: &str) -> String {
     let name = name.replace("coulomb_", "Coulomb ");
     name.replace("stribeck_", "Stribeck ").replace('_', " ")
 }
 
-/// Placeholder of the term of a damper in edits that replace it.
+/// Placeholder for the term of a damper in edits that replace this term.
 pub const DAMPER_PLACEHOLDER: &str = "damper";
 
 /// Kind of a site.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SiteKind {
-    /// A movable angle or position.
+    /// Angle or position that can move.
     Axis,
-    /// An angle.
+    /// Angle.
     Angle,
-    /// A pair of teeth with play.
+    /// Pair of teeth with play.
     Mesh,
-    /// A flexible body.
+    /// Flexible body.
     Arm,
-    /// A linear spring.
+    /// Linear spring.
     Spring,
-    /// An input.
+    /// Input.
     Input,
-    /// The whole machine.
+    /// Whole machine.
     Machine,
 }
 
@@ -60,9 +60,9 @@ impl Effect {
         self.edits.iter().any(adds)
     }
 
-    /// Returns true if a linearisation at one size or shape does not show the effect, so that only a
-    /// scan finds it: a memory with a shape, such as the yielding of bristles, or a dead zone of an
-    /// input. An effect of the user is always tested.
+    /// Returns true if only a scan finds the effect, because a linearisation at one size or shape
+    /// does not show it. Examples are friction with memory and the dead zone of an input. A
+    /// user-defined effect is always tested.
     pub fn is_only_scanned(&self) -> bool {
         let adds_state = |edit: &Change| matches!(edit, Change::State { .. });
         let has_shape = |parameter: &EffectParameter| parameter.shape.is_some();
@@ -72,7 +72,7 @@ impl Effect {
         !self.is_user_defined && (has_memory || has_dead_zone)
     }
 
-    /// Returns true if the effect states a part of a force that is linear between switches.
+    /// Returns true if the effect declares which part of a force is linear between switches.
     pub(super) fn states_linear_part(&self) -> bool {
         let states = |edit: &Change| {
             matches!(
@@ -86,8 +86,8 @@ impl Effect {
         self.edits.iter().any(states)
     }
 
-    /// Returns true if the effect only scales the stiffness of a spring. A shifted parameter does
-    /// the same.
+    /// Returns true if the effect only scales the stiffness of a spring, as a shifted parameter
+    /// does.
     pub fn scales_stiffness(&self) -> bool {
         let scales = |edit: &Change| matches!(edit, Change::Substitution { scope: SubstitutionScope::Site, pattern, .. } if pattern == "{k}");
         self.site_kind == SiteKind::Spring && self.edits.iter().all(scales)
@@ -95,7 +95,7 @@ impl Effect {
 }
 
 impl SiteKind {
-    /// Kinds by their keywords in a file.
+    /// Kinds and their keywords in an effects file.
     pub const KEYWORDS: [(&'static str, Self); 7] = [
         ("axis", Self::Axis),
         ("angle", Self::Angle),
@@ -106,8 +106,8 @@ impl SiteKind {
         ("machine", Self::Machine),
     ];
 
-    /// Returns the placeholders of a site of this kind. `{root}`, `{stiffness}`, the `{k}` of a
-    /// spring and each moment of a machine exist only at some sites.
+    /// Returns the placeholders of a kind of site. Some sites have no `{root}`, no `{stiffness}`,
+    /// no `{k}` of a spring, or not all moments of a machine.
     pub fn placeholders(self) -> &'static [&'static str] {
         match self {
             Self::Axis | Self::Angle => &["on", "unit", "force"],
@@ -132,7 +132,7 @@ impl SiteKind {
 /// Parameter of an effect.
 #[derive(Clone, Debug)]
 pub struct EffectParameter {
-    /// Name; a suffix is added if the name is used already.
+    /// Name; if it is in use, a suffix is added.
     pub name: String,
     /// Unit, with placeholders.
     pub unit: String,
@@ -142,20 +142,20 @@ pub struct EffectParameter {
     pub doc: String,
     /// True if the effect vanishes at infinity instead of 0.
     pub is_inverse: bool,
-    /// Initial size of a parameter that shapes the effect without scaling it.
+    /// Initial value of a shape parameter.
     pub shape: Option<Shape>,
 }
 
-/// Initial size of a shape parameter: a fraction of the motion of the site.
+/// Initial value of a shape parameter as a fraction of the motion at the site.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
     /// Quantity that sets the scale.
     pub quantity: ShapeScale,
-    /// Fraction of that quantity.
+    /// Fraction of the quantity.
     pub fraction: f64,
 }
 
-/// Quantity of the motion of a site.
+/// Quantity of the motion at a site.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShapeScale {
     /// Usual rate.
@@ -169,7 +169,7 @@ pub enum ShapeScale {
 }
 
 impl ShapeScale {
-    /// Scales by their keywords in a file.
+    /// Scales and their keywords in an effects file.
     pub const KEYWORDS: [(&'static str, Self); 4] = [
         ("rate", Self::Rate),
         ("travel", Self::Travel),
@@ -178,10 +178,10 @@ impl ShapeScale {
     ];
 }
 
-/// A change of the specification.
+/// Edit of the specification.
 #[derive(Clone, Debug)]
 pub enum Change {
-    /// A term of an energy or of the dissipation.
+    /// Adds a term to an energy or to the dissipation.
     Term {
         /// Section of the term.
         section: Section,
@@ -190,26 +190,26 @@ pub enum Change {
         /// Expression.
         value: String,
     },
-    /// A definition for other changes.
+    /// Adds a definition for use in other edits.
     Definition {
         /// Name, which is also a placeholder of the effect.
         name: String,
         /// Expression.
         value: String,
     },
-    /// A force.
+    /// Adds a force.
     Force {
         /// Name.
         name: String,
-        /// Expression that the force acts on.
+        /// Expression on which the force acts.
         target: String,
         /// Expression.
         value: String,
-        /// Part of the expression that is linear between switches, if it is stated. The rest is
-        /// continuous where the expression switches.
+        /// Declared part of the expression that is linear between switches. The rest must be
+        /// continuous at the switches.
         linear: Option<String>,
     },
-    /// A coordinate.
+    /// Adds a coordinate.
     Coordinate {
         /// Name, which is also a placeholder of the effect.
         name: String,
@@ -218,7 +218,7 @@ pub enum Change {
         /// Description.
         doc: String,
     },
-    /// A state of first order.
+    /// Adds a first-order state.
     State {
         /// Name, which is also a placeholder of the effect.
         name: String,
@@ -229,9 +229,9 @@ pub enum Change {
         /// Description.
         doc: String,
     },
-    /// A substitution.
+    /// Replaces an expression.
     Substitution {
-        /// Terms in which expressions are replaced.
+        /// Terms in which the expression is replaced.
         scope: SubstitutionScope,
         /// Replaced expression.
         pattern: String,
@@ -241,8 +241,8 @@ pub enum Change {
 }
 
 impl Change {
-    /// Returns the change with the part of its expression that is linear between switches, if that
-    /// is stated; otherwise the change itself.
+    /// Returns the edit with the linear part of its expression, or the unchanged edit if no linear
+    /// part is declared.
     pub(super) fn linear_part(&self) -> Self {
         match self {
             Self::Force {
@@ -264,7 +264,7 @@ impl Change {
 /// Terms in which an expression is replaced.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SubstitutionScope {
-    /// These terms of the kinetic energy.
+    /// Named terms of the kinetic energy.
     Kinetic(Vec<String>),
     /// All terms of a mesh or of a spring, or the kinetic energy of a body and its load.
     Site,

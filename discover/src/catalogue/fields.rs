@@ -1,4 +1,4 @@
-//! Readers of texts, lists and new names in a file of effects.
+//! Readers of texts, lists and new names in an effects file.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
 use eomgen_model_spec::quantity::StringValue;

@@ -1,5 +1,5 @@
-//! Reader of a file of effects. All keywords, keys and placeholders are checked here; the effect on
-//! a specification is checked at each site.
+//! Reader of an effects file. It checks all keywords, keys and placeholders; the edits are checked
+//! later at each site.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
 use eomgen_model_spec::quantity::{Name, StringValue};
@@ -14,7 +14,7 @@ use super::effect::{DAMPER_PLACEHOLDER, Effect, EffectParameter, Shape, ShapeSca
 use super::fields::{read_new_name, read_nonempty_list, read_text};
 use super::placeholders::Placeholders;
 
-/// Reads a file of effects.
+/// Reads an effects file.
 ///
 /// # Errors
 ///
@@ -127,13 +127,13 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
     })
 }
 
-/// Returns true if a key says true; false where it is absent.
+/// Reads a boolean key; false if absent.
 fn truth(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option<bool> {
     let truth = record.get(key).map(|entry| entry.boolean());
     truth.map_or(Some(false), |truth| found.push_error(truth))
 }
 
-/// Returns the name that a parameter or an addition defines for use in other texts.
+/// Reads a name of a parameter or addition that other texts may use.
 fn read_name(entry: &Entry<'_>) -> Option<StringValue> {
     let entries = entry.table("").ok()?;
     let of = |key: &str| entries.iter().find(|e| e.name.text == key)?.written().ok();
@@ -176,7 +176,7 @@ fn parameter(
     })
 }
 
-/// Reads the scale of a parameter: a quantity of the site's motion and a fraction of it.
+/// Reads the scale of a parameter: a quantity of the motion at the site and a fraction of it.
 fn read_shape(record: &Record<'_>, found: &mut Diagnostics) -> Option<Shape> {
     let (scale, share) = (record.get("scale"), record.get("share"));
     let word = match scale {

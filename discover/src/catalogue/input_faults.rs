@@ -9,7 +9,7 @@ use crate::model::input_faults::InputFault;
 use crate::model::input_occurrences::{list_replaceable, replace_input};
 use crate::model::unknowns::UnknownKind;
 
-/// Returns the description of a fault and the experiment that shows it best.
+/// Returns the description of an input fault and the experiment that shows it best.
 pub(crate) fn describe_fault(fault: InputFault) -> (&'static str, &'static str) {
     match fault {
         InputFault::Gain => (
@@ -23,8 +23,8 @@ pub(crate) fn describe_fault(fault: InputFault) -> (&'static str, &'static str) 
     }
 }
 
-/// Returns the faults of the inputs without a parameter in the model. `path`: path of the
-/// specification, for messages.
+/// Returns the input faults that have no parameter in the model. `path`: path of the specification,
+/// for messages.
 pub fn list_input_faults(model: &Model, path: &str) -> Vec<Candidate> {
     let inputs = list_replaceable(model);
     let all = inputs.flat_map(|input| InputFault::ALL.map(|fault| candidate(model, input, fault)));

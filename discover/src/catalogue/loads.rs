@@ -1,5 +1,5 @@
-//! Loads that springs and meshes transmit: forces of parts `1/2*k*p^2` of the potential energy,
-//! with `p` a deflection or the part of it beyond a play.
+//! Loads of springs and meshes: forces due to summands `1/2*k*p^2` of the potential energy, where
+//! `p` is a deflection, with or without play.
 
 use eomgen_model_spec::model::{Expr, ExprKind, Function, Model, Term};
 
@@ -62,8 +62,8 @@ fn beyond_play(base: &Expr) -> &Expr {
     }
 }
 
-/// Returns the derivative of a product by the base of its square, in the language of
-/// specifications.
+/// Returns the derivative of a product with respect to the base of its square, in the notation of
+/// the specification.
 fn slope(model: &Model, product: &Expr, square: &Square<'_>) -> String {
     let source = &model.source.text;
     let part = |from: usize, to: usize| source.get(from..to).unwrap_or_default();
@@ -83,7 +83,7 @@ mod tests {
 
     use super::{Load, find_loads};
 
-    /// The loads of a mass on a spring whose energy is this.
+    /// Returns the loads of a mass on a spring with the given potential energy.
     fn loads_of(energy: &str) -> Vec<Load> {
         let text = format!(
             "[model]\nname = \"one\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\

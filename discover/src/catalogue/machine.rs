@@ -25,23 +25,23 @@ const MACHINE: &str = "machine";
 /// Placeholders of the first moments along x, y and z.
 const MOMENTS: [&str; 3] = ["moment_x", "moment_y", "moment_z"];
 
-/// Position of a mass by its velocity.
+/// Position of a mass, derived from its velocity.
 enum Place {
     /// Sum of lengths, along one direction.
     Length(String),
-    /// Point at a distance from a line that turns.
+    /// Point at a distance from the origin of a rotating line.
     Turning {
         root: String,
         lever: String,
         deflection: Option<String>,
     },
-    /// Velocity, along a line that turns, of a point at a distance from it.
+    /// The velocity is the component along a rotating line, of a point beside this line.
     AlongLine,
 }
 
 /// Mass in the kinetic energy, or mass per length in an integral.
 struct Mass<'m> {
-    /// Bases of the squares of its velocity.
+    /// Bases of the squares of the velocity.
     velocities: Vec<&'m Expr>,
     /// Texts before and after the sum of squares.
     around: [String; 2],
@@ -49,9 +49,10 @@ struct Mass<'m> {
     number: f64,
 }
 
-/// Returns the machine as a site of its weight; `None` if the position of a mass is unknown, if the
-/// model has an acceleration of gravity, which may be a shifted parameter, or if the weight along each
-/// direction acts on a single coordinate like a force or an unbalance there.
+/// Returns the machine as a site for its weight. `None` if the position of a mass is unknown or the
+/// model has an acceleration of gravity, which may be a shifted parameter. Also `None` if the
+/// weight along each direction acts on a single coordinate: it is then equivalent to a force or an
+/// unbalance.
 pub(super) fn find_machine(model: &Model) -> Option<Site> {
     if has_weight(model) {
         return None;
@@ -64,7 +65,8 @@ pub(super) fn find_machine(model: &Model) -> Option<Site> {
         let mass = find_mass(model, summand)?;
         let first = mass.velocities.first()?;
         let dimension = dimension(model, first)?;
-        // An inertia has no weight, and equal masses around an axis balance each other.
+        // A moment of inertia has no weight. A factor other than 1/2 means several masses around an
+        // axis, which balance each other.
         if dimension == Dimension::DIMENSIONLESS || mass.number != 0.5 {
             continue;
         }
@@ -101,7 +103,7 @@ pub(super) fn find_machine(model: &Model) -> Option<Site> {
     })
 }
 
-/// Adds the coordinates and the field in an expression, also in its definitions.
+/// Adds the coordinates and fields of an expression, with definitions expanded.
 fn list_moving(model: &Model, expr: &Expr, found: &mut BTreeSet<String>) {
     expr.visit(&mut |part| match part.kind {
         ExprKind::Coordinate(_) | ExprKind::Field(_) | ExprKind::ModeCoordinate(_) => {
@@ -153,8 +155,8 @@ fn find_mass<'m>(model: &Model, summand: &'m Expr) -> Option<Mass<'m>> {
     })
 }
 
-/// Returns the factor of a product, or of an integral of one, that moves. Multiplies `number` by the
-/// numbers among its other factors.
+/// Returns the variable factor of a product, or of an integral of a product. `number` is multiplied
+/// by the numbers among the other factors.
 fn find_squares<'m>(product: &'m Expr, number: &mut f64) -> Option<&'m Expr> {
     match &product.kind {
         ExprKind::Integral { integrand, .. } => find_squares(integrand, number),
@@ -195,7 +197,7 @@ fn numeric_factor(expr: &Expr) -> f64 {
     }
 }
 
-/// Returns true if an expression contains parameters, numbers and the place along a field only.
+/// Returns true if an expression contains only parameters, numbers and the position along a field.
 fn is_fixed(expr: &Expr) -> bool {
     let mut is_fixed = true;
     expr.visit(&mut |part| {
@@ -212,7 +214,7 @@ fn is_fixed(expr: &Expr) -> bool {
     is_fixed
 }
 
-/// Returns the position of a mass along x, y and z, as far as it moves there.
+/// Returns the position of a mass along x, y and z, for the directions in which it moves.
 fn find_positions(model: &Model, mass: &Mass<'_>) -> Option<Vec<String>> {
     let velocities = mass.velocities.iter();
     let places: Option<Vec<Place>> = velocities.map(|of| find_place(model, of)).collect();
@@ -244,7 +246,7 @@ fn find_positions(model: &Model, mass: &Mass<'_>) -> Option<Vec<String>> {
         .filter(|lengths| lengths.len() <= 3)
 }
 
-/// Returns the position whose rate is a velocity.
+/// Returns the position of a mass with a given velocity.
 fn find_place(model: &Model, velocity: &Expr) -> Option<Place> {
     let (mut turning, mut lengths, mut is_deflection) = (None, Vec::new(), true);
     let mut parts = Vec::new();
@@ -271,7 +273,7 @@ fn find_place(model: &Model, velocity: &Expr) -> Option<Place> {
     let length = length.strip_prefix("+ ").unwrap_or(&length).to_owned();
     match turning {
         None => Some(Place::Length(length)),
-        // A deflection is measured across the line; a coordinate may have any direction.
+        // A deflection is measured perpendicular to the line; a coordinate may have any direction.
         Some((root, lever)) if is_deflection => Some(Place::Turning {
             root,
             lever,
@@ -281,7 +283,7 @@ fn find_place(model: &Model, velocity: &Expr) -> Option<Place> {
     }
 }
 
-/// Appends the summands of a sum, with their signs.
+/// Appends the summands of a sum with their signs.
 fn split_signed<'m>(expr: &'m Expr, is_negative: bool, found: &mut Vec<(bool, &'m Expr)>) {
     match &expr.kind {
         ExprKind::Binary(BinaryOperator::Add, left, right) => {
@@ -320,7 +322,7 @@ fn find_lever(product: &Expr) -> Option<&Expr> {
     }
 }
 
-/// Returns true if an expression contains a field, also in its definitions.
+/// Returns true if an expression contains a field, with definitions expanded.
 fn holds_field(model: &Model, expr: &Expr) -> bool {
     let mut found = false;
     expr.visit(&mut |part| match part.kind {
@@ -331,7 +333,7 @@ fn holds_field(model: &Model, expr: &Expr) -> bool {
     found
 }
 
-/// Returns a quantity in the notation of the specification; a component of a vector by its name.
+/// Returns a quantity in the notation of the specification; for a component of a vector, its name.
 fn name_rate(model: &Model, of: &Expr) -> String {
     match of.kind {
         ExprKind::Definition(id) => model.definitions[id].name.clone(),
@@ -339,7 +341,8 @@ fn name_rate(model: &Model, of: &Expr) -> String {
     }
 }
 
-/// Returns the length whose rate is a fixed multiple of this rate; `None` if the factor moves.
+/// Returns the length whose rate is a constant multiple of the given rate; `None` if the factor is
+/// variable.
 fn without_dot(model: &Model, part: &Expr, rate: &Expr) -> Option<String> {
     let (mut dots, mut moving) = (Vec::new(), 0);
     part.visit(&mut |inner| match &inner.kind {
@@ -366,7 +369,8 @@ mod tests {
 
     use super::find_machine;
 
-    /// First moments of a machine with this kinetic energy, next to masses in pairs.
+    /// Returns the first moments of a machine with the given kinetic energy and with pairs of
+    /// masses.
     fn moments_of(kinetic: &str) -> Option<Vec<(&'static str, String)>> {
         let text = format!(
             "[model]\nname = \"one\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
@@ -412,7 +416,7 @@ mod tests {
     #[test]
     fn machine_needs_several_coordinates_and_known_positions() {
         for kinetic in [
-            // One mass, or two on one coordinate.
+            // A single mass, or two masses on one coordinate.
             "a = \"1/2*m*dot(x)^2\"",
             "a = \"1/2*m*dot(x)^2\"\nb = \"1/2*m*(2*dot(x))^2\"",
             // Each direction has a different coordinate.

@@ -1,5 +1,5 @@
-//! Meshes and couplings with play: functions with play of a coordinate, a definition or an
-//! expression of these.
+//! Meshes and couplings with play: functions with play whose argument is a coordinate, a definition
+//! or an expression of both.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,8 @@ pub(super) fn find_meshes(model: &Model) -> Vec<Site> {
     found.collect()
 }
 
-/// Returns the distinct deflections with play, coordinates first, in their order.
+/// Returns the distinct deflections with play. Coordinates are first, in the order of the
+/// specification.
 fn deflections(model: &Model) -> Vec<Expr> {
     let mut found: Vec<Expr> = Vec::new();
     for (_, _, value) in values(model) {
@@ -50,7 +51,7 @@ fn visit_play(expr: &Expr, each: &mut impl FnMut(Function, &[Expr])) {
     });
 }
 
-/// Returns true if two deflections are written the same, however they are spaced.
+/// Returns true if two deflections have the same text apart from spaces.
 fn is_same(model: &Model, one: &Expr, other: &Expr) -> bool {
     let plain = |expr: &Expr| {
         format_expression(model, expr)
@@ -69,7 +70,7 @@ pub(super) fn find_mesh_coordinates(model: &Model) -> Vec<CoordinateId> {
     deflections(model).iter().filter_map(coordinate).collect()
 }
 
-/// Every value in which an expression may be replaced.
+/// Returns all expressions of the model in which text may be replaced.
 fn values(model: &Model) -> Vec<(Section, &str, &Expr)> {
     let definitions = model
         .definitions
@@ -159,8 +160,8 @@ fn mesh(model: &Model, deflection: &Expr) -> Option<Site> {
     })
 }
 
-/// Returns the name of a deflection: that of a coordinate, possibly less a middle of the play, or
-/// of a definition. `None` for other expressions.
+/// Returns the name of a deflection: the name of a coordinate, with or without a subtracted centre
+/// of the play, or of a definition. `None` for other expressions.
 fn name_of_mesh<'m>(model: &'m Model, deflection: &Expr) -> Option<&'m str> {
     match deflection.kind {
         ExprKind::Coordinate(id) => Some(&model.coordinates[id].name),
@@ -180,7 +181,7 @@ fn name_of_mesh<'m>(model: &'m Model, deflection: &Expr) -> Option<&'m str> {
     }
 }
 
-/// Returns the half-play of a deflection as written in the specification.
+/// Returns half the play of a deflection as written in the specification.
 fn half_play(model: &Model, deflection: &Expr) -> Option<String> {
     let mut play = None;
     for (_, _, value) in values(model) {

@@ -1,10 +1,10 @@
-//! Catalogue of missing effects: effects of the program and of the user ([`effect`]), the sites of
-//! a model ([`site`], [`sites`], `arms` with their `stiffness`, [`meshes`], `springs` and their `dampers`, the whole `machine`, read by
-//! `products` and `polynomial`), the `loads` at these sites and their [`usual_motion`]. A
-//! [`candidate`] is an effect at a site: the edits of a [`template`] and its parameters as unknowns
-//! ([`candidate_unknown`]). Effects are defined by edits of the specification only. A file of
-//! effects is read in `file` with `change`, `placeholders` and `fields`. Errors of inputs are
-//! separate candidates ([`input_faults`]).
+//! Catalogue of missing effects. An effect ([`effect`]) is defined by edits of the specification
+//! only; effects of a user are read in `file` with `change`, `placeholders` and `fields`. Sites of
+//! a model ([`site`], [`sites`]) are axes, angles, `arms` with their `stiffness`, [`meshes`],
+//! `springs` with their `dampers`, inputs and the whole `machine`; `products` and `polynomial` read
+//! their expressions. Sites have `loads` and a [`usual_motion`]. A [`candidate`] is an effect at a
+//! site: the edits of a [`template`] and its parameters as unknowns ([`candidate_unknown`]). Errors
+//! of inputs are separate candidates ([`input_faults`]).
 
 mod arms;
 pub mod candidate;
@@ -38,10 +38,10 @@ use eomgen_model_spec::toml_file;
 use crate::catalogue::effect::Effect;
 use crate::thresholds;
 
-/// The built-in catalogue.
+/// Text of the built-in catalogue.
 const BUILT_IN: &str = include_str!("catalogue.toml");
 
-/// Loads the effects of the program and those of a user's file. A user's effect replaces the
+/// Loads the built-in effects and the effects of a user's file. A user-defined effect replaces the
 /// built-in effect of the same name.
 ///
 /// # Errors

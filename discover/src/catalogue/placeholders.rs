@@ -1,5 +1,5 @@
-//! Placeholders in the texts of an effect. All must be known, and the expressions around them
-//! valid.
+//! Placeholders in the texts of an effect. All placeholders must be known, and the expressions that
+//! contain them must be valid.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
 use eomgen_model_spec::quantity::StringValue;
@@ -10,14 +10,14 @@ use super::fields::read_text;
 
 /// Placeholders that the texts of an effect may contain.
 pub(super) struct Placeholders {
-    /// Known names.
+    /// Names of the defined placeholders.
     pub(super) known: Vec<String>,
-    /// Names in use.
+    /// Names of the used placeholders.
     pub(super) used: Vec<String>,
 }
 
 impl Placeholders {
-    /// Reports unknown placeholders of a text.
+    /// Reports undefined placeholders of a text.
     pub(super) fn check_placeholders(&mut self, written: &StringValue, found: &mut Diagnostics) {
         let mut begin = 0;
         while let Some(open) = written.text[begin..].find(['{', '}']) {
@@ -56,7 +56,7 @@ pub(super) fn read_expression(
 ) -> Option<String> {
     let written = read_text(record, key, "\"-{T_c}*sign(dot({on}))\"", found)?;
     placeholders.check_placeholders(&written, found);
-    // Parentheses for braces keep every letter at its place.
+    // Braces are replaced by parentheses, so that errors have the correct column.
     let mut plain = written.clone();
     plain.text = plain.text.replace('{', "(").replace('}', ")");
     found.push_error(plain.syntax());

@@ -1,5 +1,5 @@
-//! Polynomials in coordinates, their rates and parameters, in a canonical form. They compare
-//! expressions independently of their notation.
+//! Polynomials in coordinates, rates and parameters, in a canonical form. Expressions can be
+//! compared independently of their notation.
 
 use std::collections::BTreeMap;
 
@@ -9,28 +9,28 @@ use eomgen_model_spec::model::{Expr, ExprKind, Model};
 
 use crate::thresholds;
 
-/// A letter of a polynomial.
+/// Variable of a polynomial.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Letter {
-    /// A coordinate.
+    /// Coordinate.
     Coordinate(CoordinateId),
-    /// Its rate.
+    /// Rate of a coordinate.
     Rate(CoordinateId),
-    /// A parameter.
+    /// Parameter.
     Parameter(ParameterId),
-    /// One by a sum of parameters, by how that is printed.
+    /// Reciprocal of a sum of parameters, identified by the printed sum.
     Inverse(String),
 }
 
-/// A product of letters with their powers, which are not 0.
+/// Product of variables with nonzero powers.
 type Monomial = BTreeMap<Letter, i32>;
 
-/// Sum of products, each with its factor.
+/// Sum of monomials with their factors.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Polynomial(BTreeMap<Monomial, f64>);
 
 impl Polynomial {
-    /// Expands an expression; `None` if it is not a polynomial or too long.
+    /// Expands an expression. `None` if it is not a polynomial or has too many terms.
     pub(super) fn from_expression(model: &Model, expr: &Expr) -> Option<Self> {
         Reader::new(model).polynomial(expr)
     }
@@ -55,7 +55,7 @@ impl Polynomial {
     }
 
     /// Returns true if two rates are proportional: both are linear in the rates of coordinates, and
-    /// all coefficients have the same ratio. Zero is proportional to nothing.
+    /// all coefficients have the same ratio. Zero is not proportional to any rate.
     pub(super) fn is_proportional_to(&self, other: &Self) -> bool {
         let (Some(own), Some(others)) = (self.coefficients(), other.coefficients()) else {
             return false;
@@ -73,7 +73,7 @@ impl Polynomial {
         !own.is_empty() && !others.is_empty() && ids().all(|a| ids().all(|b| agree(a, b)))
     }
 
-    /// Returns the factor of each rate, or `None` if a term has no rate or several rates.
+    /// Returns the coefficient of each rate; `None` if a term has no rate or several rates.
     fn coefficients(&self) -> Option<BTreeMap<CoordinateId, Self>> {
         let mut found: BTreeMap<CoordinateId, Self> = BTreeMap::new();
         for (monomial, factor) in &self.0 {
@@ -92,7 +92,7 @@ impl Polynomial {
         Some(found)
     }
 
-    /// Returns true if two agree but for rounding.
+    /// Returns true if two polynomials are equal within rounding.
     fn is_near(&self, other: &Self) -> bool {
         let of = |polynomial: &Self, monomial: &Monomial| {
             polynomial.0.get(monomial).copied().unwrap_or(0.0)
@@ -143,7 +143,8 @@ impl Polynomial {
         product.if_short()
     }
 
-    /// One by it; none if it is 0, moves, or holds a quotient by a sum itself.
+    /// Returns the reciprocal. `None` if the polynomial is 0, or contains variables other than
+    /// parameters.
     fn inverse(&self) -> Option<Self> {
         let is_fixed = |letter: &Letter| matches!(letter, Letter::Parameter(_));
         if self.0.is_empty() || !self.0.keys().flat_map(BTreeMap::keys).all(is_fixed) {
@@ -172,7 +173,7 @@ fn raise(monomial: &mut Monomial, letter: Letter, by: i32) {
     };
 }
 
-/// Reads expressions of a model, each definition once.
+/// Converter of the model's expressions; each definition is converted once.
 struct Reader<'m> {
     model: &'m Model,
     definitions: Vec<Option<Option<Polynomial>>>,
@@ -218,7 +219,7 @@ impl<'m> Reader<'m> {
     }
 }
 
-/// A small whole power.
+/// Returns a power with a small whole exponent.
 fn power(base: &Polynomial, exponent: &Polynomial) -> Option<Polynomial> {
     let mut powers = 1..=thresholds::MAX_RATE_POWER;
     let exponent = powers.find(|n| *exponent == Polynomial::number(f64::from(*n)))?;

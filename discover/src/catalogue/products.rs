@@ -4,7 +4,7 @@
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::model::{Expr, ExprKind, Model};
 
-/// Returns the summands of a sum, without subtracted parts.
+/// Returns the summands of a sum; subtracted terms are left out.
 pub(super) fn split_sum(expr: &Expr) -> Vec<&Expr> {
     let mut found = Vec::new();
     summands_of(expr, &mut found);
@@ -22,11 +22,11 @@ fn summands_of<'m>(expr: &'m Expr, found: &mut Vec<&'m Expr>) {
     }
 }
 
-/// The only square in a product with constant factors.
+/// Decomposition of a product into one square and constant factors.
 pub(super) struct Square<'m> {
-    /// The square.
+    /// Square.
     pub(super) square: &'m Expr,
-    /// Squared expression.
+    /// Base of the square.
     pub(super) base: &'m Expr,
     /// Parameters among the constant factors.
     pub(super) parameters: Vec<String>,
@@ -44,8 +44,8 @@ pub(super) fn find_square<'m>(model: &Model, product: &'m Expr) -> Option<Square
     })
 }
 
-/// Reads the factors of a product: one square of a moving quantity, parameters and numbers. `None`
-/// if there is any other factor.
+/// Reads the factors of a product: one square of a variable quantity, parameters and numbers.
+/// `None` if there is any other factor.
 fn factors<'m>(
     model: &Model,
     expr: &'m Expr,
@@ -73,7 +73,7 @@ fn factors<'m>(
     }
 }
 
-/// Returns true if an expression contains only parameters and numbers, and appends the parameters.
+/// Returns true if an expression contains only parameters and numbers. Appends its parameters.
 pub(super) fn is_constant(model: &Model, expr: &Expr, parameters: &mut Vec<String>) -> bool {
     match &expr.kind {
         ExprKind::Number(_) | ExprKind::Pi => true,

@@ -1,4 +1,4 @@
-//! Sites of effects. The sites of a model are found in `sites`.
+//! Sites of effects; `sites` finds the sites of a model.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ pub struct Site {
     pub name: String,
     /// Values of the placeholders.
     pub arguments: BTreeMap<&'static str, String>,
-    /// Terms that make up a mesh or a spring, or terms of the kinetic energy that move with a body.
+    /// Terms of a mesh or spring, or the kinetic energy terms of a body and its load.
     pub terms: Vec<(Section, Vec<String>)>,
     /// Dampers parallel to a spring.
     pub dampers: Vec<Damper>,
@@ -27,9 +27,9 @@ pub struct Site {
 pub struct Damper {
     /// Section of the damper: the dissipation or the forces.
     pub section: Section,
-    /// Term that contains it.
+    /// Name of the term that contains the damper.
     pub term: String,
-    /// The part in the notation of the specification.
+    /// Summand of the term, in the notation of the specification.
     pub part: String,
 }
 

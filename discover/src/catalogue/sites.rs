@@ -1,5 +1,5 @@
-//! Sites of effects in a model: axes and angles, which are found here, meshes with play, flexible
-//! bodies, springs, inputs and the whole machine, with their placeholder values.
+//! Sites of effects in a model with their placeholder values. This module finds axes, angles and
+//! inputs; meshes, flexible bodies, springs and the whole machine are found in their own modules.
 
 use std::collections::BTreeSet;
 
@@ -37,11 +37,11 @@ fn input(input: &Input) -> Site {
     }
 }
 
-/// Coordinates, rates and functions in an expression, with definitions expanded.
+/// Coordinates and other quantities of an expression, with definitions expanded.
 #[derive(Default)]
 struct Parts {
     coordinates: Vec<CoordinateId>,
-    /// Definitions that were written out: one of vectors is used again and again.
+    /// Expanded definitions; vectors use one definition several times.
     definitions: BTreeSet<usize>,
     other: bool,
 }
@@ -67,7 +67,7 @@ fn collect_parts(model: &Model, expr: &Expr, into: &mut Parts) {
     });
 }
 
-/// Returns the degree of an expression in the coordinates; `None` if it is no polynomial of them.
+/// Returns the degree of an expression in the coordinates; `None` if it is not a polynomial.
 fn degree(model: &Model, expr: &Expr) -> Option<u32> {
     let of = |expr: &Expr| degree(model, expr);
     match &expr.kind {
@@ -112,7 +112,8 @@ fn axes(model: &Model, meshes: &[CoordinateId]) -> Vec<Site> {
             continue;
         }
         if let Some(site) = axis(&observable.name, on, &observable.unit.text) {
-            // A force on a nonlinear function of a coordinate is another than on the coordinate.
+            // If the observable is linear in a single coordinate, a force on the coordinate has the
+            // same form, so the coordinate is not a further site.
             if let [only] = of.coordinates[..]
                 && degree(model, &observable.value) == Some(1)
             {

@@ -1,5 +1,5 @@
-//! Springs of a model: parts `1/2*k*p^2` of terms of the potential energy, with a coordinate, a
-//! definition or an expression of these as the deflection `p`.
+//! Springs of a model: summands `1/2*k*p^2` of the potential energy, where the deflection `p` is a
+//! coordinate, a definition or an expression of both.
 
 use std::collections::BTreeSet;
 
@@ -23,13 +23,14 @@ pub(super) fn find_springs(model: &Model) -> Vec<Site> {
         .collect()
 }
 
-/// A stiffness, of parameters and numbers, times the square of something that moves.
+/// Product of a constant stiffness and the square of a deflection.
 struct Spring<'m> {
     deflection: &'m Expr,
     parameters: Vec<String>,
 }
 
-/// The springs of a term: one has the term's name, of several each that of its stiffness behind it.
+/// Returns the springs of a term. A single spring has the name of the term; of several springs,
+/// each has the name of its stiffness appended.
 fn of_term(model: &Model, term: &Term) -> Vec<Site> {
     let springs: Vec<Spring<'_>> = split_sum(&term.value)
         .into_iter()
@@ -59,8 +60,8 @@ fn of_term(model: &Model, term: &Term) -> Vec<Site> {
     springs.iter().enumerate().filter_map(site).collect()
 }
 
-/// Returns the name of a spring: the name of its term, followed by that of the stiffness if the
-/// term has several springs.
+/// Returns the name of a spring: the name of its term; if the term has several springs, followed by
+/// the name of the stiffness.
 pub(super) fn name_spring(
     term: &Term,
     parameters: &[String],
@@ -91,7 +92,7 @@ pub(super) fn deflection_units(
     }
 }
 
-/// A product as a spring; none if it is none.
+/// Returns the spring of a product, if the product has the form of a spring energy.
 fn spring<'m>(model: &Model, product: &'m Expr) -> Option<Spring<'m>> {
     let Square {
         base, parameters, ..
@@ -103,13 +104,14 @@ fn spring<'m>(model: &Model, product: &'m Expr) -> Option<Spring<'m>> {
     (!spring.parameters.is_empty() && is_deflection(model, base)).then_some(spring)
 }
 
-/// Returns true if an expression is a position: a sum of coordinates and prescribed motions with constant factors.
+/// Returns true if an expression is a position: a sum of coordinates and prescribed motions with
+/// constant factors.
 pub(super) fn is_deflection(model: &Model, expr: &Expr) -> bool {
     is_position(model, expr, &mut BTreeSet::new())
 }
 
-/// Returns true if an expression is a position: sums of such, times what is fixed. `read`: definitions
-/// that were read before, each but once.
+/// Returns true if an expression is a position. `read`: definitions that were read before; each is
+/// read only once.
 fn is_position(model: &Model, expr: &Expr, read: &mut BTreeSet<DefinitionId>) -> bool {
     match &expr.kind {
         ExprKind::Coordinate(_) | ExprKind::Parameter(_) | ExprKind::Number(_) | ExprKind::Pi => {

@@ -6,8 +6,8 @@ use eomgen_model_spec::model::{Expr, ExprKind, Model};
 
 use crate::catalogue::site::format_expression;
 
-/// Factors of a product: a number, expressions with their powers, and the power of the factors that
-/// contain a curvature.
+/// Factors of a product: a number, expressions with their powers, and the power of those factors
+/// that contain a curvature.
 struct Product<'m> {
     model: &'m Model,
     is_curvature: &'m dyn Fn(&Expr) -> bool,
@@ -17,7 +17,7 @@ struct Product<'m> {
 }
 
 /// Returns the stiffness of an energy in the notation of the specification; `None` if the energy
-/// contains no integral of a square of an expression with a curvature.
+/// has no integral of a squared curvature.
 pub(super) fn find_stiffness(
     model: &Model,
     energy: &Expr,
@@ -35,8 +35,8 @@ pub(super) fn find_stiffness(
 }
 
 impl Product<'_> {
-    /// Multiplies by a power of an expression. Of a sum outside a square, only the summand with the
-    /// curvature is read.
+    /// Multiplies by a power of an expression. A sum outside the square is replaced by its summand
+    /// with the curvature.
     fn multiply(&mut self, expr: &Expr, power: i32) {
         match &expr.kind {
             ExprKind::Number(value) => self.number *= value.powi(power),

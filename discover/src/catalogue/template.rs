@@ -1,4 +1,4 @@
-//! Changes of the catalogue at a site of a model, as edits of a specification.
+//! Conversion of the edits of an effect at a site to edits of a specification.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::catalogue::effect::{Change, DAMPER_PLACEHOLDER, SiteKind, Substitutio
 use crate::catalogue::site::{Damper, Site};
 use crate::model::input_occurrences::find_occurrences;
 
-/// Returns the edits of a change with these arguments; `None` if an argument or the replaced
+/// Returns the edits of a change with given placeholder values; `None` if a value or the replaced
 /// expression is missing.
 pub(crate) fn instantiate_change(
     model: &Model,
@@ -77,7 +77,7 @@ pub(crate) fn instantiate_change(
     }])
 }
 
-/// Returns the replacements by section, or `None` if the text occurs nowhere.
+/// Returns the replacements by section, or `None` if the text does not occur.
 fn substitutions(
     model: &Model,
     within: &SubstitutionScope,
@@ -135,7 +135,7 @@ fn dampers(
     all.filter(|edits| !edits.is_empty())
 }
 
-/// The definitions and observables that hold an expression, however it is spaced.
+/// Returns the definitions and observables that contain an expression, compared without spaces.
 fn replace_measured(model: &Model, find: &str) -> Vec<(Section, Vec<String>)> {
     let plain = |text: &str| text.split_whitespace().collect::<String>();
     let find = plain(find);
@@ -157,9 +157,9 @@ fn replace_measured(model: &Model, find: &str) -> Vec<(Section, Vec<String>)> {
     ]
 }
 
-/// The site's terms that hold a name.
+/// Returns the terms of a site that contain a name.
 fn holding(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)> {
-    // The deflection may be any expression; a spring's term contains it.
+    // The deflection of a spring may be any expression, and its term contains the deflection.
     if site.kind == SiteKind::Spring {
         return site.terms.clone();
     }
@@ -210,7 +210,7 @@ fn holding(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)
         .collect()
 }
 
-/// Returns a text with its placeholders filled; `None` if an argument is missing.
+/// Replaces the placeholders of a text by their values; `None` if a value is missing.
 pub(crate) fn fill_placeholders(
     text: &str,
     arguments: &BTreeMap<String, String>,
@@ -227,7 +227,7 @@ pub(crate) fn fill_placeholders(
     Some(out)
 }
 
-/// Returns an unused name similar to the wanted one and marks it as used.
+/// Returns an unused name based on the wanted one and adds it to the names in use.
 pub(crate) fn reserve_name(wanted: &str, site: &str, taken: &mut Vec<String>) -> String {
     let mut name = wanted.to_owned();
     if taken.contains(&name) {

@@ -1,5 +1,5 @@
-//! Check of a user's effects at the sites of a specification. The result must be a valid
-//! specification, and effects without a site are reported.
+//! Check of user-defined effects at the sites of a specification. Each extended specification must
+//! be valid; effects without a site are reported.
 
 use crate::catalogue::candidate::{CandidateParameter, list_candidates};
 use crate::catalogue::effect::Effect;
@@ -8,19 +8,19 @@ use crate::catalogue::usual_motion::UsualMotion;
 use crate::error::DiscoverError;
 use crate::model::specification_texts::edited_source;
 
-/// Writes each effect of the user into a specification at each of its sites. Returns the effects
+/// Adds each user-defined effect to a specification at each of its sites. Returns the effects
 /// without a site.
 ///
 /// # Errors
 ///
-/// Errors of a specification with an effect.
+/// Errors of a specification that contains an effect.
 pub fn check_user_effects(
     effects: &[Effect],
     path: &str,
     text: &str,
 ) -> Result<Vec<String>, DiscoverError> {
     let Ok(checked) = eomgen_model_spec::check(edited_source(path, text)) else {
-        // Reading the specification reports its errors.
+        // The errors of an invalid specification are reported when it is read.
         return Ok(Vec::new());
     };
     let model = checked.model;
@@ -33,7 +33,7 @@ pub fn check_user_effects(
             &find_sites(&model),
             &UsualMotion::default(),
         );
-        // Orders are but numbers in it.
+        // Candidates of one site that differ only in the order have the same form.
         found.dedup_by(|a, b| a.site == b.site);
         for candidate in &found {
             let values: Vec<f64> = candidate

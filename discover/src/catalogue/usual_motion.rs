@@ -1,4 +1,5 @@
-//! Usual motion at the sites of a model, from the records. It sets the scale of shape parameters.
+//! Usual motion at the sites of a model, computed from the records. It sets the scale of shape
+//! parameters.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -14,12 +15,12 @@ use crate::interval::Interval;
 /// Known motion at the sites of a model.
 #[derive(Clone, Debug, Default)]
 pub struct UsualMotion {
-    /// RMS of the rate of an axis, by its name, SI.
+    /// RMS rate of each axis, by its name, SI.
     pub rates: BTreeMap<String, f64>,
-    /// Range of an expression that an effect acts on, by the expression, SI.
+    /// Range of each expression on which an effect can act, by its text, SI.
     pub ranges: BTreeMap<String, Interval>,
-    /// Strongest orders, per turn, of the residual force over an angle, by the expression of the
-    /// angle.
+    /// Strongest orders, in periods per turn, of the residual force over each angle, by the text of
+    /// the angle.
     pub orders: BTreeMap<String, Vec<u32>>,
     /// Typical sizes of quantities of the model.
     pub sizes: TypicalSizes,
@@ -32,8 +33,8 @@ impl UsualMotion {
         self.sizes.typical_size(dimension)
     }
 
-    /// Returns the quantity that scales a shape parameter at a site, in a unit; the typical size if
-    /// the motion is unknown.
+    /// Returns the quantity that scales a shape parameter at a site. If the motion is unknown,
+    /// returns the typical size in the given unit.
     pub(super) fn shape_scale(&self, scale: ShapeScale, site: &Site, unit: &str) -> f64 {
         let known = match scale {
             ShapeScale::Rate => self.rates.get(&site.name).copied(),
@@ -47,7 +48,8 @@ impl UsualMotion {
         known.unwrap_or_else(|| self.typical_size(unit))
     }
 
-    /// Returns true if an angle covers a period of an order, or if its range is unknown.
+    /// Returns true if the motion of an angle covers one period of an order, or if its range is
+    /// unknown.
     pub(super) fn covers_period(&self, angle: &Site, order: u32) -> bool {
         let covers = |travel: &Interval| f64::from(order) * (travel.high - travel.low) >= TAU;
         self.travel(angle).is_none_or(covers)

@@ -1,6 +1,6 @@
-//! Unnamed expressions: products of few functions of a rate, a position and the inputs, each
-//! divided by its largest value in the training records. They can be evaluated along a motion and
-//! written into a specification.
+//! Empirical expressions: products of few functions of a rate, a position and the inputs. Each
+//! quantity is divided by its largest value in the training records. Expressions can be evaluated
+//! along a motion and added to a specification.
 
 use std::f64::consts::TAU;
 
@@ -10,18 +10,18 @@ use crate::thresholds::{self, SIGN_WIDTH_FRACTION};
 /// Argument of a factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FactorArgument {
-    /// The rate.
+    /// Rate.
     Rate,
-    /// The position.
+    /// Position.
     Position,
     /// Input, by its index in the model.
     Input(usize),
 }
 
-/// Function of one scaled quantity; waves are functions of the unscaled angle.
+/// Function of one scaled quantity; sine and cosine are functions of the unscaled angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Function {
-    /// Power with this exponent.
+    /// Power with a given exponent.
     Power(u32),
     /// Absolute value.
     Absolute,
@@ -29,13 +29,13 @@ pub enum Function {
     SignedSquare,
     /// Smooth sign function.
     SmoothSign,
-    /// Cosine of this order per turn.
+    /// Cosine with an order per turn.
     Cosine(u32),
-    /// Sine of this order per turn.
+    /// Sine with an order per turn.
     Sine(u32),
-    /// Part above a kink at this position.
+    /// Amount by which the argument exceeds the position of a kink.
     Above(f64),
-    /// Part below a kink at minus this position.
+    /// Amount by which the argument is below the negative position of a kink.
     Below(f64),
 }
 
@@ -46,7 +46,7 @@ pub struct Term {
     pub factors: Vec<(FactorArgument, Function)>,
 }
 
-/// Scales of the quantities, SI; 0 for a quantity that does not move.
+/// Scales of the quantities, SI; 0 for a constant quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scales {
     /// Scale of the rate.
@@ -59,7 +59,7 @@ pub struct Scales {
 
 /// Names of the quantities and of their scales in a specification.
 pub struct ExpressionNames {
-    /// Expression that the force acts on.
+    /// Expression on which the force acts.
     pub target: String,
     /// Scales of rate and position.
     pub scales: [String; 2],
@@ -90,8 +90,8 @@ impl Function {
         }
     }
 
-    /// Returns the text of a term in a quantity over its scale. `kink` is the parameter with the
-    /// place of the kink.
+    /// Returns the text of the function of a quantity divided by its scale. `kink`: parameter for
+    /// the position of the kink.
     fn text(self, quantity: &str, scale: &str, kink: &str) -> String {
         let times = |order: u32| match order {
             1 => quantity.to_owned(),
@@ -144,7 +144,7 @@ impl Term {
             })
     }
 
-    /// Returns the term with its kink at this position.
+    /// Returns the term with another position of its kink.
     #[must_use]
     pub fn with_kink(mut self, at: f64) -> Self {
         for (_, function) in &mut self.factors {
@@ -155,8 +155,8 @@ impl Term {
         self
     }
 
-    /// Returns the term in the notation of the specification, times a parameter, with another
-    /// parameter as the position of its kink.
+    /// Returns the term in the notation of the specification, multiplied by `parameter`. The
+    /// parameter `kink` is the position of its kink.
     pub fn format_term(&self, parameter: &str, kink: &str, arguments: &ExpressionNames) -> String {
         let mut text = parameter.to_owned();
         for (of, function) in &self.factors {
@@ -178,7 +178,7 @@ impl Term {
         text
     }
 
-    /// Returns true if the term contains this quantity divided by its scale.
+    /// Returns true if the term contains the given quantity divided by its scale.
     pub fn uses_scale_of(&self, wanted: FactorArgument) -> bool {
         let takes =
             |(of, function): &(FactorArgument, Function)| *of == wanted && function.is_scaled();
@@ -190,7 +190,7 @@ impl Term {
     }
 }
 
-/// Returns the terms for a force on a coordinate. `width`: range of the coordinate.
+/// Returns the trial terms of a force on a coordinate. `width`: range of the coordinate.
 pub fn list_terms(scales: &Scales, is_angle: bool, width: f64) -> Vec<Term> {
     use Function::{Above, Absolute, Below, Cosine, Power, SignedSquare, Sine, SmoothSign};
     let rates = [
@@ -232,7 +232,7 @@ pub fn list_terms(scales: &Scales, is_angle: bool, width: f64) -> Vec<Term> {
     found.extend(alone.map(|factor| Term {
         factors: vec![*factor],
     }));
-    // The effect of an input may vary with the motion; the input enters in its first power.
+    // The effect of an input may depend on the motion, but it is linear in the input.
     let drives = inputs.iter().filter(|factor| factor.1 == Power(1));
     let motion = rates.iter().chain(&positions);
     let with_inputs = drives.flat_map(|drive| motion.clone().map(move |factor| [*drive, *factor]));

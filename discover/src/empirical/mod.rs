@@ -1,7 +1,7 @@
-//! Empirical expressions for a gap that no effect of the catalogue explains: an expression of few
-//! terms in the equation of motion with the largest residual force. It is fitted like an effect and
-//! must pass a stricter test on held-out records. Its status is `empirical`, without another name.
-//! `expressions` defines the terms, and `term_selection` selects them.
+//! Empirical expressions for a gap that no effect of the catalogue explains. An expression of few
+//! terms is added to the equation of motion with the largest residual force. It is fitted like an
+//! effect and must pass a stricter test on held-out records. Its status is `empirical`, because it
+//! does not identify the cause. `expressions` defines the terms, and `term_selection` selects them.
 
 pub mod expressions;
 pub mod term_selection;
@@ -27,12 +27,12 @@ use crate::search::rejection::Rejection;
 use crate::search::search_result::{AcceptedEffect, RejectedCandidate, SearchResult, TestGap};
 use crate::thresholds;
 
-/// Effect name of an unnamed expression.
+/// Effect name of an empirical expression.
 pub const EMPIRICAL_EFFECT: &str = "empirical";
 
-/// Adds an unnamed expression if no effect is named. After a named effect the gap may be its own
-/// misfit. If only a shifted parameter was accepted and a large gap remains, an expression with a
-/// clearly smaller gap replaces it.
+/// Adds an empirical expression if no effect of the catalogue is accepted. After an accepted
+/// effect, the remaining gap may be a misfit of this effect. If only a parameter shift was accepted
+/// and a large gap remains, an expression with a clearly smaller gap replaces it.
 pub fn add_empirical_effect(
     problem: &EstimationProblem<'_>,
     found: &mut SearchResult,
@@ -60,8 +60,8 @@ pub fn add_empirical_effect(
     }
 }
 
-/// Adds an expression to the result if a gap remains and the expression closes it. `floor` is the
-/// RMS residual of a correct model in standard deviations.
+/// Adds an expression to the result if a gap remains and the expression closes it. `floor`: RMS
+/// residual of a correct model, in standard deviations.
 fn add_empirical(
     problem: &EstimationProblem<'_>,
     found: &mut SearchResult,
@@ -124,7 +124,7 @@ fn add_empirical(
     }
 }
 
-/// Finds the best expression in the equations that may contain the residual force.
+/// Finds the best expression in the equations that may contain the missing force.
 fn find_expression(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Expression> {
     let force = estimate_residual_force(problem, fit, None)?;
     force.kind.as_ref()?;
@@ -140,8 +140,8 @@ fn find_expression(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Express
     select_expression(problem, fit, &among)
 }
 
-/// An expression as an effect that can be written into a specification: a parameter with the
-/// unit of the force for each term, and one for each scale.
+/// Converts an expression to an effect that can be added to a specification. Each term has a
+/// parameter with the unit of the force, and each scale is a parameter.
 fn write_candidate(model: &Model, expression: &Expression) -> Candidate {
     let equation = &expression.equation;
     let mut taken = names_in_use(model);
@@ -213,7 +213,7 @@ fn write_candidate(model: &Model, expression: &Expression) -> Candidate {
         doc: "position of a kink of an empirical force, relative to its scale".to_owned(),
         ..size(name)
     };
-    // Sizes first, one for each term, then the places of kinks.
+    // Parameters: first the coefficient of each term, then the positions of kinks.
     let (mut parameters, mut kinks, mut terms) = (Vec::new(), Vec::new(), Vec::new());
     for (number, term) in (1..).zip(&expression.terms) {
         let own = size(name(&format!("e_{number}")));
@@ -249,8 +249,8 @@ fn write_candidate(model: &Model, expression: &Expression) -> Candidate {
     }
 }
 
-/// Removes superfluous terms of a fitted expression: some only replace parameters and sensors,
-/// which are free again.
+/// Removes superfluous terms of a fitted expression. Some terms only replace parameters and
+/// sensors, which are free again.
 fn simplify_expression(
     problem: &EstimationProblem<'_>,
     before: &Fit,
@@ -283,8 +283,8 @@ fn simplify_expression(
     }
 }
 
-/// The fit with an expression: started close to the one without, and anew from the beginnings of
-/// the windows; the better of both.
+/// Fits an expression twice: from the estimates of the fit without it, and anew from the initial
+/// segments of the windows. Returns the better fit.
 fn fit_candidate(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -326,8 +326,8 @@ fn fit_candidate(
     }
 }
 
-/// Returns true if an expression is accepted: by all that is asked of an effect, each of its terms by
-/// itself, and by how much of the gap it closes.
+/// Tests an expression. It must pass the tests of an effect with each of its terms, and close a
+/// required part of the gap.
 fn accept_expression(
     (before, after): (&Fit, &Fit),
     candidate: &Candidate,
@@ -339,7 +339,7 @@ fn accept_expression(
         let is_shape = parameter.shape_size.is_some();
         EffectUnknown {
             unknown: *unknown,
-            // The place of a kink has no size, and belongs to any term.
+            // The position of a kink is a shape parameter; its effect index is not used.
             effect: EffectId::new(if is_shape { 0 } else { number }),
             base: 0.0,
             is_shape,

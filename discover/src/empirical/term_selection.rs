@@ -1,5 +1,5 @@
-//! Selection of the terms of an unnamed expression that explain the residual best: all sets of one,
-//! two and three terms, to first order along the fitted motion. The acceptance is decided after a
+//! Selection of the terms of an empirical expression. All sets of one, two and three terms are
+//! compared to first order along the fitted motion. The expression is accepted or rejected after a
 //! full fit.
 
 use crate::ids::{BasisFunctionId, EquationId};
@@ -22,7 +22,7 @@ use crate::thresholds;
 pub struct Expression {
     /// Equation of motion.
     pub equation: Equation,
-    /// Scales of its quantities.
+    /// Scales of the quantities in the terms.
     pub scales: Scales,
     /// Terms.
     pub terms: Vec<Term>,
@@ -32,7 +32,7 @@ pub struct Expression {
     pub explained_fraction: f64,
 }
 
-/// A set of terms with its predicted reduction.
+/// Set of terms with its fitted coefficients.
 struct Set {
     terms: Vec<BasisFunctionId>,
     sizes: Coefficients,
@@ -104,7 +104,8 @@ fn in_equation(
     })
 }
 
-/// Returns the best set of one term, or of more terms if each greatly reduces the residual.
+/// Returns the best single term, or a set of more terms if each of them greatly reduces the
+/// residual.
 fn select_best_set(
     regression: &Regression,
     of: Linearisation<'_>,
@@ -139,7 +140,7 @@ fn select_best_set(
     known
 }
 
-/// All sets of so many of so many terms.
+/// Returns all subsets of `size` of `count` terms.
 fn subsets(count: usize, size: usize) -> Vec<Vec<BasisFunctionId>> {
     let mut found: Vec<Vec<BasisFunctionId>> = vec![Vec::new()];
     for _ in 0..size {
@@ -154,7 +155,7 @@ fn subsets(count: usize, size: usize) -> Vec<Vec<BasisFunctionId>> {
     found
 }
 
-/// The largest value of each input in the training records.
+/// Returns the largest absolute value of each input in the training records.
 fn largest_inputs(problem: &EstimationProblem<'_>) -> Vec<f64> {
     let records = &problem.dataset.train;
     let count = records.iter().map(|r| r.input_columns.len()).max();
@@ -166,7 +167,7 @@ fn largest_inputs(problem: &EstimationProblem<'_>) -> Vec<f64> {
     (0..count.unwrap_or(0)).map(largest).collect()
 }
 
-/// Two significant digits, for reading.
+/// Rounds to two significant digits for readability.
 fn round_to_two_digits(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }

@@ -1,4 +1,4 @@
-//! Bounds of an experiment: those of the dataset file, and otherwise those of the recorded motion.
+//! Bounds of an experiment, from the dataset file or else from the recorded motion.
 
 use eomgen_analysis::spectrum::periodogram;
 use eomgen_records::samples::{MIN_SAMPLES, typical_step};
@@ -16,14 +16,14 @@ pub struct Bounds {
     pub duration: f64,
     /// Time between the samples of the prediction, s.
     pub sample_time: f64,
-    /// Number of samples for which a played value is held, because the inputs of the records are
-    /// not sampled faster.
+    /// Number of samples for which each input value is held, because the recorded inputs have a
+    /// longer sample time.
     pub samples_per_value: usize,
-    /// Bounds of the inputs that have columns and are not fixed.
+    /// Bounds of the inputs that have columns in the records and are not fixed.
     pub inputs: Vec<InputBounds>,
     /// Admissible range of each channel.
     pub channels: Vec<Interval>,
-    /// Origin of the bounds as a sentence.
+    /// Origin of the bounds in words.
     pub sources: String,
 }
 
@@ -43,7 +43,7 @@ pub struct InputBounds {
 }
 
 impl Bounds {
-    /// Computes the bounds of a dataset. `inputs`: names of the inputs of the model; `sensors`:
+    /// Computes the bounds from a dataset. `inputs`: names of the inputs of the model; `sensors`:
     /// expected sensor of each channel.
     pub fn from_dataset(
         problem: &EstimationProblem<'_>,
@@ -135,8 +135,8 @@ impl Bounds {
         }
     }
 
-    /// Returns the reason why the experiment is too short for a record: less than half a window or
-    /// too few samples; `None` if it is long enough.
+    /// Returns the reason why the experiment is too short for a record, if it is shorter than half
+    /// a window or has too few samples. `None` if it is long enough.
     pub fn explain_too_short(&self, window: Option<f64>) -> Option<String> {
         let least = (0.5 * window.unwrap_or(0.0)).max(MIN_SAMPLES as f64 * self.sample_time);
         (self.duration < least).then(|| {
@@ -155,8 +155,8 @@ impl Bounds {
     }
 }
 
-/// The least and the greatest value of an input on all records, with the drive off; and the frequency
-/// below which nearly all of its power is.
+/// Returns the range of an input over all records, extended to 0, and the frequency below which
+/// nearly all of its power lies.
 fn find_input_range(problem: &EstimationProblem<'_>, place: usize) -> (Interval, f64) {
     let records = || problem.dataset.train.iter().chain(&problem.dataset.test);
     let mut range = Interval::ZERO;
@@ -189,7 +189,7 @@ fn find_input_range(problem: &EstimationProblem<'_>, place: usize) -> (Interval,
     (range, fastest)
 }
 
-/// Between what values a channel's quantity was, noise aside.
+/// Returns the range of the quantity of a channel over all records, with a margin.
 fn find_channel_range(
     problem: &EstimationProblem<'_>,
     channel: ChannelId,

@@ -1,6 +1,7 @@
-//! Search for the experiment that shows an undetectable effect best: the experiment with the
-//! smallest size of the effect for which the model without it, fitted to the experiment as well,
-//! leaves the required separation.
+//! Search for the experiment that shows an undetectable effect best. For each experiment, the model
+//! without the effect is fitted to the predicted record with the effect. The detectable size is the
+//! smallest size with the required separation; the best experiment has the smallest detectable
+//! size.
 
 use rayon::prelude::*;
 
@@ -19,15 +20,16 @@ use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::Unknown;
 use crate::thresholds;
 
-/// Trials of a size, until it moves the outputs as wanted.
+/// Maximum number of trials for a size with a small but measurable change of the outputs.
 const TRIALS: usize = 8;
 
-/// Maximum number of corrections of the detectable size, and range of the factor of each.
+/// Maximum number of corrections of the detectable size, range of the factor of each correction,
+/// and factors at which the corrections end.
 const MAX_CORRECTIONS: usize = 4;
 const CORRECTION_RANGE: Interval = Interval::new(0.2, 5.0);
 const CLOSE_ENOUGH: Interval = Interval::new(0.9, 1.1);
 
-/// An experiment with the prediction of a fit.
+/// Experiment with its prediction by a fitted model.
 pub struct PredictedExperiment<'p> {
     /// Index of the proposal.
     pub index: usize,
@@ -37,49 +39,49 @@ pub struct PredictedExperiment<'p> {
     pub prediction: Prediction,
 }
 
-/// An effect that the records cannot show at any size.
+/// Effect that the records cannot show at any size.
 pub struct HiddenEffect<'f> {
     problem: &'f EstimationProblem<'f>,
-    /// The model without it.
+    /// Fitted model without the effect.
     without: &'f Rival<'f>,
     place: Place,
     /// Unknown that scales the effect.
     unknown: Unknown,
-    /// Its value where it is absent, SI.
+    /// Value of the unknown without the effect, SI.
     base: f64,
 }
 
-/// Place of an effect.
+/// Representation of an effect in the model.
 enum Place {
-    /// In separate terms.
+    /// Separate terms in the equations.
     Model {
         model: Box<EstimationModel>,
-        /// The values of its parameters where it is absent, SI.
+        /// Parameter values without the effect, SI.
         values: Vec<f64>,
     },
-    /// In an unknown of the model without it.
+    /// Unknown of the model without the effect.
     Unknown(UnknownId),
 }
 
-/// An experiment that shows an effect.
+/// Experiment that shows an effect.
 #[derive(Clone, Debug)]
 pub struct Detection {
     /// Index of the proposal.
     pub proposal: usize,
     /// Smallest detectable size, SI; the trial size if no experiment shows the effect.
     pub size: f64,
-    /// Residual of the model without the effect at that size.
+    /// Residual of the model without the effect at this size.
     pub separation: Separation,
     /// Predicted sensor outputs with the effect, one column per channel.
     pub predictions: Vec<Vec<f64>>,
 }
 
-/// An experiment with a small size of an effect.
+/// Prediction of an experiment with a small size of the effect.
 struct Tried<'t> {
     place: usize,
     proposal: &'t Proposal,
     size: f64,
-    /// Change of the outputs, in standard deviations.
+    /// RMS change of the outputs, in standard deviations.
     moved: f64,
     present: Prediction,
     /// RMS residual of the model without the effect before a fit, per unit of size.
@@ -119,7 +121,7 @@ impl<'f> HiddenEffect<'f> {
         let unknowns: Vec<CandidateUnknown> = unknowns.collect();
         let scaling = unknowns.iter().find(|of| !of.is_shape);
         let scaling = scaling.ok_or(DiscoverError::NotExcited)?;
-        // Present, so that it is derived: its size is set when it is run.
+        // The effect is derived with a nonzero size; its actual size is set later.
         let present = unknowns.iter().map(|of| {
             let value = match of.is_shape {
                 true => of.unknown.start,
@@ -149,13 +151,13 @@ impl<'f> HiddenEffect<'f> {
         })
     }
 
-    /// Returns the scaling parameter at a size in the form of the specification, SI.
+    /// Returns the scaling parameter for a given size, in the form used in the specification, SI.
     pub fn value_at_size(&self, size: f64) -> f64 {
         let value = self.unknown.clamp(self.base + size);
         self.unknown.kind.value_in_specification(value)
     }
 
-    /// The model with the effect.
+    /// Returns the model with the effect.
     fn model(&self) -> &EstimationModel {
         match &self.place {
             Place::Model { model, .. } => model,
@@ -163,7 +165,7 @@ impl<'f> HiddenEffect<'f> {
         }
     }
 
-    /// Predicts an experiment with the effect at a size, if that is within its bounds.
+    /// Predicts an experiment with the effect at a given size; `None` if the size is out of bounds.
     fn predict_with_effect(
         &self,
         (bounds, times): (&Bounds, &[f64]),
@@ -189,7 +191,7 @@ impl<'f> HiddenEffect<'f> {
         predictor?.predict(bounds, times, proposal).ok()
     }
 
-    /// An experiment with a small size, sought from a `start`.
+    /// Predicts an experiment with a small size of the effect. `start`: first trial size.
     fn try_small_size<'t>(
         &self,
         within: (&Bounds, &[f64]),
@@ -210,8 +212,8 @@ impl<'f> HiddenEffect<'f> {
         })
     }
 
-    /// Finds a size with a small but measurable change of an experiment's outputs, and its
-    /// prediction.
+    /// Finds a size with a small but measurable change of the outputs of an experiment. Returns the
+    /// size, the RMS change and the prediction.
     fn find_small_size(
         &self,
         within: (&Bounds, &[f64]),
@@ -233,7 +235,7 @@ impl<'f> HiddenEffect<'f> {
         None
     }
 
-    /// The root mean square by which outputs differ, in standard deviations of the noise.
+    /// Returns the RMS difference of two predictions, in standard deviations of the noise.
     fn change_in_noise(&self, one: &Prediction, other: &Prediction) -> f64 {
         let columns = one.records[0]
             .channels
@@ -249,9 +251,9 @@ impl<'f> HiddenEffect<'f> {
         (sum / count).sqrt()
     }
 
-    /// Returns the experiment, all with a small size, whose outputs change most by the effect
-    /// itself, per unit of size, and its RMS residual after a linear fit. Derivatives are expensive
-    /// and computed only for experiments that may be the best.
+    /// Returns the experiment with the largest residual after a linear fit, per unit of size, and
+    /// this RMS residual. All experiments have a small size. Derivatives are expensive and
+    /// therefore computed only for experiments that may be the best.
     fn most_shown<'t>(&self, mut tried: Vec<Tried<'t>>) -> Option<(Tried<'t>, f64)> {
         tried.sort_by(|a, b| b.most.total_cmp(&a.most));
         let mut best: Option<(Tried<'t>, f64)> = None;
@@ -277,7 +279,7 @@ impl<'f> HiddenEffect<'f> {
         within: (&Bounds, &[f64]),
         family: &[PredictedExperiment<'_>],
     ) -> Option<Detection> {
-        // A small size in one experiment is a good start for the next.
+        // The small size of one experiment is a good first trial size for the others.
         let usual = 1e-3 * self.unknown.scale;
         let (mut first, mut others) = (None, family);
         while let (None, Some((played, rest))) = (&first, others.split_first()) {

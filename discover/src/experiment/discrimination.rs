@@ -1,5 +1,5 @@
-//! Search for the experiment that separates the members of a class best: the maximum of the
-//! smallest separation over the pairs that any experiment separates.
+//! Search for the experiment that separates the members of a class best. It maximises the smallest
+//! separation over those pairs that some experiment separates.
 
 use rayon::prelude::*;
 
@@ -10,7 +10,7 @@ use crate::experiment::separation::{Rival, Separation};
 use crate::model::problem::EstimationProblem;
 use crate::thresholds;
 
-/// Fitted models that the records cannot distinguish.
+/// Fitted models of the members of a class, which the records do not separate.
 pub struct Members<'f> {
     /// Problem of all fits.
     pub problem: &'f EstimationProblem<'f>,
@@ -18,7 +18,7 @@ pub struct Members<'f> {
     pub rivals: Vec<Rival<'f>>,
 }
 
-/// An experiment and its separations.
+/// Experiment with its separations.
 #[derive(Clone, Debug)]
 pub struct Discrimination {
     /// Index of the proposal.
@@ -29,18 +29,18 @@ pub struct Discrimination {
     pub predictions: Vec<Vec<Vec<f64>>>,
 }
 
-/// Separation of two members.
+/// Separations of two members.
 #[derive(Clone, Debug)]
 pub struct PairSeparation {
     /// Indices of the members.
     pub members: [usize; 2],
-    /// Residual of the second after a fit to the prediction of the first, and the reverse.
+    /// Residual of the second member after a fit to the prediction of the first, and vice versa.
     pub separations: [Separation; 2],
 }
 
 impl PairSeparation {
-    /// Returns the smaller separation, in standard deviations of the noise, because the true member
-    /// is unknown.
+    /// Returns the smaller separation, in standard deviations of the noise. The smaller one counts,
+    /// because the correct member is unknown.
     pub fn smaller_separation(&self) -> f64 {
         let [one, other] = &self.separations;
         one.rms_in_noise.min(other.rms_in_noise)
@@ -52,10 +52,10 @@ impl PairSeparation {
 pub enum NoExperiment {
     /// The model has no driven input with a range.
     NoInput,
-    /// None of this number of inputs stays within the limits. Most of them violate the limit of
-    /// this quantity.
+    /// All tested inputs violate limits. Contains their number and the quantity whose limit most of
+    /// them violate.
     LeavesLimits(usize, String),
-    /// None of this number of inputs can be simulated.
+    /// The simulation fails for all tested inputs. Contains their number.
     SimulationFailed(usize),
 }
 
@@ -65,7 +65,7 @@ impl Members<'_> {
     ///
     /// # Errors
     ///
-    /// The reason why no experiment is possible.
+    /// The reason why no experiment is proposed.
     pub fn find_best_experiment(
         &self,
         bounds: &Bounds,
@@ -110,7 +110,7 @@ impl Members<'_> {
         best.ok_or_else(|| describe_exclusions(&promised))
     }
 
-    /// All pairs of members.
+    /// Returns all pairs of members.
     fn pairs(&self) -> Vec<[usize; 2]> {
         let count = self.rivals.len();
         let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
@@ -132,7 +132,7 @@ impl Members<'_> {
         self.rivals.iter().map(predicted).collect()
     }
 
-    /// Returns the linearised distance of the members of each pair.
+    /// Returns the linearised separation of the members of each pair.
     fn predict_distances(
         &self,
         bounds: &Bounds,
@@ -152,7 +152,8 @@ impl Members<'_> {
             .collect()
     }
 
-    /// The same with rivals fitted anew; none where one cannot be followed.
+    /// Computes the separation of each pair with fitted rivals; `None` if a motion cannot be
+    /// simulated.
     fn refit_members(
         &self,
         bounds: &Bounds,
@@ -180,7 +181,7 @@ impl Members<'_> {
     }
 }
 
-/// Why no experiment is left: what most of them leave.
+/// Summarises why all experiments are excluded, with the most frequent cause.
 fn describe_exclusions<T>(promised: &[Result<T, Exclusion>]) -> NoExperiment {
     let mut left: Vec<(&str, usize)> = Vec::new();
     for of in promised {

@@ -42,7 +42,7 @@ pub(super) fn write_experiment_csv(
     text
 }
 
-/// Rounds to twelve digits, which removes rounding errors of differences of times.
+/// Rounds to twelve digits, which removes the rounding errors of time differences.
 fn round_to_twelve_digits(value: f64) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;

@@ -1,4 +1,4 @@
-//! Members of a class, each fitted to the records instead of the named effect.
+//! Fits of the members of a class, each in place of the named effect.
 
 use crate::catalogue::candidate::Candidate;
 use crate::fit::fit_result::Fit;
@@ -12,9 +12,9 @@ use crate::search::screening::screen_candidates;
 use crate::search::search_result::SearchResult;
 use crate::thresholds;
 
-/// Fits each candidate that is indistinguishable from an accepted effect in its place, together
-/// with the other accepted effects. The fit is `None` if it fails. `context`: context of the
-/// search.
+/// For each candidate that is inseparable from an accepted effect, fits the model with the
+/// candidate in place of this effect. Other accepted effects stay in the model. A failed fit is
+/// `None`. `context`: context of the search.
 pub fn fit_equivalents(
     context: RoundContext<'_>,
     found: &SearchResult,

@@ -1,9 +1,9 @@
-//! Proposal of the next experiment: an admissible input that distinguishes the candidates of a
-//! class, simulated with the fitted models.
+//! Proposal of the next experiment: an admissible input that separates the members of a class,
+//! simulated with the fitted models.
 //!
 //! The files in the order of their dependence: [`waveform`] (forms of an input), [`bounds`],
 //! [`proposal`] (admissible inputs), [`prediction`] (response of a fitted model), [`separation`]
-//! (residual of another model after a fit to that response), [`discrimination`] (input that
+//! (residual of another model after a fit to this response), [`discrimination`] (input that
 //! separates best), [`detection`] (input that shows an undetectable effect best), `members` (fits
 //! of a class), `experiment_csv` (the CSV file), [`next_experiment`] (the result).
 
@@ -83,22 +83,22 @@ pub fn propose_experiments(context: RoundContext<'_>, found: &SearchResult) -> E
     experiments
 }
 
-/// Experiments that the rig can run.
+/// Search for admissible experiments and their results.
 struct Plan<'r> {
     context: RoundContext<'r>,
-    /// The model's inputs.
+    /// Names of the inputs of the model.
     inputs: Vec<String>,
-    /// The SI unit of each.
+    /// SI unit of each input.
     units: Vec<String>,
     bounds: Bounds,
-    /// Why nothing of these bounds can be played, if so.
+    /// Reason why no experiment within the bounds is possible, if known.
     impossible: Option<String>,
     times: Vec<f64>,
     family: Vec<Proposal>,
 }
 
 impl Plan<'_> {
-    /// Returns an experiment that states the reason if the rig can run none.
+    /// Returns a result with the reason if no experiment is possible.
     fn explain_no_experiment(&self) -> Option<NextExperiment> {
         let reason = match (&self.impossible, self.family.is_empty()) {
             (Some(reason), _) => reason.clone(),
@@ -157,7 +157,8 @@ impl Plan<'_> {
         }
     }
 
-    /// An experiment of a class as a result; a file if it separates some.
+    /// Returns the experiment of a class as a result. If the experiment separates a pair, its file
+    /// is written.
     fn tell_members_apart(
         &self,
         at: &[ClassMember],
@@ -212,7 +213,7 @@ impl Plan<'_> {
         }
     }
 
-    /// The file of an input, written if it is not yet: of several uses the first is drawn.
+    /// Returns the index of the file of an experiment. A file with the same text is reused.
     fn write_experiment(
         &self,
         proposal: &Proposal,
@@ -243,7 +244,7 @@ impl Plan<'_> {
     }
 
     /// Proposes experiments that detect the effects that the records cannot show, one for each
-    /// effect and place.
+    /// effect and site.
     fn of_not_testable(&self, found: &SearchResult, experiments: &mut Experiments) {
         let problem = self.context.problem;
         experiments.for_rejected = vec![None; found.rejected.len()];
@@ -294,7 +295,8 @@ impl Plan<'_> {
         }
     }
 
-    /// Of each form on each input the largest with which a fit stays within its limits.
+    /// Returns for each waveform and input the experiment with the largest amplitude that stays
+    /// within the limits.
     fn largest(&self, fit: &Fit) -> Vec<PredictedExperiment<'_>> {
         let numbered: Vec<(usize, &Proposal)> = self.family.iter().enumerate().collect();
         let is_same = |one: &(usize, &Proposal), other: &(usize, &Proposal)| {
@@ -361,7 +363,7 @@ impl Plan<'_> {
         }
     }
 
-    /// Returns the quantity that scales an effect and its smallest detectable value, in its unit.
+    /// Returns the smallest detectable value of the quantity that scales an effect, in its unit.
     fn smallest_detectable(&self, candidate: &Candidate, value: f64) -> Option<DetectableSize> {
         let shown = |what: &str, from: f64, unit: &str| {
             Some(DetectableSize {

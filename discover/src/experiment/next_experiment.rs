@@ -1,4 +1,4 @@
-//! Next experiments as results.
+//! Results of the search for next experiments.
 
 use std::fmt;
 
@@ -10,16 +10,17 @@ use crate::experiment::discrimination::NoExperiment;
 /// All proposed experiments.
 #[derive(Clone, Debug, Default)]
 pub struct Experiments {
-    /// Files of the inputs.
+    /// Files of the experiments.
     pub files: Vec<ExperimentFile>,
-    /// Experiment that separates the class of each accepted effect; `None` if the effect is unique.
+    /// Experiment that separates the class of each accepted effect; `None` if the effect has no
+    /// class.
     pub for_effects: Vec<Option<NextExperiment>>,
-    /// Experiment that shows each rejected effect; `None` if none was searched.
+    /// Experiment that shows each rejected effect; `None` if no experiment was searched.
     pub for_rejected: Vec<Option<NextExperiment>>,
 }
 
 impl Experiments {
-    /// Creates a result without experiments for these numbers of accepted and rejected effects.
+    /// Creates a result without experiments for given numbers of accepted and rejected effects.
     pub fn empty(accepted: usize, rejected: usize) -> Self {
         Self {
             files: Vec::new(),
@@ -39,7 +40,7 @@ pub struct ClassMember {
 }
 
 impl ClassMember {
-    /// Converts a candidate.
+    /// Creates the member of a candidate.
     pub fn from_candidate(candidate: &Candidate) -> Self {
         Self {
             effect: candidate.effect.clone(),
@@ -47,13 +48,13 @@ impl ClassMember {
         }
     }
 
-    /// Returns effect and site as words.
+    /// Returns effect and site in words.
     pub fn label(&self) -> String {
         format!("{} on {}", effect_in_words(&self.effect), self.site)
     }
 }
 
-/// An experiment as a file.
+/// File of an experiment.
 #[derive(Clone, Debug)]
 pub struct ExperimentFile {
     /// Name of the file: `experiment.csv`, `experiment_2.csv`, ...
@@ -62,7 +63,7 @@ pub struct ExperimentFile {
     pub text: String,
     /// Name of the driven input.
     pub input: String,
-    /// SI unit of that input.
+    /// SI unit of the input.
     pub unit: String,
     /// Sample times, s.
     pub times: Vec<f64>,
@@ -71,13 +72,13 @@ pub struct ExperimentFile {
     /// The two separated members with the smallest separation, or the model with and without an
     /// undetectable effect.
     pub members: [String; 2],
-    /// Predicted sensor outputs of the first member, and of the second fitted to them, one column
-    /// per channel, SI.
+    /// Predicted sensor outputs of the first member, and of the second member after a fit to them.
+    /// One column per channel, SI.
     pub predictions: [Vec<Vec<f64>>; 2],
 }
 
 impl ExperimentFile {
-    /// Returns the name of the file with this index.
+    /// Returns the name of the file with a given index.
     pub(super) fn numbered_name(place: usize) -> String {
         match place {
             0 => "experiment.csv".to_owned(),
@@ -91,7 +92,7 @@ impl ExperimentFile {
 pub struct MemberPair {
     /// Member whose prediction is taken as the truth.
     pub truth: ClassMember,
-    /// Member that is fitted to it.
+    /// Member that is fitted to the prediction.
     pub rival: ClassMember,
     /// RMS residual of the rival, in standard deviations of the noise.
     pub separation: f64,
@@ -106,36 +107,36 @@ pub struct DetectableSize {
     pub parameter: String,
     /// Smallest detectable value, in `unit`.
     pub smallest: f64,
-    /// Unit.
+    /// Unit of the value.
     pub unit: String,
 }
 
-/// Experiment that distinguishes the members of a class or shows an undetectable effect.
+/// Experiment that separates the members of a class or shows an undetectable effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NextExperiment {
-    /// Index of its file; `None` if no admissible input separates the members.
+    /// Index of the experiment's file; `None` if no admissible input separates the members.
     pub file: Option<usize>,
-    /// Name of the input; `None` if no input can be played.
+    /// Name of the input; `None` if no experiment is possible.
     pub input: Option<String>,
     /// Description of the waveform.
     pub waveform: Option<String>,
-    /// Smallest separation of the separated pairs, in standard deviations of the noise; of all
-    /// pairs if none is separated.
+    /// Smallest separation over the separated pairs, in standard deviations of the noise. If no
+    /// pair is separated, smallest separation over all pairs.
     pub separation: Option<f64>,
-    /// All pairs, in both directions.
+    /// Separations of all pairs, in both directions.
     pub pairs: Vec<MemberPair>,
     /// Members that could not be fitted.
     pub failed_members: Vec<ClassMember>,
     /// Smallest detectable size of an undetectable effect.
     pub detectable: Option<DetectableSize>,
-    /// Reason why no input can be played.
+    /// Reason why no experiment is possible.
     pub reason: Option<String>,
     /// Origin of the bounds.
     pub bounds_source: String,
 }
 
 impl NextExperiment {
-    /// Creates a result without an experiment for this reason.
+    /// Creates a result without an experiment, with its reason.
     pub(super) fn without_experiment(reason: &str, bounds: &Bounds) -> Self {
         Self {
             file: None,

@@ -1,4 +1,4 @@
-//! Response of a fitted model to a proposed input, and check of the limits.
+//! Response of a fitted model to a proposed input, and check of its limits.
 
 use std::path::PathBuf;
 
@@ -20,7 +20,7 @@ use crate::thresholds;
 pub struct Prediction {
     /// State at each sample.
     pub states: Vec<Vec<f64>>,
-    /// Sensor outputs, as a list of one record.
+    /// Sensor outputs, as a list with one record.
     pub records: Vec<Record>,
 }
 
@@ -29,14 +29,14 @@ pub struct Prediction {
 pub enum Exclusion {
     /// The motion cannot be simulated.
     SimulationFailed,
-    /// This channel or coordinate would leave its limits.
+    /// The named channel or coordinate would violate its limits.
     LeavesLimits(String),
 }
 
-/// A model at fixed parameters for the simulation of experiments.
+/// Model with fixed parameters for the simulation of experiments.
 pub struct Predictor<'a> {
     problem: &'a EstimationProblem<'a>,
-    /// The model, which is a fit's or has something more.
+    /// Model of a fit, with or without an additional effect.
     model: &'a EstimationModel,
     shooting: Shooting<'a>,
     sensors: SensorValues,
@@ -45,14 +45,15 @@ pub struct Predictor<'a> {
 }
 
 impl<'a> Predictor<'a> {
-    /// Creates a predictor of the fitted model; `None` if it cannot be simulated at its parameters.
+    /// Creates a predictor of a fitted model; `None` if the model cannot be simulated with its
+    /// parameters.
     pub fn from_fit(problem: &'a EstimationProblem<'a>, fit: &'a Fit) -> Option<Self> {
         let theta = &fit.train.estimate.theta;
         let values = fit.training_shooting(problem).parameter_values(theta);
         Self::with_model(problem, (fit, theta), &fit.model, &values)
     }
 
-    /// Creates a predictor of another model at these parameters, with the sensors of a fit.
+    /// Creates a predictor of another model with given parameters, and with the sensors of a fit.
     pub fn with_model(
         problem: &'a EstimationProblem<'a>,
         (fit, theta): (&'a Fit, &[f64]),
@@ -60,7 +61,7 @@ impl<'a> Predictor<'a> {
         values: &[f64],
     ) -> Option<Self> {
         let initial = match problem.dataset.initial {
-            // The initial state of a record is no evidence that a rig can start there.
+            // The recorded initial state may be impossible on the test rig.
             Initial::Estimate => model.initial_state(),
             Initial::Rest | Initial::Values(_) => {
                 problem.estimate_first_state(model, &problem.dataset.train[0])
@@ -104,7 +105,7 @@ impl<'a> Predictor<'a> {
         })
     }
 
-    /// Returns true if a motion stays within its limits.
+    /// Returns an error if a motion violates its limits.
     fn check(
         &self,
         bounds: &Bounds,
@@ -129,7 +130,7 @@ impl<'a> Predictor<'a> {
     }
 }
 
-/// A record of these columns.
+/// Creates a record from predicted columns.
 fn write_record(times: &[f64], inputs: HeldInputs, seen: &[f64], channels: usize) -> Record {
     let column = |channel: usize| seen.iter().skip(channel).step_by(channels).copied();
     Record {

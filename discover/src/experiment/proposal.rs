@@ -1,5 +1,5 @@
-//! Admissible inputs: each waveform on each input at several amplitudes, with the other inputs at
-//! rest.
+//! Admissible inputs: each waveform on each input at several amplitudes. The other inputs have
+//! their rest values.
 
 use eomgen_sim::inputs::HeldInputs;
 
@@ -8,7 +8,7 @@ use crate::experiment::waveform::Waveform;
 use crate::interval::Interval;
 use crate::thresholds;
 
-/// An admissible input.
+/// Admissible input.
 #[derive(Clone, Debug)]
 pub struct Proposal {
     /// Index among the inputs of the model.
@@ -24,7 +24,7 @@ pub struct Proposal {
 }
 
 impl Proposal {
-    /// Returns all trial inputs at these times, s.
+    /// Returns all trial inputs at given sample times, s.
     pub fn list_all(bounds: &Bounds, times: &[f64]) -> Vec<Self> {
         let mut family: Vec<Self> = Vec::new();
         let played_at: Vec<f64> = times
@@ -59,7 +59,7 @@ impl Proposal {
         family
     }
 
-    /// Returns the `count` inputs of the model, with this one played.
+    /// Returns the values of all `count` inputs of the model with this proposal.
     pub fn build_inputs(&self, bounds: &Bounds, times: &[f64], count: usize) -> HeldInputs {
         let mut row = vec![0.0; count];
         for other in &bounds.inputs {
@@ -80,7 +80,8 @@ pub fn rest_value(range: Interval) -> f64 {
     range.clamp(0.0)
 }
 
-/// A form on an input, so much of its range to either side of rest and no faster than it may be.
+/// Scales a waveform to a fraction of the input range on both sides of the rest value, and limits
+/// its rate of change.
 fn play_shape(shape: &[f64], size: f64, input: &InputBounds, bounds: &Bounds) -> Vec<f64> {
     let Interval { low, high } = input.range;
     let rest = rest_value(input.range);
@@ -99,7 +100,7 @@ fn play_shape(shape: &[f64], size: f64, input: &InputBounds, bounds: &Bounds) ->
     shape.iter().map(value).collect()
 }
 
-/// Each value so many times, `count` in all.
+/// Repeats each value `times` times; returns `count` values.
 fn hold_values(values: &[f64], times: usize, count: usize) -> Vec<f64> {
     let held = values.iter().flat_map(|v| std::iter::repeat_n(*v, times));
     held.take(count).collect()

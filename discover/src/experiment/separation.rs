@@ -1,7 +1,7 @@
-//! Separation of a rival model: its residual from the prediction of another model after a fit to
-//! that prediction and to the existing records. A change of its unknowns that these records allow,
-//! or of initial states, does not count. Criterion of T-optimal designs (Atkinson and Fedorov,
-//! Biometrika 62, 1975), with the information of the records.
+//! Separation of a rival model: its residual after a fit to the prediction of another model and to
+//! the existing records. The fit removes differences due to initial states or to unknowns that the
+//! records do not determine. Criterion of T-optimal designs (Atkinson and Fedorov, Biometrika 62,
+//! 1975), with the information of the records.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -26,35 +26,35 @@ use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::Unknown;
 use crate::thresholds;
 
-/// Fit that may imitate the prediction of another model.
+/// Fit of a model that may imitate the prediction of another model.
 pub struct Rival<'f> {
-    /// The fit.
+    /// Fit to the records.
     pub fit: &'f Fit,
-    /// Factor of the information on its unknowns.
+    /// Triangular factor of the information on the unknowns.
     information: DMatrix<f64>,
-    /// Its unknowns, whose priors are in the information.
+    /// Unknowns; their priors are contained in the information.
     unknowns: Vec<Unknown>,
 }
 
 /// Residual of a rival after a fit to a prediction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Separation {
-    /// RMS residual of the channel that shows it best, in standard deviations of its noise.
+    /// RMS residual of the channel with the largest residual, in standard deviations of its noise.
     pub rms_in_noise: f64,
-    /// Index of that channel.
+    /// Index of this channel.
     pub channel: usize,
     /// Sensor outputs of the rival, one column per channel; NaN at samples that are not compared.
     pub sensor_outputs: Vec<Vec<f64>>,
 }
 
 impl<'f> Rival<'f> {
-    /// Uses the information of the records of a fit.
+    /// Creates a rival with the information of the records of its fit.
     pub fn with_records(problem: &EstimationProblem<'_>, fit: &'f Fit) -> Self {
         Self::with_information(fit, compute_fit_information(problem, fit))
     }
 
-    /// Uses only the declared priors of a fit. A large effect would have changed the information of
-    /// the records.
+    /// Creates a rival with the declared priors only, because a large effect would have changed the
+    /// information of the records.
     pub fn with_priors(fit: &'f Fit) -> Self {
         let sd = |unknown: &Unknown| unknown.prior.map_or(f64::INFINITY, |prior| prior.sd);
         let weights = fit.unknowns.iter().map(|unknown| 1.0 / sd(unknown));
@@ -74,9 +74,9 @@ impl<'f> Rival<'f> {
         }
     }
 
-    /// Returns the RMS over all channels of the difference from the prediction of model `truth`
-    /// before a fit. It is an upper bound of [`Rival::predict_linear_rms`]. `None` if the motion
-    /// cannot be simulated.
+    /// Returns the RMS over all channels of the difference from the prediction of the model
+    /// `truth`, before any fit. It is an upper bound on [`Rival::predict_linear_rms`]. `None` if
+    /// the motion cannot be simulated.
     pub fn predict_unfitted_rms(
         &self,
         problem: &EstimationProblem<'_>,
@@ -89,7 +89,7 @@ impl<'f> Rival<'f> {
     }
 
     /// Returns the RMS over all channels of the residual after a linearised fit to the prediction
-    /// of model `truth`; `None` if the motion cannot be simulated.
+    /// of the model `truth`; `None` if the motion cannot be simulated.
     pub fn predict_linear_rms(
         &self,
         problem: &EstimationProblem<'_>,
@@ -104,7 +104,7 @@ impl<'f> Rival<'f> {
         })
     }
 
-    /// The root mean square over all channels of the length `of` what it leaves before it is fitted.
+    /// Returns the RMS over all channels of a residual. `of` computes its norm.
     fn leaves(
         &self,
         problem: &EstimationProblem<'_>,
@@ -121,8 +121,8 @@ impl<'f> Rival<'f> {
         left.is_finite().then_some(left)
     }
 
-    /// Returns the residual after a fit to a prediction and to the rival's own records; `None` if
-    /// the motion cannot be simulated.
+    /// Returns the residual after a fit to a prediction and to the rival's records; `None` if the
+    /// motion cannot be simulated.
     pub fn compute_separation(
         &self,
         problem: &EstimationProblem<'_>,
@@ -154,7 +154,7 @@ impl<'f> Rival<'f> {
         })
     }
 
-    /// Its windows of a prediction, to be explained.
+    /// Creates the shooting problem of the rival on the windows of a prediction.
     fn shooting<'s>(
         &'s self,
         problem: &'s EstimationProblem<'s>,
@@ -169,7 +169,7 @@ impl<'f> Rival<'f> {
         &self.fit.train.estimate.theta
     }
 
-    /// Returns the initial states of the windows: those of the prediction.
+    /// Returns the initial states of the windows, taken from the prediction.
     fn begin_windows(
         &self,
         problem: &EstimationProblem<'_>,
@@ -203,7 +203,8 @@ impl<'f> Rival<'f> {
         }
     }
 
-    /// Fits to windows and to the information from its records.
+    /// Fits the unknowns to the windows of a prediction and to the information of the rival's
+    /// records.
     fn fit_windows(&self, shooting: &Shooting<'_>, begin: &Beginning) -> Option<Estimate> {
         let Beginning { states, prior, .. } = begin;
         let total = |estimate: &Estimate| {
@@ -239,14 +240,14 @@ impl<'f> Rival<'f> {
         Some(present)
     }
 
-    /// Returns the difference between an estimate and the fit to its records.
+    /// Returns the unknowns of an estimate minus those of the fit to the records.
     fn deviation(&self, estimate: &Estimate) -> DVector<f64> {
         let pairs = estimate.theta.iter().zip(self.theta());
         DVector::from_iterator(self.unknowns.len(), pairs.map(|(a, b)| a - b))
     }
 
     /// Returns the triangular factor of [unknowns | residual] from the windows and the information
-    /// of its records.
+    /// of the rival's records.
     fn factor(&self, blocks: &[Option<ReducedBlock>], present: &Estimate) -> DMatrix<f64> {
         let count = self.unknowns.len();
         let mut rows = DMatrix::zeros(count, count + 1);
@@ -262,15 +263,16 @@ impl<'f> Rival<'f> {
     }
 }
 
-/// Initial states of a rival's windows.
+/// Initial states of the rival in the windows of a prediction.
 struct Beginning {
     states: Vec<Vec<f64>>,
-    /// Ranges of its states, in the records or in the experiment.
+    /// Ranges of the states, in the records or in the experiment.
     ranges: Vec<f64>,
     prior: InitialStatePrior,
 }
 
-/// The windows' derivatives with their initial states free; none where one cannot be followed.
+/// Returns the derivatives of each window with its initial state eliminated; `None` if a window
+/// cannot be simulated.
 fn blocks(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,

@@ -1,14 +1,14 @@
-//! Waveforms between -1 and 1 of the inputs of experiments. Multisines have Schroeder phases (IEEE
-//! Trans. Inf. Theory 16, 1970) and so a low crest factor.
+//! Waveforms between -1 and 1 for the inputs of experiments. Multisines have Schroeder phases (IEEE
+//! Trans. Inf. Theory 16, 1970), which give a low crest factor.
 
 use std::f64::consts::PI;
 
 use crate::interval::Interval;
 
-/// The tones of a multisine.
+/// Number of tones of a multisine.
 const TONES: usize = 12;
 
-/// The levels of a staircase, forth and back.
+/// Levels of a staircase, relative to each end.
 const LEVELS: [f64; 10] = [0.2, 0.4, 0.6, 0.8, 1.0, -0.2, -0.4, -0.6, -0.8, -1.0];
 
 /// Waveform of an input.
@@ -18,19 +18,19 @@ pub enum Waveform {
     Multisine(Interval),
     /// Cosine with an exponentially rising frequency through a band, Hz.
     Chirp(Interval),
-    /// Steps between both ends, with this number of periods.
+    /// Steps between both ends, with a given number of periods.
     Square(u32),
-    /// Steps of relative durations 1, 2 and 1 with alternating signs, with this number of periods.
-    /// A mass returns to its start.
+    /// Steps of relative durations 1, 2 and 1 with alternating signs, with a given number of
+    /// periods. A free mass returns to its initial position.
     DoubleReversal(u32),
-    /// Linear motion to one end, to the other and back to rest, with this number of periods.
+    /// Linear motion to one end, to the other end and back to rest, with a given number of periods.
     Triangle(u32),
     /// Constant value at one end.
     Constant {
         /// True if the upper end is used.
         is_upper: bool,
     },
-    /// One end for a fraction of the duration, then rest.
+    /// Value at one end for a fraction of the duration, then rest.
     Release {
         /// True if the upper end is used.
         is_upper: bool,
@@ -42,7 +42,7 @@ pub enum Waveform {
 }
 
 impl Waveform {
-    /// Returns all trial waveforms in a band, Hz.
+    /// Returns all trial waveforms for a band, Hz.
     pub fn list_in_band(band: Interval) -> Vec<Self> {
         let middle = (band.low * band.high).sqrt();
         let mut family = vec![
@@ -64,7 +64,7 @@ impl Waveform {
         family
     }
 
-    /// Returns the values at times from 0 to `duration`, s; `None` if the waveform is too slow for
+    /// Returns the values at times from 0 to `duration`, s. `None` if the waveform is too slow for
     /// the duration.
     pub fn sample(&self, times: &[f64], duration: f64) -> Option<Vec<f64>> {
         let at = |of: &dyn Fn(f64) -> f64| times.iter().map(|t| of(t / duration)).collect();
@@ -147,8 +147,8 @@ impl Waveform {
     }
 }
 
-/// Returns the phase in its period of a signal with this number of periods, at a fraction of the
-/// duration. The end belongs to the last period.
+/// Returns the phase of a signal with `periods` periods, at a fraction of the duration. The final
+/// time belongs to the last period.
 fn phase(part: f64, periods: u32) -> f64 {
     (part.min(1.0 - 1e-12) * f64::from(periods)).fract()
 }
@@ -157,7 +157,7 @@ fn end(is_upper: bool) -> f64 {
     if is_upper { 1.0 } else { -1.0 }
 }
 
-/// Tones at whole numbers of periods, their sum's crest at 1.
+/// Returns a sum of tones with whole numbers of periods, scaled to a maximum of 1.
 fn multisine(band: Interval, times: &[f64], duration: f64) -> Option<Vec<f64>> {
     let mut periods: Vec<u64> = (0..TONES)
         .map(|tone| {

@@ -1,11 +1,12 @@
-//! Differences between the accelerations of similar models, which drive tangent vectors.
+//! Differences between the accelerations of a model and of the model with changed parameters. They
+//! drive tangent vectors.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::exponential::DrivingAccelerations;
 
 use crate::model::simulation::NeighbourDrives;
 
-/// Equations of a model with one changed parameter.
+/// Model with one changed parameter.
 pub(crate) struct PerturbedEvaluator<'c> {
     /// Evaluator of the equations.
     pub evaluator: &'c mut Evaluator,
@@ -13,8 +14,8 @@ pub(crate) struct PerturbedEvaluator<'c> {
     pub change: f64,
 }
 
-/// Differences between the accelerations of a model and of others, per unit of change, as drives of
-/// tangent vectors.
+/// Differences between the accelerations of changed models and of the base model, per unit of the
+/// change, as drives of tangent vectors.
 pub(crate) struct AccelerationDifferences<'c> {
     base: &'c mut Evaluator,
     moved: Vec<PerturbedEvaluator<'c>>,

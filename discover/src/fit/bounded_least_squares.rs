@@ -1,17 +1,17 @@
-//! Linear least squares with bounds by an active-set method, dense and deterministic.
+//! Bounded linear least squares by a dense, deterministic active-set method.
 
 use crate::interval::Interval;
 use eomgen_analysis::qr_iteration;
 use nalgebra::{DMatrix, DVector};
 
-/// Changes of the active set before the present one is taken; each lowers the sum of
-/// squares, so that more only happens to rounding.
+/// Maximum number of changes of the active set. Each change decreases the sum of squares, so the
+/// maximum is reached only because of rounding.
 const MOST_CHANGES: usize = 200;
 
-/// A slope that is this part of the largest one is none.
+/// Ratio to the largest slope below which a slope counts as 0.
 const FLAT: f64 = 1e-10;
 
-/// Returns the x within `bounds`, which contain 0, that minimises |A x - b|. Unbounded directions
+/// Returns the x that minimises |A x - b| within `bounds`. The bounds must contain 0. Components
 /// without influence remain 0.
 pub fn solve_least_squares(
     a: &DMatrix<f64>,
@@ -75,7 +75,7 @@ pub fn solve_least_squares(
     x
 }
 
-/// The solution in the free unknowns, the others held.
+/// Returns the solution for the free unknowns; the others are fixed.
 fn free_solution(
     a: &DMatrix<f64>,
     b: &DVector<f64>,
@@ -97,7 +97,7 @@ fn free_solution(
     let matrix = DMatrix::from_fn(a.nrows(), in_use.len(), |r, c| {
         a[(r, in_use[c])] / scale[in_use[c]]
     });
-    // A motion that diverged does not say where to go.
+    // If the simulation diverged, no step is possible.
     if !held.iter().all(|value| value.is_finite()) {
         return target;
     }
@@ -142,7 +142,8 @@ mod tests {
 
     #[test]
     fn a_bound_that_holds_one_moves_the_other() {
-        // Minimise (x + y - 1)^2 + (x - y - 3)^2: free at (2, -1); with y >= 0 at (2, 0).
+        // Problem: minimise (x + y - 1)^2 + (x - y - 3)^2. The free minimum is (2, -1); with y >= 0
+        // it is (2, 0).
         let a = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, -1.0]);
         let b = DVector::from_vec(vec![1.0, 3.0]);
         let x = solve_least_squares(&a, &b, &[Interval::new(-9.0, 9.0), Interval::new(0.0, 9.0)]);

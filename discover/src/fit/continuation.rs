@@ -14,8 +14,8 @@ use crate::fit::sensitivity::WindowDerivatives;
 use crate::fit::shooting::{Residual, Shooting};
 use crate::thresholds;
 
-/// Function that estimates the initial states at given unknowns, from those at other unknowns if
-/// these are known. Returns the prior and the states.
+/// Function that estimates the initial states for given unknowns. The optional argument contains
+/// the initial states for similar unknowns. Returns the prior and the states.
 pub type EstimateInitialStates<'f> = dyn Fn(&[f64], Option<&[Vec<f64>]>) -> InitialStates + 'f;
 
 /// Result of a continuation.
@@ -23,30 +23,31 @@ pub type EstimateInitialStates<'f> = dyn Fn(&[f64], Option<&[Vec<f64>]>) -> Init
 pub struct ContinuationResult {
     /// Prior of the initial states of the windows.
     pub prior: InitialStatePrior,
-    /// The estimate.
+    /// Final estimate.
     pub estimate: Estimate,
     /// True if further steps would decrease the cost only slightly.
     pub is_converged: bool,
 }
 
-/// Derivatives by the unknowns used in a step.
+/// Type of the derivatives with respect to the unknowns.
 #[derive(Clone, Copy, PartialEq)]
 enum Derivatives {
-    /// Those of the motion. Impacts make them grow without bound, and right for next to nothing.
+    /// Derivatives from tangent vectors. With impacts they grow without bound and are valid only
+    /// for tiny changes.
     Tangents,
-    /// Differences of simulated motions, for unknowns without prior.
+    /// Differences of simulated motions, for unknowns without a prior.
     Secants,
 }
 
-/// Windows and how they are followed.
+/// Continuation on a set of windows.
 struct Continuation<'a> {
     shooting: &'a Shooting<'a>,
     follow: &'a EstimateInitialStates<'a>,
-    /// By how much each unknown is changed for a secant.
+    /// Change of each unknown for a secant, SI.
     sizes: Vec<f64>,
 }
 
-/// Runs the continuation from the best of several guesses, for at most `steps` steps.
+/// Runs the continuation from the best of several initial values, with at most `steps` steps.
 pub fn run_continuation(
     shooting: &Shooting<'_>,
     guesses: &[Vec<f64>],
@@ -63,7 +64,7 @@ pub fn run_continuation(
     present
 }
 
-/// Continues with secants if tangents fail and the residual is far above the noise.
+/// Continues with secants if tangent vectors fail and the residual is far above the noise.
 pub fn continue_by_secants(
     shooting: &Shooting<'_>,
     present: &mut ContinuationResult,
@@ -76,7 +77,7 @@ pub fn continue_by_secants(
     );
 }
 
-/// Replaces the derivatives by unknowns without a prior with secants.
+/// Replaces the derivatives with respect to unknowns without a prior by secants.
 pub fn replace_by_secants(
     shooting: &Shooting<'_>,
     estimate: &Estimate,
@@ -99,7 +100,7 @@ impl<'a> Continuation<'a> {
         }
     }
 
-    /// The estimate at these unknowns.
+    /// Evaluates the estimate for given unknowns.
     fn evaluate(&self, theta: Vec<f64>, before: Option<&[Vec<f64>]>) -> ContinuationResult {
         let InitialStates {
             prior,
@@ -113,13 +114,13 @@ impl<'a> Continuation<'a> {
         }
     }
 
-    /// The root mean square of the residuals, in standard deviations.
+    /// Returns the RMS residual, in standard deviations.
     fn residual_rms(&self, present: &Estimate) -> f64 {
         let count = self.shooting.fraction * self.shooting.windows.measurement_count();
         (present.squares.iter().sum::<f64>() / count).sqrt()
     }
 
-    /// Makes at most `steps` steps, while they reduce the cost enough.
+    /// Makes at most `steps` steps; stops if the decrease of the cost is small.
     fn make_steps(
         &mut self,
         present: &mut ContinuationResult,
@@ -146,7 +147,7 @@ impl<'a> Continuation<'a> {
         }
     }
 
-    /// The next estimate, if there is one that is better.
+    /// Returns the next estimate, if its cost is lower.
     fn step(
         &mut self,
         present: &ContinuationResult,
@@ -168,13 +169,14 @@ impl<'a> Continuation<'a> {
         })
     }
 
-    /// Puts secants in the place of tangents; false if there is nothing to be changed.
+    /// Replaces derivatives by secants. Returns false if no derivative was replaced.
     fn take_secants(
         &mut self,
         estimate: &Estimate,
         linear: &mut [Option<WindowDerivatives>],
     ) -> bool {
-        // If an exact fit leaves less than the noise, rounding would decide on the size.
+        // The lower limit avoids a size that depends on rounding if the residual is far below the
+        // noise.
         let wanted = thresholds::SECANT_OUTPUT_CHANGE * self.residual_rms(estimate).max(1.0);
         let mut taken = false;
         let all = self.shooting.unknowns;
@@ -203,7 +205,7 @@ impl<'a> Continuation<'a> {
         taken
     }
 
-    /// Computes the change of each window's residuals for a change of an unknown.
+    /// Computes the change of the residuals of each window due to a change of an unknown.
     fn secant(
         &self,
         estimate: &Estimate,
@@ -228,17 +230,17 @@ impl<'a> Continuation<'a> {
     }
 }
 
-/// Change of the residuals for a change of an unknown.
+/// Change of the residuals due to a change of an unknown.
 struct Secant {
-    /// The change.
+    /// Change of the unknown, SI.
     size: f64,
-    /// Each window's residuals after less those before, in standard deviations; none where either
-    /// is missing.
+    /// Change of the residuals of each window, in standard deviations; `None` if a simulation
+    /// failed.
     changes: Vec<Option<DVector<f64>>>,
 }
 
 impl Secant {
-    /// The root mean square of all, in standard deviations.
+    /// Returns the RMS change, in standard deviations.
     fn change_rms(&self) -> f64 {
         let all = || self.changes.iter().flatten();
         let count: usize = all().map(DVector::len).sum();

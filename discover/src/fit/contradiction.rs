@@ -1,5 +1,6 @@
-//! Contradicting records: fits of single records compared with the joint fit. A property that
-//! differs in one record, such as a payload or a supply voltage, is not a property of the machine.
+//! Contradicting records, found by comparison of the fits of single records with the joint fit. A
+//! property that differs in one record, such as a payload or a supply voltage, is not a property of
+//! the machine.
 
 use eomgen_model_spec::model::{Parameter, ParameterValue};
 use rayon::prelude::*;
@@ -12,28 +13,29 @@ use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{Unknown, UnknownKind, bounds_with_sign};
 use crate::thresholds;
 
-/// Number of records that are fitted in parallel before the need for more is checked.
+/// Number of records that are fitted in parallel between two checks whether further fits can
+/// matter.
 const AT_ONCE: usize = 2;
 
-/// Returns sentences on contradicting records of a fit with a gap. Two records contradict each
+/// Returns sentences about contradicting records of a fit with a gap. Two records contradict each
 /// other if their single fits give different values of a declared or found parameter and each
-/// single fit is much better than the joint fit. A record that cannot be fitted on its own while
-/// others can is reported with the parameters that would explain it. `floor`: noise floor, in
-/// standard deviations.
+/// single fit is much better than the joint fit. A record is also reported if it cannot be fitted
+/// separately although other records can; the sentence names parameters that would explain it.
+/// `floor`: noise floor, in standard deviations.
 pub fn describe_contradictions(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     floor: f64,
     progress: &(dyn Fn(&str) + Sync),
 ) -> Vec<String> {
-    // A contradiction leaves a large joint residual in at least one record.
+    // If records contradict each other, the joint residual of at least one record is large.
     if largest_record_rms(problem, fit) < thresholds::MIN_CONTRADICTION_RATIO * floor {
         return Vec::new();
     }
     let places = list_records(problem.dataset);
     let mut records: Vec<SingleRecordFit> = Vec::with_capacity(places.len());
     let mut tried = 0;
-    // The first by itself: of two records it may settle it.
+    // The first record is fitted alone, because with two records its fit may be sufficient.
     let (first, others) = places.split_at(1.min(places.len()));
     for some in std::iter::once(first).chain(others.chunks(AT_ONCE)) {
         if !may_contradict(&records, places.len() - tried, floor) {
@@ -65,7 +67,7 @@ pub fn describe_contradictions(
     }
 }
 
-/// Returns true if the fits of `more` further records could still show a contradiction.
+/// Returns true if `more` further fits of single records could still show a contradiction.
 fn may_contradict(records: &[SingleRecordFit], more: usize, floor: f64) -> bool {
     let of_its_own = records.iter().filter(|record| is_better_alone(record));
     if of_its_own.count() + more > 1 {
@@ -83,18 +85,18 @@ fn is_better_alone(record: &SingleRecordFit) -> bool {
     record.rms.is_finite() && record.rms * thresholds::MIN_CONTRADICTION_RATIO < record.joint_rms
 }
 
-/// Odd records among several, judged by the residuals of their single fits.
+/// Records whose single fits have much larger residuals than those of the other records.
 struct Oddness {
-    /// Places of those that leave much more than most do; none where they are as many as the others.
+    /// Indices of the records with large residuals; empty if they are not a minority.
     odd: Vec<usize>,
-    /// Places of those that are explained as most are.
+    /// Indices of the records with usual residuals.
     explained: Vec<usize>,
 }
 
 impl Oddness {
-    /// Judges the RMS residuals of single fits, in standard deviations. A missing effect leaves a
-    /// residual in each record; a residual is large if it is far above the median and above that of
-    /// a correct model.
+    /// Classifies records by the RMS residuals of their single fits, in standard deviations. A
+    /// residual is large if it is far above the median and far above the noise floor. If an effect
+    /// is missing, all records have similar residuals.
     fn of(alone: &[f64], floor: f64) -> Self {
         let mut sorted = alone.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -106,8 +108,8 @@ impl Oddness {
         };
         let explained: Vec<usize> = such(&|rms| rms < thresholds::MAX_FLOOR_RATIO_TO_STOP * usual);
         let odd: Vec<usize> = such(&|rms| rms > thresholds::FAR_FROM_NOISE * usual);
-        // A missing effect may show in a few records only. If most records show it, they do not
-        // contradict each other.
+        // If most records have a large residual, an effect is missing and shows in these records
+        // only.
         match odd.len() < explained.len() {
             true => Self { odd, explained },
             false => Self {
@@ -118,7 +120,7 @@ impl Oddness {
     }
 }
 
-/// Finds records with large residuals in single fits while most others have small ones.
+/// Describes records with large residuals in single fits, while most others have small residuals.
 fn find_odd_records(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -153,7 +155,7 @@ fn find_odd_records(
     odd.iter().map(sentence).collect()
 }
 
-/// Finds the single parameters that explain a record by themselves, with their values.
+/// Returns the single parameters that explain a record, with their values.
 fn explaining(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -195,8 +197,8 @@ fn explaining(
     found.collect()
 }
 
-/// The two records that differ most in an unknown, if that is more than uncertainty makes of it and
-/// each is explained by its own value.
+/// Returns the two records with the most significant difference of an unknown. The difference must
+/// exceed the uncertainty, and the single fits of both records must explain them.
 fn furthest(
     alone: &[SingleRecordFit],
     place: usize,
@@ -245,7 +247,7 @@ fn describe_shift(
     )
 }
 
-/// Returns an estimate and its standard deviation, given in SI, in the unit of a parameter.
+/// Formats an estimate and its standard deviation in the unit of a parameter. Both are given in SI.
 pub(crate) fn format_estimate(parameter: Option<&Parameter>, (value, sd): (f64, f64)) -> String {
     match parameter {
         Some(p) => format!(
@@ -273,7 +275,7 @@ mod tests {
         }
     }
 
-    /// Returns true if what was found of all records is a contradiction, but for their values.
+    /// Returns true if the fits show a contradiction, apart from the values of unknowns.
     fn contradicts(records: &[SingleRecordFit]) -> bool {
         let own = records.iter().filter(|of| is_better_alone(of)).count();
         let left: Vec<f64> = records.iter().map(|of| of.rms).collect();
@@ -298,8 +300,7 @@ mod tests {
 
     #[test]
     fn no_record_is_left_out_that_could_contradict_others() {
-        // Near the floor or not with values of its own, in between, odd likewise, and not simulated
-        // at all.
+        // Each kind is (RMS of the single fit, RMS of the joint fit).
         let kinds = [
             (1.0, 1.2),
             (1.0, 9.0),

@@ -15,7 +15,7 @@ use crate::model::specification_texts::edited_source;
 use crate::thresholds;
 
 /// Returns the smallest and largest value of each expression along the training windows of a fit,
-/// SI, without windows whose simulation failed.
+/// SI. Windows whose simulation failed are left out.
 pub fn compute_ranges(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -60,7 +60,8 @@ pub fn compute_ranges(
         .collect()
 }
 
-/// A fit's equations with an observable for each expression; none if one cannot be written.
+/// Derives the equations of a fit with an observable for each expression; `None` if an expression
+/// cannot be added.
 fn with_observables(
     problem: &EstimationProblem<'_>,
     fit: &Fit,

@@ -1,7 +1,7 @@
-//! Final steps of a fit to the minimum of the cost with a wide prior of the initial states.
-//! Derivatives are exact if the model is linear between switches. For other models central
-//! differences of whole motions are used. The errors of forward differences and of linearised
-//! motions would move the fit along directions that the records hardly determine.
+//! Final steps of a fit to the minimum of the cost, with a wide prior of the initial states. If the
+//! model is linear between switches, the derivatives are exact. For other models, central
+//! differences of simulated motions are used. The errors of forward differences and of tangent
+//! vectors would move the fit along directions that the records hardly determine.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -17,12 +17,12 @@ use crate::fit::variable_projection::compute_triangular_factor;
 use crate::ids::{UnknownId, WindowId};
 use crate::thresholds;
 
-/// States that do not move may start so far from where they are, in parts of their range.
+/// Standard deviation of the initial value of a constant state, as a fraction of its range.
 const LEAST_RANGE: f64 = 1e-6;
 
-/// Returns rows that transform the deviation of a state from its mean along the motions of the
-/// windows to unit covariance. The ends of a stiff spring move together, and so must their initial
-/// states.
+/// Returns rows that transform the deviation of a state from its mean along the windows to unit
+/// covariance. Both ends of a stiff spring move together, so their initial states must be
+/// correlated.
 pub(crate) fn compute_whitening(
     shooting: &Shooting<'_>,
     estimate: &Estimate,
@@ -58,7 +58,7 @@ pub(crate) fn compute_whitening(
     ))
 }
 
-/// Takes the final steps of a fit; returns the estimate and the derivatives there.
+/// Takes the final steps of a fit. Returns the estimate and its derivatives.
 pub(crate) fn run_final_steps(
     shooting: &Shooting<'_>,
     prior: &mut InitialStatePrior,
@@ -75,8 +75,8 @@ pub(crate) fn run_final_steps(
     })
 }
 
-/// Takes Gauss-Newton steps by these derivatives, until what they gain is less than the priors can
-/// tell; returns the estimate and the derivatives there.
+/// Takes Gauss-Newton steps with the given derivatives, until the decrease of the cost is
+/// negligible. Returns the estimate and its derivatives.
 fn steps(
     shooting: &Shooting<'_>,
     prior: &mut InitialStatePrior,
@@ -104,9 +104,9 @@ fn steps(
     (present, linear)
 }
 
-/// Returns residuals and derivatives of every window; none where a motion cannot be followed. By `near`,
-/// derivatives near there, differences are taken over changes that move no output by more than a part of
-/// its noise: a motion with dry friction is linear over no more.
+/// Returns residuals and derivatives of every window; `None` if its simulation failed. The
+/// derivatives in `near` limit the differences: each output changes by less than a fraction of its
+/// noise, because a motion with dry friction is linear only in this range.
 fn central_differences(
     shooting: &Shooting<'_>,
     estimate: &Estimate,
@@ -131,7 +131,8 @@ fn central_differences(
                 .map(|of| of.by_unknown.column(id.index()));
             let steepest = columns.map(|column| column.amax()).fold(0.0, f64::max);
             let size = small_change(unknown.scale, steepest);
-            // Beyond a bound that a prior sets there is motion too.
+            // A bound that comes only from a prior does not limit the difference quotient: the
+            // model can be simulated beyond it.
             let reach = unknown.bounds.join(unknown.bounds_without_prior);
             let ends = [size, -size].map(|change| {
                 let mut moved = theta.clone();
@@ -199,25 +200,25 @@ fn central_differences(
         .collect()
 }
 
-/// A derivative of each window's residuals; none where a motion cannot be followed.
+/// Derivative of the residuals of each window; `None` if its simulation failed.
 type Columns = Vec<Option<DVector<f64>>>;
 
-/// Returns the change over which a difference is taken, of something with this scale of which the
-/// outputs, in standard deviations of their noise, have this largest derivative.
+/// Returns the step of a difference quotient. `scale`: scale of the unknown; `steepest`: largest
+/// derivative of an output, in standard deviations of its noise.
 fn small_change(scale: f64, steepest: f64) -> f64 {
     (thresholds::CENTRAL_QUOTIENT_IN_SCALES * scale)
         .min(thresholds::QUOTIENT_OUTPUT_CHANGE / steepest)
 }
 
-/// Difference quotients about the residuals at a point.
+/// Difference quotients of the residuals.
 struct Quotients<'q> {
     shooting: &'q Shooting<'q>,
     residuals: &'q [Option<Residual>],
 }
 
 impl Quotients<'_> {
-    /// Returns the quotients of each window's residuals at both ends. `steps`: steps to the ends of
-    /// each window, both positive.
+    /// Returns the quotients of the residuals of each window. `ends`: residuals after a positive
+    /// and a negative step; `steps`: sizes of both steps for each window, not negative.
     fn columns(&self, ends: [Vec<Option<Residual>>; 2], steps: &[[f64; 2]]) -> Columns {
         let [after, before] = ends;
         let windows = after.into_iter().zip(before).zip(self.residuals).zip(steps);

@@ -19,14 +19,14 @@ pub struct Fit {
     pub model: EstimationModel,
     /// Unknowns of the fit.
     pub unknowns: Vec<Unknown>,
-    /// Standard deviation of each unknown if the model is correct, with correlated residuals and
-    /// without priors from preceding windows.
+    /// Standard deviation of each unknown for a correct model. It includes the correlation of
+    /// residuals, but not the priors from preceding windows.
     pub sd: Vec<f64>,
-    /// Standard deviation of each unknown for the test of effects, larger by [`thresholds::UNCERTAINTY_FACTOR`],
-    /// because the model may be wrong.
+    /// Standard deviation of each unknown for the test of effects. It is larger by
+    /// [`thresholds::UNCERTAINTY_FACTOR`], because the model may be incorrect.
     pub effect_sd: Vec<f64>,
-    /// Error of each unknown due to a misfit of one standard deviation of the noise in each sample
-    /// that resembles the response of the unknown.
+    /// Error of each unknown due to a misfit that resembles the response of the unknown, with one
+    /// standard deviation of the noise in each sample.
     pub misfit_sensitivity: Vec<f64>,
     /// Range of each state.
     pub ranges: Vec<f64>,
@@ -47,22 +47,22 @@ impl Fit {
         value <= bounds.low || value >= bounds.high
     }
 
-    /// Returns the residual RMS of all records, in standard deviations.
+    /// Returns the RMS residual of all records, in standard deviations.
     pub fn rms(&self) -> f64 {
         (0.5 * (self.train.rms.powi(2) + self.test.rms.powi(2))).sqrt()
     }
 
     /// Returns the reported standard deviation of an unknown. It includes the possible error due to
-    /// the part of the misfit above `floor`, the noise floor in standard deviations of the noise.
-    /// The misfit is not noise and may resemble the response of the unknown.
+    /// the misfit above `floor`, the noise floor in standard deviations. The misfit is not noise
+    /// and may resemble the response of the unknown.
     pub fn sd_with_misfit(&self, id: UnknownId, floor: f64) -> f64 {
         let left = (self.train.rms.powi(2) - floor.powi(2)).max(0.0).sqrt();
         let misfit = thresholds::MISFIT_SIMILARITY * left * self.misfit_sensitivity[id];
         self.effect_sd[id].hypot(misfit)
     }
 
-    /// Returns start values of the unknowns for a fit with a further effect. Parameters and sensors
-    /// that imitated the effect are reset.
+    /// Returns initial values of the unknowns for a fit with a further effect. Parameters and
+    /// sensors that imitated the effect are reset.
     pub fn restart_values(&self) -> Vec<f64> {
         let known = self.unknowns.iter().zip(&self.train.estimate.theta);
         known
@@ -75,14 +75,14 @@ impl Fit {
         UnknownId::first(self.unknowns.len()).zip(&self.unknowns)
     }
 
-    /// Returns the values of unknowns in the form of the specification, SI.
+    /// Returns the values of unknowns in the form used in the specification, SI.
     pub fn values_in_specification(&self, unknowns: &[UnknownId]) -> Vec<f64> {
         let theta = &self.train.estimate.theta;
         let of = |id: &UnknownId| self.unknowns[*id].kind.value_in_specification(theta[*id]);
         unknowns.iter().map(of).collect()
     }
 
-    /// Returns the training windows with the model of the fit.
+    /// Returns the shooting problem of the training windows.
     pub fn training_shooting<'a>(&'a self, problem: &'a EstimationProblem<'a>) -> Shooting<'a> {
         Shooting::new(
             problem,
@@ -93,8 +93,8 @@ impl Fit {
         )
     }
 
-    /// Converts a state of this model to one of another model. States that exist only in the other
-    /// model are 0.
+    /// Converts a state of this model to a state of another model. States that exist only in the
+    /// other model are 0.
     pub fn map_state(&self, model: &EstimationModel, state: &[f64]) -> Vec<f64> {
         if state.is_empty() {
             return Vec::new();
@@ -102,12 +102,12 @@ impl Fit {
         model.map_state(&self.model, state)
     }
 
-    /// Returns true if the residual is within the limit of a correct model on training and on test
-    /// records. `floor`: noise floor, in standard deviations.
+    /// Returns true if the residuals of the training and test records are within the limit for a
+    /// correct model. `floor`: noise floor, in standard deviations.
     ///
-    /// The squares of a correct model have a chi-squared distribution with as many degrees of freedom
-    /// as the floor has squares. Those of the test records are larger because of the uncertainty of
-    /// the unknowns.
+    /// The squares of a correct model have a chi-squared distribution with as many degrees of
+    /// freedom as there are squares in the noise floor. Those of the test records are larger
+    /// because of the uncertainty of the unknowns.
     pub fn is_at_floor(&self, floor: f64) -> bool {
         let freedom = |of: &Residuals| (of.measurement_count * floor.powi(2).min(1.0)).max(1.0);
         let (train, test) = (freedom(&self.train), freedom(&self.test));
@@ -116,8 +116,8 @@ impl Fit {
             && self.test.rms < floor * by_unknowns * largest_ratio_by_chance(test)
     }
 
-    /// Returns the number of unknowns that the records determine: of each, the fraction of its prior
-    /// variance that they remove.
+    /// Returns the number of unknowns that the records determine: the sum of the fractions of prior
+    /// variance that the records remove.
     fn determined_unknowns(&self) -> f64 {
         let of = |(unknown, sd): (&Unknown, &f64)| {
             let left = unknown.prior.map_or(0.0, |prior| sd / prior.sd);
@@ -126,21 +126,21 @@ impl Fit {
         self.unknowns.iter().zip(&self.sd).map(of).sum()
     }
 
-    /// Returns true if the residual RMS is below `rms` standard deviations on training and test
-    /// records.
+    /// Returns true if the RMS residuals of the training and test records are below `rms` standard
+    /// deviations.
     pub fn is_below(&self, rms: f64) -> bool {
         self.train.rms.max(self.test.rms) < rms
     }
 
-    /// Returns true if the residual is below that of another fit by the margin required of an
-    /// effect, on training and test records.
+    /// Returns true if the residual is smaller than the residual of another fit by the margin of an
+    /// accepted effect, on training and test records.
     pub fn is_clearly_below(&self, other: &Self) -> bool {
         let better = 1.0 - thresholds::MIN_HELD_OUT_REDUCTION;
         self.train.rms < better * other.train.rms && self.test.rms < better * other.test.rms
     }
 }
 
-/// Returns the largest residual RMS of a correct model, in noise floors, that is exceeded with the
+/// Returns the largest RMS residual of a correct model, in noise floors. It is exceeded with the
 /// probability of [`thresholds::FALSE_ALARM_QUANTILE`].
 fn largest_ratio_by_chance(freedom: f64) -> f64 {
     let quantile = chi_squared_quantile(freedom, thresholds::FALSE_ALARM_QUANTILE);
@@ -149,8 +149,8 @@ fn largest_ratio_by_chance(freedom: f64) -> f64 {
         .max(thresholds::MAX_FLOOR_RATIO_AT_FLOOR)
 }
 
-/// Returns the quantile of the chi-squared distribution for that of the normal distribution, by the
-/// approximation of Wilson and Hilferty (1931).
+/// Converts a quantile of the normal distribution to the quantile of the chi-squared distribution
+/// with the same probability, by the approximation of Wilson and Hilferty (1931).
 fn chi_squared_quantile(freedom: f64, normal: f64) -> f64 {
     let variance = 2.0 / (9.0 * freedom);
     freedom * (1.0 - variance + normal * variance.sqrt()).powi(3)
@@ -172,7 +172,7 @@ mod tests {
 
     #[test]
     fn short_records_have_a_wider_limit() {
-        // sqrt(76.154/50), and the limit of long records.
+        // Expected values: sqrt(76.154/50), and the limit of long records.
         assert!((largest_ratio_by_chance(50.0) - 1.2341).abs() < 1e-3);
         assert_eq!(
             largest_ratio_by_chance(1e5),

@@ -1,5 +1,5 @@
-//! Full fit of a specification: from a preliminary fit to estimates with uncertainties and
-//! residuals on training and test records.
+//! Full fit of a specification: continues a preliminary fit over whole windows and computes
+//! uncertainties and residuals of training and test records.
 
 use crate::error::DiscoverError;
 use crate::fit::continuation::{continue_by_secants, replace_by_secants, run_continuation};
@@ -26,29 +26,29 @@ use crate::model::unknowns::Unknown;
 use crate::thresholds;
 use eomgen_records::windows::Windows;
 
-/// Starting point of a fit to whole windows.
+/// Initial values of a fit to whole windows.
 struct StartingPoint {
-    /// Prior of their initial states.
+    /// Prior of the initial states.
     prior: InitialStatePrior,
-    /// The estimate so far.
+    /// Estimate so far.
     estimate: Estimate,
-    /// True if its windows were followed anew.
+    /// True if the initial states were estimated again for whole windows.
     is_followed: bool,
-    /// True if it leaves too much to be worth more.
+    /// True if the residual is too large for further steps.
     is_far: bool,
 }
 
-/// Whole windows fitted.
+/// Result of the fit to whole windows.
 struct Converged {
-    /// Prior of their initial states.
+    /// Prior of the initial states.
     prior: InitialStatePrior,
-    /// Their residuals.
+    /// Residuals.
     residuals: Residuals,
-    /// True if that is too much to be worth more.
+    /// True if the residual is too large for further steps.
     is_far: bool,
 }
 
-/// Fits a specification from start values `theta` and computes its residuals.
+/// Fits a specification from initial values `theta` and computes its residuals.
 ///
 /// # Errors
 ///
@@ -65,11 +65,11 @@ pub fn fit_specification(
     )
 }
 
-/// Continues a preliminary fit over the whole windows.
+/// Continues a preliminary fit over whole windows.
 ///
 /// # Errors
 ///
-/// As [`fit_specification`].
+/// Errors of [`fit_specification`].
 pub fn complete_fit(
     problem: &EstimationProblem<'_>,
     preliminary: PreliminaryFit,
@@ -89,8 +89,8 @@ pub fn complete_fit(
         residuals: mut train,
         is_far,
     } = iterate_to_convergence(problem, &mut all, near, preliminary.max_rms);
-    // A start that is known from the window before depends on these unknowns: it would keep the estimate in
-    // place and make it too certain.
+    // Priors from preceding windows depend on the unknowns. They would hold the estimate at its
+    // value and make it too certain.
     let mut loose = prior.without_preceding(&train.estimate.initial_states);
     let FinalSteps {
         windows,
@@ -105,13 +105,14 @@ pub fn complete_fit(
     };
     all.windows = &windows;
     if !train.failed_windows.is_empty() {
-        // A stop that interrupted motions is no property of the fit.
+        // Simulations also fail after a stop request. In this case the fit is not evaluated.
         problem.stop.check_not_stopped()?;
     }
     let prior_weight = all.prior_weight;
     let estimate = &train.estimate;
-    // Tangents through impacts grow without bound, secants of motions that ended in other folds are
-    // too steep: either would make unknowns too certain.
+    // Two kinds of derivatives may fail with impacts and would make unknowns too certain. Tangent
+    // vectors grow without bound, and secants are too steep if the motions end in different local
+    // minima. The larger uncertainty is used.
     let secants = is_followed.then(|| {
         let horizons = thresholds::INITIAL_STATE_HORIZONS.len();
         let follow = estimate_for_unknowns(problem, &all, &preliminary.ranges, horizons);
@@ -127,7 +128,7 @@ pub fn complete_fit(
     let theta = train.estimate.theta.clone();
     let test = evaluate_held_out(problem, held_out, theta, &preliminary.ranges, is_far)?;
     preliminary.model.work.check()?;
-    // A fit worse than noise does not know its unknowns better than its own misfit allows.
+    // If the residual exceeds the noise, the uncertainty increases with the misfit.
     let inflation = train.variance_inflation();
     let numbers = problem.train.measurement_count();
     let sd = |wider: f64| {
@@ -152,9 +153,9 @@ pub fn complete_fit(
 
 /// Windows and derivatives of the final steps.
 struct FinalSteps<'d> {
-    /// The training windows, without the errors of the fixed steps.
+    /// Training windows, corrected for the errors of the fixed steps.
     windows: Windows<'d>,
-    /// The model for later simulations, if it needs shorter steps.
+    /// Model for later simulations, if it needs shorter steps.
     refined: Option<EstimationModel>,
     /// Derivatives at the estimate.
     derivatives: Vec<Option<WindowDerivatives>>,
@@ -170,8 +171,8 @@ impl<'d> FinalSteps<'d> {
     }
 }
 
-/// Takes the final steps, until neither the errors of the fixed steps at the estimate nor the weight of
-/// the priors changes. `priors`: that of the fit, and the wide one of the final steps.
+/// Takes final steps until the errors of the fixed steps and the weight of the priors no longer
+/// change. `priors`: prior of the fit, and the wide prior of the final steps.
 fn take_final_steps<'d>(
     problem: &EstimationProblem<'d>,
     all: &mut Shooting<'_>,
@@ -204,7 +205,8 @@ fn take_final_steps<'d>(
         update_carried_prior(&shifted, prior, &estimate.theta, &estimate.initial_states);
         *train = Residuals::compute(&shifted, estimate);
         found.derivatives = derivatives;
-        // The misfit before these steps gave the priors their weight, which is too large after them.
+        // The weight of the priors was computed from the misfit before these steps, and may be too
+        // large after them.
         let weight = train.variance_inflation();
         if has_settled && weight > thresholds::MAX_WEIGHT_DECREASE * all.prior_weight {
             return found;
@@ -213,8 +215,8 @@ fn take_final_steps<'d>(
     }
 }
 
-/// Fits the initial states of the test windows and returns their residuals, without the errors of the
-/// fixed steps unless the fit is far.
+/// Fits the initial states of the test windows and returns their residuals. If the fit is near the
+/// records, they are corrected for the errors of the fixed steps.
 fn evaluate_held_out(
     problem: &EstimationProblem<'_>,
     held_out: Shooting<'_>,
@@ -243,7 +245,7 @@ fn evaluate_held_out(
     Ok(Residuals::compute(&shifted, follow(&shifted)?))
 }
 
-/// Evaluates a preliminary fit over whole windows, before they are fitted together.
+/// Evaluates a preliminary fit over whole windows before the joint fit of these windows.
 fn evaluate_whole_windows(
     problem: &EstimationProblem<'_>,
     all: &Shooting<'_>,
@@ -261,7 +263,7 @@ fn evaluate_whole_windows(
             thresholds::INITIAL_STATE_HORIZONS.len(),
         );
         let mut near = run_continuation(all, &[theta], &follow, thresholds::MAX_CONTINUATION_STEPS);
-        // A nonlinear model costs ten times as much.
+        // For a nonlinear model, secants cost ten times as much.
         if preliminary.model.is_linear() {
             continue_by_secants(all, &mut near, &follow);
         }
@@ -293,8 +295,8 @@ fn evaluate_whole_windows(
     }
 }
 
-/// Whole windows fitted, and those followed anew that are better for it, as long as that helps and no more
-/// than `most` standard deviations are left.
+/// Fits whole windows. Initial states are estimated again while this decreases the cost and the RMS
+/// residual is at most `most` standard deviations.
 fn iterate_to_convergence(
     problem: &EstimationProblem<'_>,
     all: &mut Shooting<'_>,
@@ -314,8 +316,8 @@ fn iterate_to_convergence(
     };
     let mut residuals = Residuals::compute(all, free);
     let is_far = near.is_far || residuals.rms > most;
-    // The remaining residual, if treated as noise, gives the weight of the records relative to the
-    // priors.
+    // The remaining residual is treated as noise. It determines the weight of the records relative
+    // to the priors.
     all.prior_weight = residuals.variance_inflation();
     for _ in 0..thresholds::MAX_REFRESHES {
         let Estimate {
@@ -350,8 +352,8 @@ fn iterate_to_convergence(
     }
 }
 
-/// Unknowns from a preliminary fit of the beginnings of windows, as far as these lead: longer
-/// windows are folded until it is near.
+/// Continues the fit of the initial segments of windows with further steps until it is near the
+/// noise. In longer windows, impacts make the outputs irregular for distant unknowns.
 fn continued_unknowns(
     problem: &EstimationProblem<'_>,
     all: &Shooting<'_>,
@@ -385,14 +387,15 @@ fn continued_unknowns(
     continued.estimate.theta
 }
 
-/// The windows followed anew at an estimate: those that are better for it begin there.
+/// Estimates the initial states again at an estimate. Each window keeps the initial state with the
+/// lower cost.
 fn refresh_initial_states(
     problem: &EstimationProblem<'_>,
     shooting: &Shooting<'_>,
     mut prior: InitialStatePrior,
     found: Estimate,
 ) -> (InitialStatePrior, Estimate) {
-    // Initial states that are read from the record are not followed.
+    // Initial states that are read from the record are not estimated.
     let Some(ranges) = shooting.ranges else {
         return (prior, found);
     };

@@ -1,8 +1,8 @@
 //! Estimation by separable Gauss-Newton steps on multiple shooting (Bock 1983). The initial state
 //! of each window is eliminated from its residuals by a QR factorisation (variable projection:
-//! Golub and Pereyra 1973), so that the reduced problem depends on the unknowns only. Steps are
-//! shortened until the cost decreases. Each window chooses its own step of the initial state,
-//! because impacts fold the outputs.
+//! Golub and Pereyra 1973), so that the reduced problem depends only on the unknowns. Steps are
+//! shortened until the cost decreases. The step of the initial state is shortened for each window
+//! separately, because impacts make the outputs irregular.
 
 use crate::ids::WindowId;
 use crate::interval::Interval;
@@ -19,7 +19,7 @@ use crate::fit::variable_projection::{
 };
 use crate::thresholds;
 
-/// An estimate.
+/// Estimate of unknowns and initial states with its cost.
 #[derive(Clone, Debug, Default)]
 pub struct Estimate {
     /// Unknowns.
@@ -29,11 +29,11 @@ pub struct Estimate {
     /// Sum of squared residuals of each window, in standard deviations; not finite if the
     /// simulation failed.
     pub squares: Vec<f64>,
-    /// Sum over the windows, with the priors.
+    /// Sum of squares over the windows, plus the cost of the priors.
     pub cost: f64,
 }
 
-/// Estimates unknowns and initial states from start values.
+/// Estimates unknowns and initial states from initial values.
 pub fn run_damped_gauss_newton(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
@@ -57,7 +57,7 @@ pub fn run_damped_gauss_newton(
     present
 }
 
-/// Returns the size of the residuals, in standard deviations, at least one.
+/// Returns the RMS residual, in standard deviations, but at least 1.
 pub fn residual_level(shooting: &Shooting<'_>, estimate: &Estimate) -> f64 {
     let finite = estimate.squares.iter().filter(|s| s.is_finite());
     let (sum, count) = finite.fold((0.0, 0), |(sum, n), s| (sum + s, n + 1));
@@ -67,8 +67,8 @@ pub fn residual_level(shooting: &Shooting<'_>, estimate: &Estimate) -> f64 {
     (sum / numbers).sqrt().max(1.0)
 }
 
-/// Computes the residuals and derivatives of all windows at an estimate. Difference quotients are
-/// taken over the size of its residuals.
+/// Computes the residuals and derivatives of all windows at an estimate. The steps of difference
+/// quotients depend on the size of the residuals.
 pub(crate) fn compute_derivatives(
     shooting: &Shooting<'_>,
     at: &Estimate,
@@ -81,7 +81,7 @@ pub(crate) fn compute_derivatives(
     )
 }
 
-/// Evaluates the cost at these unknowns and initial states.
+/// Evaluates the cost for given unknowns and initial states.
 pub fn evaluate_cost(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
@@ -100,7 +100,7 @@ pub(crate) fn sum_of_squares(residual: &Option<Residual>) -> f64 {
         .map_or(f64::INFINITY, Residual::sum_of_squares)
 }
 
-/// Returns the contribution of the unknowns' priors to the cost.
+/// Returns the contribution of the priors of unknowns to the cost.
 fn prior_of_unknowns(shooting: &Shooting<'_>, theta: &[f64]) -> f64 {
     let terms = shooting.unknowns.iter().zip(theta).map(|(unknown, value)| {
         let unknown_before = NormalPrior {
@@ -135,7 +135,7 @@ fn total_costs(
     }
 }
 
-/// Returns the unknowns after a fraction of a change, within the bounds.
+/// Returns the unknowns after a fraction of a step, within the bounds.
 pub(crate) fn apply_fraction(
     shooting: &Shooting<'_>,
     present: &Estimate,
@@ -171,7 +171,7 @@ pub(crate) fn eliminate_initial_states(
         .collect()
 }
 
-/// The next estimate, if there is one that is better.
+/// Returns the next estimate, if its cost is lower.
 fn step(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
@@ -181,7 +181,7 @@ fn step(
     step_with_correction(shooting, prior, present, linear, |next| next)
 }
 
-/// Returns the next estimate after a correction, if it has a lower cost.
+/// Returns the next estimate after a correction, if its cost is lower.
 pub(crate) fn step_with_correction(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
@@ -236,8 +236,8 @@ pub(crate) fn solve_step(
     solve_least_squares(&a, &b, &bounds)
 }
 
-/// Returns the estimate at new unknowns. Each window takes the step of its initial state that
-/// decreases its cost most.
+/// Returns the estimate for new unknowns. Each window takes the step of its initial state with the
+/// lowest cost.
 pub(crate) fn follow_unknowns(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
@@ -271,7 +271,8 @@ pub(crate) fn follow_unknowns(
     if shooting.ranges.is_none() {
         return best;
     }
-    // Most windows follow the whole step; the others are tried again, all at once.
+    // For most windows the full step decreases the cost. The step is damped for the others, for all
+    // of them at once.
     for damping in &thresholds::INITIAL_STATE_DAMPING[1..] {
         let stuck: Vec<WindowId> = WindowId::first(best.squares.len())
             .filter(|w| total(&best, prior, *w) > total(present, prior, *w))
@@ -297,8 +298,9 @@ pub(crate) fn follow_unknowns(
     total_costs(shooting, prior, theta, initial_states, squares)
 }
 
-/// Corrects the initial states after a long step of the unknowns, with the derivatives at its start
-/// and the residuals at its end, for each window until its cost stops decreasing.
+/// Corrects the initial states after a long step of the unknowns. The derivatives are those before
+/// the step, the residuals those after it. Corrections of a window end when its cost no longer
+/// decreases.
 pub(crate) fn correct_initial_states(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
@@ -354,7 +356,8 @@ pub(crate) fn correct_initial_states(
     best
 }
 
-/// Returns an initial state of a window moved by a step, if there is one, to the nearest admissible state.
+/// Returns the initial state of a window after a step, moved to the nearest admissible state.
+/// Without a step the state is unchanged.
 fn moved_start(
     shooting: &Shooting<'_>,
     admissible: &mut AdmissibleStates<'_>,
@@ -374,7 +377,7 @@ fn total(estimate: &Estimate, prior: &InitialStatePrior, window: WindowId) -> f6
     estimate.squares[window] + prior.compute_cost(window, &estimate.initial_states[window])
 }
 
-/// The sums of squares of some windows.
+/// Returns the sums of squares of the listed windows.
 fn some_squares(
     shooting: &Shooting<'_>,
     theta: &[f64],
@@ -412,8 +415,9 @@ fn some_squares(
     parts.into_iter().flatten().collect()
 }
 
-/// Fits the initial state of one window at fixed unknowns by damped steps over a growing part of
-/// the window. A short motion is nearly linear in its initial state; impacts fold a long one.
+/// Fits the initial state of one window for given unknowns, by damped steps over growing fractions
+/// of the window. A short motion is nearly linear in its initial state; impacts make the outputs of
+/// a long motion irregular.
 pub fn fit_initial_state(
     sensitivities: &mut SensitivityEvaluator<'_>,
     prior: &InitialStatePrior,

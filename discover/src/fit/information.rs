@@ -1,4 +1,4 @@
-//! Information of a set of windows on the unknowns: a factor of the information matrix.
+//! Triangular factor of the information matrix of a set of windows.
 
 use nalgebra::DMatrix;
 
@@ -12,8 +12,9 @@ use crate::ids::WindowId;
 use crate::model::problem::EstimationProblem;
 use crate::thresholds;
 
-/// Returns a triangular R with R'R the information of windows and priors of the unknowns, initial
-/// states free. A change d of the unknowns adds |R d|^2 squared standard deviations to the cost.
+/// Returns a triangular R; R'R is the information of windows and priors on the unknowns, with free
+/// initial states. A change d of the unknowns increases the cost by |R d|^2 squared standard
+/// deviations.
 pub(crate) fn compute_information_factor(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
@@ -37,8 +38,7 @@ pub(crate) fn compute_information_factor(
     compute_triangular_factor(&factor, &rows)
 }
 
-/// Returns the information factor of the training windows of a fit, reduced according to its
-/// misfit.
+/// Returns the information factor of the training windows of a fit, reduced by its misfit.
 pub fn compute_fit_information(problem: &EstimationProblem<'_>, fit: &Fit) -> DMatrix<f64> {
     let shooting = Shooting {
         prior_weight: fit.prior_weight,

@@ -1,5 +1,5 @@
-//! Initial states of the windows: estimated along the record from window to window, or read from a
-//! record smoothed without delay.
+//! Initial states of the windows. They are estimated along the record from window to window, or
+//! read from a record after zero-phase smoothing.
 
 use crate::ids::{WindowId, WindowRange};
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ use crate::thresholds;
 use eomgen_records::dataset::{Channel, Initial, Quantity};
 use eomgen_records::windows::{Window, Windows};
 
-/// Estimates the initial states of all windows at these unknowns.
+/// Estimates the initial states of all windows for given unknowns.
 pub fn estimate_at_unknowns(
     problem: &EstimationProblem<'_>,
     shooting: &Shooting<'_>,
@@ -28,7 +28,7 @@ pub fn estimate_at_unknowns(
 ) -> Result<InitialStates, DiscoverError> {
     if !problem.estimates_initial_states() {
         let states = match problem.dataset.gives_motion() {
-            // The motion is not the model's.
+            // With given motion, the model has no motion of its own.
             true => vec![shooting.model.initial_state(); shooting.windows.windows.len()],
             false => read_smoothed(shooting.model, shooting.windows, &problem.dataset.channels)?,
         };
@@ -49,11 +49,11 @@ pub fn estimate_at_unknowns(
     Ok(follow_windows(shooting, theta, known, horizons, before))
 }
 
-/// Estimates the initial states of all windows at these unknowns with the procedure of a fit.
+/// Estimates the initial states of all windows for given unknowns with all horizons of a fit.
 ///
 /// # Errors
 ///
-/// The initial states must be read from the record and no channel measures a coordinate.
+/// The initial states must be read from the record, and no channel measures a coordinate.
 pub fn estimate_best(
     problem: &EstimationProblem<'_>,
     shooting: &Shooting<'_>,
@@ -95,7 +95,8 @@ pub fn estimate_best(
     Ok(best.collect())
 }
 
-/// Fits the first state of each training record to its first window, with the prior of these ranges.
+/// Fits the first state of each training record to its first window. The prior is computed from the
+/// given ranges.
 pub fn fit_first_states(
     problem: &EstimationProblem<'_>,
     shooting: &Shooting<'_>,
@@ -129,7 +130,7 @@ pub fn fit_first_states(
     fitted
 }
 
-/// Returns a function that estimates initial states for given unknowns, with this number of
+/// Returns a function that estimates initial states for given unknowns, with a given number of
 /// horizons.
 pub fn estimate_for_unknowns<'f>(
     problem: &'f EstimationProblem<'f>,
@@ -143,7 +144,8 @@ pub fn estimate_for_unknowns<'f>(
     })
 }
 
-/// Returns the standard deviation of the prior of each state from the preceding window.
+/// Returns the prior standard deviation of each initial state around the final state of the
+/// preceding window.
 pub fn prior_sd(ranges: &[f64]) -> Vec<f64> {
     ranges
         .iter()
@@ -151,8 +153,8 @@ pub fn prior_sd(ranges: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Returns the prior of these initial states with the standard deviation of a carried state. It is
-/// infinitely wide if initial states are read from the record and not estimated.
+/// Returns a prior with the given means and the standard deviation of states from preceding
+/// windows. The standard deviation is infinite if initial states are read from the record.
 pub fn prior_from_states(
     problem: &EstimationProblem<'_>,
     states: &[Vec<f64>],
@@ -168,7 +170,7 @@ pub fn prior_from_states(
     }
 }
 
-/// Returns the source of the prior of each window's initial state.
+/// Returns the source of the prior mean of each window.
 fn sources(problem: &EstimationProblem<'_>, windows: &Windows<'_>) -> Vec<PriorSource> {
     let of = |window: &Window| {
         let is_stated = window.first == 0
@@ -183,20 +185,20 @@ fn sources(problem: &EstimationProblem<'_>, windows: &Windows<'_>) -> Vec<PriorS
     windows.windows.iter().map(of).collect()
 }
 
-/// Prior of windows' initial states.
+/// Prior of the initial states of windows.
 #[derive(Clone, Copy)]
 struct Known<'a> {
-    /// The first state of each record.
+    /// First state of each record.
     firsts: &'a [Vec<f64>],
-    /// Standard deviation of each state, if stated or carried over.
+    /// Standard deviation of each state, if its mean is from the dataset or the preceding window.
     sd: &'a [f64],
-    /// Source of each window's mean.
+    /// Source of the prior mean of each window.
     sources: &'a [PriorSource],
 }
 
-/// Initial states followed from window to window: each begins where the one before ended and
-/// is then fitted to its own samples. `before`: those at other unknowns, from which parts of
-/// the records may be followed side by side.
+/// Estimates initial states from window to window. The prior mean is the final state of the
+/// preceding window; the state is then fitted to the samples of its own window. `before`: initial
+/// states for similar unknowns; with them, chains of windows are processed in parallel.
 fn follow_windows(
     shooting: &Shooting<'_>,
     theta: &[f64],
@@ -240,8 +242,8 @@ fn follow_windows(
     }
 }
 
-/// Returns the end state of each window's preceding window; `None` for the first windows of
-/// records.
+/// Returns the final state of the preceding window for each window; `None` for the first window of
+/// a record.
 pub fn propagate_to_next_windows(
     shooting: &Shooting<'_>,
     theta: &[f64],
@@ -263,21 +265,22 @@ pub fn propagate_to_next_windows(
     })
 }
 
-/// Simulation of consecutive windows.
+/// Estimation of consecutive windows.
 struct Chain<'a> {
     shooting: &'a Shooting<'a>,
     known: Known<'a>,
     horizons: &'a [f64],
 }
 
-/// Prior mean of a window's initial state, without its samples, and the state.
+/// Prior mean and estimate of the initial state of a window.
 struct FollowedState {
     mean: Vec<f64>,
     state: Vec<f64>,
 }
 
 impl Chain<'_> {
-    /// The initial states of some windows. `carried`: what is known of the first.
+    /// Estimates the initial states of consecutive windows. `carried`: prior mean of the first
+    /// window, if known.
     fn follow(
         &self,
         theta: &[f64],
@@ -322,10 +325,12 @@ impl Chain<'_> {
     }
 }
 
-/// Reads initial states from smoothed records, if the channels measure all coordinates and states
-/// of first order.
+/// Reads initial states from smoothed records. All coordinates and first-order states must be
+/// measured.
 ///
-/// # Errors The coordinate, or the state of first order, that no channel measures.
+/// # Errors
+///
+/// The coordinate or first-order state that no channel measures.
 fn read_smoothed(
     model: &EstimationModel,
     windows: &Windows<'_>,
@@ -368,8 +373,8 @@ fn read_smoothed(
     Ok(initial_states)
 }
 
-/// Sets the prior mean of each window to the end state of the preceding window, which is valid at
-/// these unknowns only.
+/// Sets the prior mean of each window to the final state of the preceding window, which depends on
+/// the unknowns.
 pub(crate) fn update_carried_prior(
     shooting: &Shooting<'_>,
     prior: &mut InitialStatePrior,

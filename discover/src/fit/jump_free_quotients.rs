@@ -1,15 +1,16 @@
-//! Difference quotients of quantities that jump in time, such as accelerations under dry friction. A
-//! jump whose time moves past a sample changes the quantity there by its whole height, which no
-//! derivative describes: divided by a small step it would be the largest information on an unknown.
+//! Difference quotients of quantities that jump in time, such as accelerations with dry friction.
+//! If the time of a jump moves past a sample, the quantity at this sample changes by the whole
+//! jump. Divided by a small step, this change would seem to be very informative about an unknown,
+//! although no derivative describes it.
 
-/// Returns the quotient of a quantity at a sample from its changes to both sides of a point: the
-/// smaller of both one-sided quotients, 0 if their signs differ. A jump passes a sample on one side
-/// only. `after`, `before`: changes over the steps, both divided by their steps.
+/// Returns the difference quotient of a quantity at a sample without the effect of a jump. It is
+/// the smaller one-sided quotient, or 0 if their signs differ, because a jump passes a sample on
+/// one side only. `after`, `before`: one-sided quotients.
 pub(crate) fn limit_quotient(after: f64, before: f64) -> f64 {
     match after * before > 0.0 {
         true if after.abs() < before.abs() => after,
         true => before,
-        // A change that is not finite stays visible.
+        // A non-finite change is returned as NaN.
         false if (after * before).is_nan() => f64::NAN,
         false => 0.0,
     }

@@ -1,5 +1,5 @@
-//! Linearisation of a fit over the beginnings of windows, or over whole windows. The first-order
-//! responses of candidates and forces are compared with it.
+//! Linearisation of a fit over initial segments of windows or over whole windows. It is the
+//! reference for the first-order responses of candidates and forces.
 
 use crate::fit::fit_result::Fit;
 use crate::fit::gauss_newton::{Estimate, evaluate_cost, residual_level};
@@ -12,17 +12,17 @@ use crate::ids::WindowId;
 use crate::model::problem::EstimationProblem;
 use crate::thresholds;
 
-/// Residual and derivatives of each window at the fit.
+/// Residual and derivatives of each window, with initial states eliminated.
 pub type ProjectedWindows = Vec<Option<StateProjection>>;
 
-/// Linearisation point of candidates: beginnings of windows, in which the motion is nearly linear
-/// in the unknowns, with initial states fitted to these parts.
+/// Fit whose initial states are estimated for a fraction of each window, with derivatives. In
+/// initial segments the motion is nearly linear in the unknowns.
 pub struct LinearisedFit {
     /// Fraction of each window.
     pub fraction: f64,
     /// The windows.
     pub windows: Vec<WindowId>,
-    /// Estimate for these parts.
+    /// Estimate for these segments.
     pub estimate: Estimate,
     /// Residuals and derivatives.
     pub projections: ProjectedWindows,
@@ -30,14 +30,14 @@ pub struct LinearisedFit {
     pub level: f64,
 }
 
-/// A linearised fit with its problem.
+/// Linearised fit with its problem.
 #[derive(Clone, Copy)]
 pub struct Linearisation<'a> {
-    /// Derivatives of the residuals.
+    /// Residuals and derivatives.
     pub point: &'a LinearisedFit,
     /// Problem of all fits.
     pub problem: &'a EstimationProblem<'a>,
-    /// The fit.
+    /// Fit that is linearised.
     pub fit: &'a Fit,
 }
 
@@ -72,7 +72,7 @@ impl LinearisedFit {
         }
     }
 
-    /// Keeps every other window if there are many.
+    /// Removes every second window if there are many.
     pub fn thin_out(&self) -> Self {
         let every = self.windows.len().div_ceil(thresholds::FEW_WINDOWS).max(1);
         let windows = self.windows.iter().step_by(every).copied();
@@ -86,8 +86,8 @@ impl LinearisedFit {
     }
 }
 
-/// Returns the priors of the initial states for a part of each window, and states that fit these
-/// parts.
+/// Returns the priors of the initial states for a fraction of each window, and initial states that
+/// fit these segments.
 fn beginnings(
     problem: &EstimationProblem<'_>,
     fit: &Fit,

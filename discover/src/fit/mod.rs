@@ -1,10 +1,10 @@
-//! Fits of a specification to records by multiple shooting: residuals of windows ([`shooting`]),
-//! their derivatives ([`sensitivity`], `jump_free_quotients` of accelerations), elimination of initial states ([`variable_projection`]),
-//! steps ([`gauss_newton`] with [`bounded_least_squares`], [`continuation`] for distant start
-//! values, `final_steps` for collinear unknowns, `step_refinement` for the errors of fixed steps), [`initial_states`], a [`preliminary_fit`] and a
-//! [`full_fit`] fit, the `uncertainty` of the estimates, the remaining [`residuals`], the
-//! [`mod@noise_floor`] of a correct model, and [`contradiction`]s between records that are fitted
-//! [`single_record`].
+//! Fits of a specification to records by multiple shooting. Residuals of windows: [`shooting`];
+//! their derivatives: [`sensitivity`], `jump_free_quotients` of accelerations; elimination of
+//! initial states: [`variable_projection`]. Steps: [`gauss_newton`] with [`bounded_least_squares`],
+//! [`continuation`] from distant initial values, `final_steps` for collinear unknowns,
+//! `step_refinement` for the errors of fixed steps. Fits: [`initial_states`], [`preliminary_fit`],
+//! [`full_fit`] with `uncertainty` and [`residuals`]. Evaluation: [`mod@noise_floor`] of a correct
+//! model, [`contradiction`]s between records that are fitted separately ([`single_record`]).
 
 pub(crate) mod acceleration_differences;
 pub mod bounded_least_squares;

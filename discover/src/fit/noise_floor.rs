@@ -1,7 +1,7 @@
-//! Noise floor: residuals of a correct model. A replica of the records (parametric bootstrap: Efron
-//! 1979), simulated by the fitted model with the noise of the sensors, is processed like the
-//! records. The floor so includes noise, its amplification by the motion, and the error of the
-//! initial states.
+//! Noise floor: residuals of a correct model. The fitted model and the noise of the sensors
+//! generate a replica of the records (parametric bootstrap: Efron 1979), which is processed like
+//! the records. The noise floor therefore includes noise, its amplification by the motion, and the
+//! error of the initial states.
 
 use crate::fit::fit_result::Fit;
 use crate::fit::gauss_newton::evaluate_cost;
@@ -26,8 +26,8 @@ pub struct NoiseFloor {
 
 /// Computes the noise floor of a fit. `seed`: seed of the noise.
 ///
-/// The squares of the residual are divided by those of the replica's noise, so that the floor does not
-/// depend on the drawn size of the noise.
+/// The squares of the residual are divided by the squares of the generated noise, so that the noise
+/// floor does not depend on the random size of this noise.
 pub fn compute_noise_floor(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> NoiseFloor {
     let noise_alone = NoiseFloor {
         channels: problem.noise.clone(),
@@ -67,8 +67,8 @@ pub fn compute_noise_floor(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64
     }
 }
 
-/// Returns the mean square of the noise of each channel at the compared samples; 1 for a channel without
-/// measurements. `noise`: noise in standard deviations.
+/// Returns the mean square of the noise of each channel at the compared samples, or 1 for a channel
+/// without measurements. `noise`: noise in standard deviations.
 fn mean_squares_of_noise(noise: &Windows<'_>, channels: usize) -> Vec<f64> {
     let mut sums = vec![(0.0, 0.0); channels];
     for window in &noise.windows {
@@ -87,14 +87,14 @@ fn mean_squares_of_noise(noise: &Windows<'_>, channels: usize) -> Vec<f64> {
     sums.iter().map(mean).collect()
 }
 
-/// Records that the fitted model would have made, and the noise in them.
+/// Replica of the records and its noise.
 struct Replicas {
     records: Vec<Record>,
-    /// In standard deviations.
+    /// Noise of the replica, in standard deviations.
     noise: Vec<Record>,
 }
 
-/// The training records as the fitted model would have made them.
+/// Generates a replica of the training records with the fitted model.
 fn replicas(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Option<Replicas> {
     let shooting = fit.training_shooting(problem);
     let theta = &fit.train.estimate.theta;
@@ -131,8 +131,8 @@ fn replicas(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Option<Rep
     Some(replicas)
 }
 
-/// Normal numbers from a seed: sums of twelve uniform ones, less six. Their tails end at six,
-/// which no sum of squares notices.
+/// Generator of normal random numbers: sums of twelve uniform numbers, minus six. No number exceeds
+/// 6 in magnitude, which hardly affects sums of squares.
 struct Normal(SplitMix64);
 
 impl Normal {
@@ -154,7 +154,7 @@ mod tests {
         let values: Vec<f64> = (0..20_000).map(|_| draw.next()).collect();
         let mean = values.iter().sum::<f64>() / 2e4;
         let variance = values.iter().map(|v| v * v).sum::<f64>() / 2e4;
-        // Five standard errors: 1/sqrt(n) and sqrt(2/n).
+        // Tolerances: five standard errors, 5/sqrt(n) and 5 sqrt(2/n).
         assert!(mean.abs() < 0.036 && (variance - 1.0).abs() < 0.05);
     }
 }

@@ -13,7 +13,7 @@ use crate::model::unknowns::{Unknown, UnknownKind, list_null_unknowns};
 ///
 /// # Errors
 ///
-/// The windows and the reason if the motion cannot be simulated.
+/// The windows that cannot be simulated, and the reason.
 pub fn fit_null_model(problem: &EstimationProblem<'_>, text: &str) -> Result<Fit, DiscoverError> {
     let model = problem.compile_model(text, None)?;
     let values: Vec<(String, f64)> = model
@@ -25,8 +25,9 @@ pub fn fit_null_model(problem: &EstimationProblem<'_>, text: &str) -> Result<Fit
     let unknowns = list_null_unknowns(problem.dataset, model.specification(), &values);
     let theta: Vec<f64> = unknowns.iter().map(|unknown| unknown.start).collect();
     let texts = || SpecificationTexts::from_text(text);
-    // Sensors that are free from the first step on find large errors, but sometimes absorb the
-    // effect of parameters that have not converged. Sensors that become free later do not.
+    // The fit is repeated with sensors that are free from the first step or only later. Sensors
+    // that are free from the first step find large sensor errors, but sometimes absorb the effect
+    // of parameters that have not converged.
     let held = |unknown: &Unknown| match unknown.kind {
         UnknownKind::Parameter(_) | UnknownKind::InverseParameter(_) => unknown.clone(),
         UnknownKind::Gain(_)

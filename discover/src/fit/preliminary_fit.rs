@@ -1,4 +1,4 @@
-//! Preliminary fits: to the beginnings of windows, or by a linear prediction.
+//! Preliminary fits: to the initial segments of windows, or by a linear prediction.
 
 use crate::error::DiscoverError;
 use crate::fit::continuation::run_continuation;
@@ -14,16 +14,16 @@ use crate::model::unknowns::Unknown;
 use crate::thresholds;
 use eomgen_records::dataset::Initial;
 
-/// Specification fitted to the beginnings of the windows.
+/// Specification fitted to the initial segments of the windows.
 pub struct PreliminaryFit {
-    /// Cost, in squared standard deviations, with the priors.
+    /// Cost with the priors, in squared standard deviations.
     pub cost: f64,
-    /// Prior of the initial states of whole windows, if the fit uses these already.
+    /// Prior of the initial states of whole windows, if they are already estimated.
     pub(crate) whole_window_prior: Option<InitialStatePrior>,
-    /// Residual RMS of whole windows, in standard deviations, above which the initial states are
-    /// not estimated again.
+    /// RMS residual of whole windows above which the initial states are not estimated again, in
+    /// standard deviations.
     pub(crate) max_rms: f64,
-    /// True if further steps over the beginnings of windows would decrease the cost only slightly.
+    /// True if further steps over the initial segments would decrease the cost only slightly.
     pub(crate) is_converged: bool,
     pub(crate) texts: SpecificationTexts,
     pub(crate) model: EstimationModel,
@@ -33,25 +33,25 @@ pub struct PreliminaryFit {
     pub(crate) initial_states: Vec<Vec<f64>>,
 }
 
-/// Fit whose motions are the start of another fit.
+/// Fit whose initial states are the initial values of another fit.
 #[derive(Clone, Copy)]
 pub struct WarmStart<'f> {
-    /// The fit.
+    /// Fit with the initial states.
     pub fit: &'f Fit,
     /// Expected cost of the other fit, in squared standard deviations.
     pub cost: f64,
-    /// Residual RMS of the training records, in standard deviations, above which the other fit does
-    /// not estimate the initial states again.
+    /// RMS residual of the training records above which the other fit does not estimate the initial
+    /// states again, in standard deviations.
     pub max_rms: f64,
 }
 
-/// Fits the unknowns to the beginnings of the windows, which separates good from bad candidates at
-/// a fraction of the cost. `texts`: texts of the specification and of its linear part; `guesses`:
-/// start values, of which the best is used.
+/// Fits the unknowns to the initial segments of the windows, which compares candidates at a
+/// fraction of the cost of a full fit. `texts`: texts of the specification and of its linear part;
+/// `guesses`: sets of initial values, of which the best is used.
 ///
 /// # Errors
 ///
-/// As [`crate::fit::full_fit::fit_specification`].
+/// Errors of [`crate::fit::full_fit::fit_specification`].
 pub fn fit_beginnings(
     problem: &EstimationProblem<'_>,
     texts: SpecificationTexts,
@@ -102,7 +102,7 @@ pub fn fit_beginnings(
         (found, true)
     };
     model.work.check()?;
-    // Ranges of states may depend on the result: a more compliant joint moves farther.
+    // Ranges of states may depend on the estimate: a more compliant joint moves farther.
     let values = shooting.parameter_values(&found.theta);
     let ranges = keep_larger(estimate_state_ranges(problem, &model, &values), &ranges);
     Ok(PreliminaryFit {
@@ -120,12 +120,12 @@ pub fn fit_beginnings(
 }
 
 /// Starts a fit from the initial states of another fit, whose linearisation predicts the unknowns.
-/// `guesses`: at least one set of start values; the first that is acceptable relative to the other
-/// fit is used, otherwise the one with the lowest cost.
+/// `guesses`: one or more sets of initial values. The first set with an acceptable cost relative to
+/// the other fit is used, otherwise the set with the lowest cost.
 ///
 /// # Errors
 ///
-/// As [`crate::fit::full_fit::fit_specification`].
+/// Errors of [`crate::fit::full_fit::fit_specification`].
 pub fn start_from_fit(
     problem: &EstimationProblem<'_>,
     texts: SpecificationTexts,
@@ -175,7 +175,7 @@ pub fn start_from_fit(
     })
 }
 
-/// Returns the range of each state from the first states that records show without a fit.
+/// Returns the range of each state for first states that are read from the records without a fit.
 fn estimate_state_ranges(
     problem: &EstimationProblem<'_>,
     model: &EstimationModel,
@@ -186,9 +186,10 @@ fn estimate_state_ranges(
     problem.compute_state_ranges(model, values, &firsts.collect::<Vec<Vec<f64>>>())
 }
 
-/// Returns the range of each state at the values of the specification. A record may start from states
-/// that its channels do not show, as a free decay does: first states are then fitted with the ranges
-/// found so far, until the motion from them stays within these ranges.
+/// Returns the range of each state for the parameter values of the specification. A record may
+/// start from a state that its channels do not show, for example in a free decay. First states are
+/// therefore fitted with the ranges found so far, until the simulated motion stays within these
+/// ranges.
 fn find_state_ranges(
     problem: &EstimationProblem<'_>,
     model: &EstimationModel,
@@ -212,7 +213,7 @@ fn find_state_ranges(
     ranges
 }
 
-/// Returns these ranges, with others that are much larger in their place.
+/// Replaces each range by the other estimate if this is much larger.
 fn keep_larger(ranges: Vec<f64>, others: &[f64]) -> Vec<f64> {
     let pairs = ranges.into_iter().zip(others);
     pairs
@@ -225,8 +226,9 @@ fn keep_larger(ranges: Vec<f64>, others: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// The first of some unknowns that leave not many times what a fit does, or else those that leave least:
-/// what a straight line promises may be far too much, and initial states are not fitted to it yet.
+/// Returns the first set of unknowns with an acceptable residual relative to a fit, or else the set
+/// with the smallest residual. The residual can be very large: the linear prediction may be wrong,
+/// and initial states are not yet fitted.
 fn first_near(
     shooting: &Shooting<'_>,
     guesses: &[Vec<f64>],

@@ -7,24 +7,25 @@ use nalgebra::{DMatrix, DVector};
 /// Source of the mean of a prior.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PriorSource {
-    /// The dataset: the known state at the beginning of the record.
+    /// Known initial state of the record, from the dataset file.
     Dataset,
-    /// The end state of the preceding window.
+    /// Final state of the preceding window.
     PrecedingWindow,
-    /// The first samples of a record. States that they do not show are known to about their range.
+    /// First samples of a record. For states that they do not show, the standard deviation is about
+    /// the range of the state.
     FirstSamples,
 }
 
 /// Prior of the initial state of each window: mean and standard deviation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InitialStatePrior {
-    /// Mean of each window.
+    /// Mean for each window.
     pub mean: Vec<Vec<f64>>,
     /// Standard deviation of each state, if the mean is from the dataset or the preceding window.
     pub sd: Vec<f64>,
-    /// Source of each mean. If empty, all means are from the preceding window.
+    /// Source of each mean. If empty, all means are final states of preceding windows.
     pub sources: Vec<PriorSource>,
-    /// Rows that transform measured initial states to unit variance, if the covariance of the
+    /// Rows that transform measured initial states to unit covariance, if the covariance of the
     /// states is known.
     pub whitening: Option<DMatrix<f64>>,
 }
@@ -57,10 +58,11 @@ impl InitialStatePrior {
         }
     }
 
-    /// Returns the prior without means from preceding windows, which are valid at the present unknowns only and
-    /// would add information that the records do not contain. The first states of records are known to about
-    /// their range around these initial states: first samples do not show all states, and a mean with the others
-    /// at 0 may lie far from any motion.
+    /// Returns the prior without means from preceding windows. These means are valid for the
+    /// present unknowns only and would add information that the records do not contain. The
+    /// standard deviation of the first state of a record is about its range, and its mean is the
+    /// estimated initial state. With a mean of 0 for states that the first samples do not show, the
+    /// prior could be far from any motion.
     pub fn without_preceding(&self, initial_states: &[Vec<f64>]) -> Self {
         let mut prior = self.clone();
         let all = prior.sources.iter_mut().zip(&mut prior.mean);
@@ -85,7 +87,7 @@ impl InitialStatePrior {
     }
 }
 
-/// The diagonal matrix of the reciprocals of standard deviations.
+/// Returns the diagonal matrix of reciprocal standard deviations.
 fn reciprocals(sds: impl Iterator<Item = f64>) -> DMatrix<f64> {
     let weights: Vec<f64> = sds.map(|sd| 1.0 / sd).collect();
     DMatrix::from_diagonal(&DVector::from_vec(weights))
@@ -94,7 +96,7 @@ fn reciprocals(sds: impl Iterator<Item = f64>) -> DMatrix<f64> {
 /// Initial states of windows and their prior.
 #[derive(Clone, Debug, Default)]
 pub struct InitialStates {
-    /// The prior.
+    /// Prior of the states.
     pub prior: InitialStatePrior,
     /// State of each window.
     pub states: Vec<Vec<f64>>,

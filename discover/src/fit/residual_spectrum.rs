@@ -16,23 +16,23 @@ const MIN_SAMPLES: usize = 16;
 /// Peak of a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpectralPeak {
-    /// Line of the spectrum.
+    /// Peak at a line of the spectrum.
     Line(SpectralLine),
     /// Most of the power is below a few periods per window.
     BelowResolution,
 }
 
-/// Frequency of a line of a spectrum.
+/// Frequency of a spectral line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectralLine {
-    /// Frequency, interpolated between the values of the spectrum, Hz.
+    /// Frequency, interpolated between the lines of the spectrum, Hz.
     pub frequency: f64,
-    /// Distance of these values, Hz.
+    /// Distance between the lines of the spectrum, Hz.
     pub resolution: f64,
 }
 
-/// Returns the peak frequency of the residual of the channel with the largest residual, Hz; `None`
-/// if there is no peak.
+/// Returns the peak frequency of the channel with the largest residual, Hz; `None` if there is no
+/// peak.
 pub fn find_peak_frequency(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<f64> {
     let sizes = &fit.train.normalised_rms;
     let worst = ChannelId::first(sizes.len()).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b]))?;
@@ -59,9 +59,9 @@ pub fn find_training_peak(
     peak(&spectrum, count)
 }
 
-/// Returns the spectrum of the residuals of a channel and the number of averaged windows. Each
-/// window starts from its own state, so its linear trend is removed and its ends are tapered.
-/// Windows shorter than the longest are ignored.
+/// Returns the residual spectrum of a channel and the number of averaged windows. Each window has
+/// its own initial state; therefore its linear trend is removed and its ends are tapered. Windows
+/// that are shorter than the longest window are ignored.
 pub fn compute_residual_spectrum(
     windows: &[(&Window, &[f64])],
     channel: usize,
@@ -95,7 +95,7 @@ pub fn compute_residual_spectrum(
     Some((mean, count))
 }
 
-/// A column with straight lines over its missing samples.
+/// Returns a column with linearly interpolated missing samples.
 fn bridge_gaps(column: &[f64]) -> Vec<f64> {
     let known: Vec<usize> = (0..column.len())
         .filter(|k| column[*k].is_finite())
@@ -116,15 +116,16 @@ fn bridge_gaps(column: &[f64]) -> Vec<f64> {
     (0..column.len()).map(value).collect()
 }
 
-/// Returns the largest density of a spectrum averaged over `windows` windows, if it exceeds that of
-/// white noise. The first lines contain all components slower than a window.
+/// Returns the line with the largest density of a spectrum averaged over `windows` windows, if it
+/// exceeds the level of white noise. The first lines contain all components with periods longer
+/// than a window.
 fn peak(spectrum: &PowerSpectrum, windows: usize) -> Option<SpectralPeak> {
     let density = &spectrum.density;
     let lines = 1..density.len();
     let peak = lines
         .clone()
         .max_by(|a, b| density[*a].total_cmp(&density[*b]))?;
-    // A tapered line spreads over both neighbours.
+    // The taper spreads a line over both neighbours.
     let others = lines.filter(|line| line.abs_diff(peak) > 2);
     let (sum, count) = others.fold((0.0, 0.0), |(sum, n), line| (sum + density[line], n + 1.0));
     let expected = 1.0 + thresholds::MIN_SPECTRAL_PEAK_RATIO / (windows as f64).sqrt();
@@ -136,11 +137,12 @@ fn peak(spectrum: &PowerSpectrum, windows: usize) -> Option<SpectralPeak> {
     }
 }
 
-/// Returns the frequency of a sine from its largest density, at `peak`, and the larger of both neighbours. Under Hann's
-/// window the ratio r of their amplitudes gives the distance (2 r - 1)/(r + 1) in frequency steps.
+/// Returns the frequency of a sine from the line with the largest density, `peak`, and its larger
+/// neighbour. With a Hann window, the ratio r of the two amplitudes gives the distance (2 r - 1)/(r
+/// + 1) in line distances.
 ///
-/// T. Grandke, "Interpolation algorithms for discrete Fourier transforms of weighted signals", IEEE Trans. Instrum.
-/// Meas. 32 (1983) 350-355.
+/// T. Grandke, "Interpolation algorithms for discrete Fourier transforms of weighted signals", IEEE
+/// Trans. Instrum. Meas. 32 (1983) 350-355.
 fn interpolate_line(spectrum: &PowerSpectrum, peak: usize) -> SpectralLine {
     let density = &spectrum.density;
     let resolution = spectrum.frequency[1] - spectrum.frequency[0];
@@ -163,8 +165,7 @@ mod tests {
 
     const STEP: f64 = 0.01;
 
-    /// Returns the peak in the spectrum of `count` windows of a residual with `samples` samples
-    /// each.
+    /// Returns the spectral peak of `count` windows of a residual with `samples` samples each.
     fn find_peak_of(
         samples: usize,
         count: usize,
@@ -201,7 +202,7 @@ mod tests {
     #[test]
     fn drift_is_no_spectral_line() {
         for samples in [50, 100, 200] {
-            // Each window begins at 0 and drifts, as a slow force drives it.
+            // The residual of each window starts at 0 and drifts, as if driven by a slow force.
             let drift = |t: f64, inside: f64| (0.5 * t).sin() * inside * inside + 1e-3 * noise(t);
             assert_eq!(
                 find_peak_of(samples, 12, drift),

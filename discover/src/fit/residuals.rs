@@ -1,4 +1,4 @@
-//! Residuals of an estimate on a set of records: per channel, per block of time, and their
+//! Residuals of an estimate on a set of records, for each channel and block of time, and their
 //! correlation.
 
 use crate::fit::gauss_newton::Estimate;
@@ -10,7 +10,7 @@ use eomgen_records::windows::{Window, compared_samples};
 /// Residuals of a set of records.
 #[derive(Clone, Debug, Default)]
 pub struct Residuals {
-    /// Initial states, unknowns and sums of squares.
+    /// Unknowns, initial states and sums of squares.
     pub estimate: Estimate,
     /// Residuals of each window, in standard deviations.
     pub window_residuals: Vec<Vec<f64>>,
@@ -24,15 +24,15 @@ pub struct Residuals {
     pub rms: f64,
     /// Number of measurements, without missing ones.
     pub measurement_count: f64,
-    /// Number of samples over which a residual is correlated.
+    /// Correlation length of the residuals, in samples.
     pub correlation_samples: f64,
     /// Windows whose simulation failed. The other fields contain the remaining windows only.
     pub failed_windows: Vec<WindowId>,
 }
 
 impl Residuals {
-    /// Returns the residuals, with infinite values if the simulation of a window failed, because
-    /// the other windows do not represent it.
+    /// Returns the residuals; if the simulation of a window failed, with infinite values, because
+    /// the other windows are not representative.
     pub fn or_infinite(mut self) -> Self {
         if !self.failed_windows.is_empty() {
             self.rms = f64::INFINITY;
@@ -45,8 +45,8 @@ impl Residuals {
 
 impl Residuals {
     /// Returns the variance of estimates relative to white noise of one standard deviation. It is
-    /// at least 1, plus the variance of the residuals due to their correlation. Residuals far below
-    /// the noise add nothing: their correlation is due to rounding.
+    /// at least 1 and increases with the variance of the residuals and their correlation. Residuals
+    /// far below the noise do not increase it, because their correlation is due to rounding.
     pub(crate) fn variance_inflation(&self) -> f64 {
         let variance = self.rms * self.rms;
         variance.max(1.0) + (self.correlation_samples - 1.0) * variance
@@ -93,7 +93,7 @@ impl Residuals {
     }
 }
 
-/// Returns the residuals of one channel at the samples of a window, in standard deviations; NaN at
+/// Returns the residuals of one channel at the samples of a window, in standard deviations. NaN at
 /// samples that are missing or not compared, and if the simulation failed.
 pub(crate) fn channel_residuals(
     window: &Window,
@@ -111,7 +111,8 @@ pub(crate) fn channel_residuals(
     (0..samples).map(value).collect()
 }
 
-/// Sums of squares of blocks of time: windows parted, or put together, into about so many.
+/// Returns sums of squares over blocks of time. Windows are split to obtain about
+/// `TIME_BLOCK_COUNT` blocks.
 fn blocks(residuals: &[Vec<f64>]) -> Vec<f64> {
     let parts = thresholds::TIME_BLOCKS.div_ceil(residuals.len().max(1));
     let of_window = |residual: &Vec<f64>| {
@@ -124,9 +125,9 @@ fn blocks(residuals: &[Vec<f64>]) -> Vec<f64> {
     residuals.iter().flat_map(of_window).collect()
 }
 
-/// Returns the number of samples over which a residual is correlated: one plus twice the sum of its
-/// autocorrelations up to the first that is not positive, for the channel with the longest
-/// correlation.
+/// Returns the correlation length of residuals in samples, for the channel with the longest
+/// correlation. It is 1 plus twice the sum of the autocorrelations up to the first that is
+/// negligible.
 pub(crate) fn compute_correlation_samples(residuals: &[Vec<f64>], channels: usize) -> f64 {
     let of_channel = |channel: usize| {
         let columns: Vec<Vec<f64>> = residuals
@@ -147,7 +148,7 @@ pub(crate) fn compute_correlation_samples(residuals: &[Vec<f64>], channels: usiz
         let mut time = 1.0;
         for lag in 1..longest / 2 {
             let part = at(lag) / whole;
-            // Values that white noise produces by chance are ignored.
+            // Smaller values occur by chance in white noise.
             if part.is_nan() || part < thresholds::MIN_AUTOCORRELATION {
                 break;
             }

@@ -1,5 +1,6 @@
-//! Derivatives of the outputs of windows by initial states and unknowns: by tangent vectors if the
-//! exponential integrator is used, otherwise by difference quotients.
+//! Derivatives of the outputs of windows with respect to initial states and unknowns. They are
+//! computed with tangent vectors if the exponential integrator is used, otherwise by difference
+//! quotients.
 
 use crate::ids::WindowId;
 use eomgen_codegen::program::evaluator::Evaluator;
@@ -19,33 +20,33 @@ use eomgen_sim::exponential::MovedParameters;
 /// Residuals of a window and their derivatives.
 #[derive(Clone)]
 pub struct WindowDerivatives {
-    /// Simulated minus measured, in standard deviations: a row per sample, a number per channel; 0
-    /// for missing measurements.
+    /// Simulated minus measured outputs, in standard deviations: one row per sample, one number per
+    /// channel; 0 for missing measurements.
     pub residual: DVector<f64>,
-    /// Derivatives along the directions.
+    /// Derivatives with respect to the initial state, along `directions`.
     pub by_state: DMatrix<f64>,
-    /// Independent directions of the initial state, a column each: all states, or with constraints a basis of the changes
-    /// that they allow.
+    /// Independent directions of the initial state, one per column. With constraints, a basis of
+    /// the changes that satisfy them, otherwise all states.
     pub directions: DMatrix<f64>,
-    /// Derivatives by the unknowns.
+    /// Derivatives with respect to the unknowns.
     pub by_unknown: DMatrix<f64>,
     /// State at the end of the window.
     pub end_state: Vec<f64>,
 }
 
-/// The model at the unknowns and at changed values of each parameter.
+/// Evaluator of the model and of models with one changed parameter each.
 pub struct SensitivityEvaluator<'a> {
     shooting: Shooting<'a>,
     base: Simulation<'a>,
-    /// The base's equations.
+    /// Equations of the unchanged model.
     equations: Evaluator,
     sensors: SensorValues,
-    /// For each unknown that is a parameter the neighbouring model and the step.
+    /// Changed model and step for each unknown that is a model parameter.
     neighbours: Vec<Option<SteppedNeighbour<'a>>>,
     level: f64,
 }
 
-/// A neighbouring model and by how much an unknown differs, SI.
+/// Model with one changed parameter, and the step of the parameter, SI.
 struct SteppedNeighbour<'a> {
     neighbour: Neighbour<'a>,
     step: f64,
@@ -53,12 +54,12 @@ struct SteppedNeighbour<'a> {
     opposite: Option<Box<Simulation<'a>>>,
 }
 
-/// A model at neighbouring parameters.
+/// Use of a model with one changed parameter.
 enum Neighbour<'a> {
-    /// One that runs itself.
+    /// The model is simulated.
     Runs(Box<Simulation<'a>>),
-    /// A model whose accelerations and outputs give the derivative of an integrated motion. No accelerations
-    /// are needed if the integrator differentiates by the parameter itself.
+    /// Its accelerations and outputs drive a tangent vector. Accelerations are not needed if the
+    /// integrator computes derivatives with respect to the parameter.
     Drives {
         evaluator: Option<Box<Evaluator>>,
         linear_outputs: Option<LinearOutputs>,
@@ -66,7 +67,8 @@ enum Neighbour<'a> {
 }
 
 impl<'a> SensitivityEvaluator<'a> {
-    /// Moves an initial state of a window into the domain of the model and onto its constraints.
+    /// Moves an initial state of a window to the nearest state within the ranges of the model and
+    /// onto its constraints.
     pub fn admissible_state(&self, window: WindowId, state: Vec<f64>) -> Vec<f64> {
         let clamped = self.shooting.model.clamp_state(state);
         let samples = &self.shooting.windows.windows[window];
@@ -77,7 +79,7 @@ impl<'a> SensitivityEvaluator<'a> {
         moved.unwrap_or(clamped)
     }
 
-    /// Creates the evaluator at these unknowns; `None` if the model cannot be simulated.
+    /// Creates the evaluator for given unknowns; `None` if the model cannot be simulated.
     pub fn new(shooting: &Shooting<'a>, theta: &[f64], level: f64) -> Option<Self> {
         let values = shooting.parameter_values(theta);
         let mut base = shooting.model.create_simulation(&values).ok()?;
@@ -132,7 +134,7 @@ impl<'a> SensitivityEvaluator<'a> {
         })
     }
 
-    /// Creates the evaluator at these unknowns without derivatives by them.
+    /// Creates the evaluator for given unknowns without derivatives with respect to them.
     pub fn with_fixed_unknowns(shooting: &Shooting<'a>, theta: &[f64], level: f64) -> Option<Self> {
         let values = shooting.parameter_values(theta);
         Some(Self {
@@ -145,12 +147,12 @@ impl<'a> SensitivityEvaluator<'a> {
         })
     }
 
-    /// Compares only this fraction of each window, from its beginning.
+    /// Limits the comparison to a fraction of each window, from its beginning.
     pub fn truncate(&mut self, part: f64) {
         self.shooting.fraction = part;
     }
 
-    /// Returns the state of the motion of a window at a time, s.
+    /// Returns the state of a window at a time, s.
     pub fn propagate(&mut self, window: WindowId, start: &[f64], until: f64) -> Option<Vec<f64>> {
         let samples = &self.shooting.windows.windows[window];
         let inputs = self.shooting.windows.inputs(samples);
@@ -180,7 +182,7 @@ impl<'a> SensitivityEvaluator<'a> {
         .then_some(found)
     }
 
-    /// The same with neighbouring motions that come along.
+    /// Computes residuals and derivatives with tangent vectors.
     fn by_tangents(&mut self, window: WindowId, start: &[f64]) -> Option<WindowDerivatives> {
         let shooting = self.shooting;
         let samples = &shooting.windows.windows[window];
@@ -271,7 +273,7 @@ impl<'a> SensitivityEvaluator<'a> {
         Some(self.columns(samples, times, count, &found.by_parameter_and_drive))
     }
 
-    /// The same by difference quotients.
+    /// Computes residuals and derivatives by difference quotients.
     fn by_quotients(&mut self, window: WindowId, start: &[f64]) -> Option<WindowDerivatives> {
         let shooting = self.shooting;
         let samples = &shooting.windows.windows[window];
@@ -361,7 +363,7 @@ impl<'a> SensitivityEvaluator<'a> {
         })
     }
 
-    /// The derivative of a window's residuals by an unknown of a sensor.
+    /// Returns the derivative of the residuals of a window with respect to a sensor unknown.
     fn by_sensor(
         &self,
         samples: &Window,
@@ -380,8 +382,8 @@ impl<'a> SensitivityEvaluator<'a> {
         (after - before) / (2.0 * step)
     }
 
-    /// Derivatives of the quantities, for each time a row per column, as the sensors show
-    /// them, in standard deviations.
+    /// Applies the sensors to derivatives of channel values, in standard deviations. `derivatives`:
+    /// for each time, one row per column of the result.
     fn columns(
         &self,
         samples: &Window,
@@ -410,7 +412,7 @@ impl<'a> SensitivityEvaluator<'a> {
         matrix
     }
 
-    /// The derivative along directions of the initial state.
+    /// Returns the derivatives along directions of the initial state.
     fn by_state(
         &mut self,
         window: WindowId,
@@ -422,8 +424,8 @@ impl<'a> SensitivityEvaluator<'a> {
         let mut matrix = DMatrix::zeros(residual.len(), directions.ncols());
         for (number, direction) in directions.column_iter().enumerate() {
             let mut step = thresholds::MAX_QUOTIENT_IN_RANGES * range_along(&direction, ranges);
-            // The step that moves the outputs as wanted is found by trying: what a state does
-            // to them differs by orders of magnitude.
+            // The step is adapted in a few trials, because the influence of states on the outputs
+            // differs by orders of magnitude.
             for _ in 0..3 {
                 let moved = move_along(start, &direction, step);
                 let after = self.compute_residual(window, &moved)?;
@@ -445,7 +447,7 @@ impl<'a> SensitivityEvaluator<'a> {
     }
 }
 
-/// Returns the largest multiple of a direction that moves no state by more than its range.
+/// Returns the largest multiple of a direction that changes no state by more than its range.
 pub(crate) fn range_along(direction: &DVectorView<'_, f64>, ranges: &[f64]) -> f64 {
     let parts = direction
         .iter()
@@ -455,14 +457,14 @@ pub(crate) fn range_along(direction: &DVectorView<'_, f64>, ranges: &[f64]) -> f
     multiples.fold(f64::INFINITY, f64::min)
 }
 
-/// Returns a state moved by a multiple of a direction.
+/// Returns a state plus a multiple of a direction.
 pub(crate) fn move_along(state: &[f64], direction: &DVectorView<'_, f64>, by: f64) -> Vec<f64> {
     let pairs = state.iter().zip(direction.iter());
     pairs.map(|(x, part)| x + by * part).collect()
 }
 
-/// Computes the residuals and derivatives of all windows. `level`: size of the residuals, in
-/// standard deviations, for difference quotients.
+/// Computes the residuals and derivatives of all windows. `level`: RMS residual, in standard
+/// deviations, for the steps of difference quotients.
 pub fn linearise_windows(
     shooting: &Shooting<'_>,
     theta: &[f64],
@@ -481,13 +483,15 @@ pub fn linearise_windows(
     })
 }
 
-/// Values of the model's parameters to both sides of each unknown that is one of them, within its bounds.
+/// Returns the model parameters with a positive and a negative step of each unknown that is a model
+/// parameter, within its bounds.
 fn moved_parameters(shooting: &Shooting<'_>, theta: &[f64]) -> Vec<Vec<MovedParameters>> {
     let unknowns = shooting.unknowns.iter().enumerate();
     let of_model = unknowns.filter(|(_, unknown)| unknown.is_model_parameter());
     let moved = of_model.map(|(number, unknown)| {
         let size = thresholds::CENTRAL_QUOTIENT_IN_SCALES * unknown.scale;
-        // Beyond a bound that a prior sets there is motion too.
+        // A bound that comes only from a prior does not limit the step: the model can be simulated
+        // beyond it.
         let reach = unknown.bounds.join(unknown.bounds_without_prior);
         let ends = [-size, size].map(|change| {
             let mut moved = theta.to_vec();
@@ -502,7 +506,7 @@ fn moved_parameters(shooting: &Shooting<'_>, theta: &[f64]) -> Vec<Vec<MovedPara
     moved.collect()
 }
 
-/// The step of a parameter's difference quotient; away from a bound that is near.
+/// Returns the step of a parameter's difference quotient; it is negative close to the upper bound.
 fn quotient_step(unknown: &Unknown, value: f64) -> f64 {
     let step = thresholds::PARAMETER_QUOTIENT_IN_SCALES * unknown.scale;
     if value + step > unknown.bounds.high {
@@ -512,7 +516,7 @@ fn quotient_step(unknown: &Unknown, value: f64) -> f64 {
     }
 }
 
-/// The sensors with one unknown moved by a step.
+/// Returns the sensor values with one changed unknown.
 fn moved_sensors(sensors: &SensorValues, unknown: &Unknown, step: f64) -> SensorValues {
     let mut moved = sensors.clone();
     match unknown.kind {

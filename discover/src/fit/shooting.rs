@@ -1,5 +1,5 @@
-//! Multiple shooting (Bock 1983): residuals of the windows at their initial states and at the
-//! unknowns, in standard deviations of the noise. Derivatives are in [`crate::fit::sensitivity`].
+//! Multiple shooting (Bock 1983): residuals of the windows for given initial states and unknowns,
+//! in standard deviations of the noise. Derivatives are computed in [`crate::fit::sensitivity`].
 
 use crate::ids::{ChannelId, WindowId, WindowRange};
 use rayon::prelude::*;
@@ -13,7 +13,7 @@ use eomgen_records::windows::{
     MAX_DELAY_SAMPLES, MAX_LEAD_SAMPLES, Window, Windows, compared_samples,
 };
 
-/// Unknowns of the sensors.
+/// Values of the sensor unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SensorValues {
     /// Gain of each channel.
@@ -24,18 +24,18 @@ pub struct SensorValues {
     pub delay: Vec<f64>,
 }
 
-/// Windows and the model that is fitted to them.
+/// Shooting problem: windows and the model that is fitted to them.
 #[derive(Clone, Copy)]
 pub struct Shooting<'a> {
-    /// The model.
+    /// Fitted model.
     pub model: &'a EstimationModel,
-    /// The windows.
+    /// Windows.
     pub windows: &'a Windows<'a>,
     /// Noise of each channel, SI.
     pub noise: &'a [f64],
-    /// The unknowns.
+    /// Unknowns.
     pub unknowns: &'a [Unknown],
-    /// Delay of the inputs if it is not estimated, s.
+    /// Delay of the inputs if it is not an unknown, s.
     pub input_delay: f64,
     /// Range of each state, if initial states are estimated.
     pub ranges: Option<&'a [f64]>,
@@ -43,16 +43,16 @@ pub struct Shooting<'a> {
     pub output_rate: OutputRate,
     /// Compared fraction of each window, from its beginning.
     pub fraction: f64,
-    /// Weight of the priors of the unknowns against the residuals: the squared ratio of the misfit
-    /// to the noise, times the number of correlated samples. A misfit contains no information on a
-    /// sensor beyond its own size.
+    /// Weight of the priors of the unknowns relative to the residuals: the squared ratio of misfit
+    /// to noise, times the correlation length in samples. It prevents sensor estimates from
+    /// absorbing a misfit.
     pub prior_weight: f64,
 }
 
 /// Residuals of a window.
 pub struct Residual {
-    /// Simulated minus measured, in standard deviations: a row per sample, a number per channel; 0
-    /// for missing measurements.
+    /// Simulated minus measured outputs, in standard deviations: one row per sample, one number per
+    /// channel; 0 for missing measurements.
     pub values: Vec<f64>,
     /// State at the end of the window.
     pub end_state: Vec<f64>,
@@ -66,7 +66,7 @@ impl Residual {
 }
 
 impl<'a> Shooting<'a> {
-    /// Combines windows and a model.
+    /// Creates the shooting problem of windows and a model.
     pub fn new(
         problem: &'a EstimationProblem<'a>,
         model: &'a EstimationModel,
@@ -92,7 +92,7 @@ impl<'a> Shooting<'a> {
         self.noise.len()
     }
 
-    /// Returns the parameters of the model at these unknowns.
+    /// Returns the parameters of the model for given unknowns.
     pub fn parameter_values(&self, theta: &[f64]) -> Vec<f64> {
         let mut values = self.model.values.clone();
         for (unknown, value) in self.unknowns.iter().zip(theta) {
@@ -110,9 +110,9 @@ impl<'a> Shooting<'a> {
         values
     }
 
-    /// Returns the sensor values at these unknowns.
+    /// Returns the sensor values for given unknowns.
     pub fn sensor_values(&self, theta: &[f64]) -> SensorValues {
-        // The expected value of a sensor applies until it is estimated.
+        // A sensor value that is not estimated has its expected value.
         let expected = || self.model.sensors.iter();
         let mut sensors = SensorValues {
             gain: expected().map(|sensor| sensor.gain).collect(),
@@ -130,7 +130,7 @@ impl<'a> Shooting<'a> {
             }
         }
         if input_delay != 0.0 {
-            // A delayed input delays all outputs, as far as the windows allow it.
+            // A delayed input delays all outputs, within the time range of the window.
             let times = self
                 .windows
                 .windows
@@ -148,7 +148,7 @@ impl<'a> Shooting<'a> {
         sensors
     }
 
-    /// Computes the residuals of all windows from these initial states; `None` for a failed
+    /// Computes the residuals of all windows for given initial states; `None` for a failed
     /// simulation.
     pub fn compute_residuals(
         &self,
@@ -197,7 +197,7 @@ impl<'a> Shooting<'a> {
         self.output_rate.times(&window.times[..samples])
     }
 
-    /// Returns the sensor outputs for the quantities of a window, a row per sample.
+    /// Returns the sensor outputs for the channel values of a window, one row per sample.
     pub fn apply_sensors(
         &self,
         times: &OutputTimes<'_>,
@@ -230,12 +230,12 @@ impl<'a> Shooting<'a> {
         seen
     }
 
-    /// Returns the differences from the measurements, in standard deviations.
+    /// Returns simulated minus measured outputs, in standard deviations.
     pub(crate) fn normalise_differences(&self, window: &Window, seen: &[f64]) -> Vec<f64> {
         self.map_differences(window, seen, |seen, measured| seen - measured)
     }
 
-    /// Applies a function to sensor outputs and measurements, in standard deviations; 0 for samples
+    /// Applies a function to simulated and measured outputs, in standard deviations. 0 for samples
     /// that are not compared.
     pub(crate) fn map_differences(
         &self,
@@ -265,8 +265,8 @@ impl<'a> Shooting<'a> {
     ) -> Vec<T> {
         let count = self.windows.windows.len();
         let threads = rayon::current_num_threads().max(1);
-        // The parts do not depend on the number of threads' speed, only on their number; what
-        // is computed for a window does not depend on its part.
+        // The parts depend only on the number of threads. The results of a window do not depend on
+        // its part.
         let size = count.div_ceil(threads).max(1);
         let parts: Vec<WindowRange> = (0..count.div_ceil(size))
             .map(|part| WindowId::range(part * size..((part + 1) * size).min(count)))
@@ -282,16 +282,16 @@ pub(crate) fn count_samples(window: &Window, part: f64) -> usize {
     ((part * count as f64) as usize).clamp(count.min(8), count)
 }
 
-/// A channel's quantity along a window.
+/// Values of one channel along a window.
 struct Column<'q> {
     times: &'q OutputTimes<'q>,
-    /// Those of all channels, a row per time.
+    /// Values of all channels, one row per time.
     values: &'q [f64],
     channels: usize,
     channel: ChannelId,
 }
 
-/// A channel's quantity at a time near one of the others, by the cubic through four neighbours.
+/// Returns the value of a channel by cubic interpolation through four neighbouring times.
 fn interpolate_column(column: &Column<'_>, at: f64, near: usize) -> f64 {
     let times = &column.times.times;
     let last = times.len() - 1;

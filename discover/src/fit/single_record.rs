@@ -33,7 +33,7 @@ pub enum RecordIndex {
 }
 
 impl RecordIndex {
-    /// The record there.
+    /// Returns the record.
     fn of(self, dataset: &Dataset) -> &Record {
         match self {
             Self::Train(place) => &dataset.train[place],
@@ -49,8 +49,8 @@ pub fn list_records(dataset: &Dataset) -> Vec<RecordIndex> {
     train.chain(test).collect()
 }
 
-/// Fits a single record with wide bounds of the parameters and optionally one more unknown; `None`
-/// if the fit fails.
+/// Fits a single record with wide bounds of the parameters and optionally one additional unknown;
+/// `None` if the fit fails.
 pub fn fit_record_separately(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -102,8 +102,8 @@ pub fn fit_record_separately(
     })
 }
 
-/// Returns true if a parameter of a joint fit is at the limit of its prior, and a single fit would
-/// exceed it.
+/// Returns true if a parameter of a joint fit is at a bound that comes from its prior. A single fit
+/// may exceed this bound.
 fn is_held(fit: &Fit) -> bool {
     fit.unknowns().any(|(id, unknown)| {
         let is_narrowed = unknown.bounds != unknown.bounds_without_prior;
@@ -111,13 +111,13 @@ fn is_held(fit: &Fit) -> bool {
     })
 }
 
-/// A fit's unknowns with their standard deviations.
+/// Returns the estimates of a fit and their standard deviations.
 fn estimates(fit: &Fit) -> Vec<(f64, f64)> {
     let pairs = fit.train.estimate.theta.iter().zip(&fit.effect_sd);
     pairs.map(|(value, sd)| (*value, *sd)).collect()
 }
 
-/// Returns the largest residual RMS of a fit over the records, in standard deviations.
+/// Returns the largest RMS residual of a fit over the records, in standard deviations.
 pub fn largest_record_rms(problem: &EstimationProblem<'_>, fit: &Fit) -> f64 {
     let train =
         (0..problem.dataset.train.len()).filter_map(|k| left_of(&problem.train, &fit.train, k));
@@ -125,7 +125,7 @@ pub fn largest_record_rms(problem: &EstimationProblem<'_>, fit: &Fit) -> f64 {
     train.chain(test).fold(0.0, f64::max)
 }
 
-/// The root mean square that a fit leaves of one record, in standard deviations.
+/// Returns the RMS residual of one record, in standard deviations.
 fn left_of(windows: &Windows<'_>, residuals: &Residuals, record: usize) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0.0);
     for (window, values) in windows.windows.iter().zip(&residuals.window_residuals) {

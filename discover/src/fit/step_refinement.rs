@@ -1,6 +1,6 @@
 //! Errors of the outputs due to fixed steps, and their removal from a fit by defect correction
-//! (Stetter 1978): motions and derivatives keep their steps, and the measurements of each window are
-//! shifted by the error of its outputs.
+//! (Stetter 1978). Simulations and derivatives keep their steps, and the measurements of each
+//! window are shifted by the error of its outputs.
 
 use eomgen_records::windows::Windows;
 
@@ -11,23 +11,24 @@ use crate::thresholds;
 
 /// Errors of the fixed steps of a model at an estimate.
 pub(crate) struct StepErrors {
-    /// Limit of the outputs for short steps minus the outputs, in standard deviations of the noise,
-    /// for each window: a row per sample, a number per channel. Empty if a simulation failed.
+    /// Extrapolated outputs for infinitely short steps minus the outputs, in standard deviations of
+    /// the noise. For each window: one row per sample, one number per channel. Empty if a
+    /// simulation failed.
     pub corrections: Vec<Vec<f64>>,
-    /// The model with steps whose RMS error is below [`thresholds::MAX_STEP_ERROR`]; `None` if that
-    /// of the present ones is.
+    /// Model with steps whose RMS error is below [`thresholds::MAX_STEP_ERROR`]; `None` if the
+    /// present steps are short enough.
     pub refined: Option<EstimationModel>,
 }
 
-/// Outputs of a model with some step, as residuals of each window.
+/// Outputs of a model for one step size, as residuals of each window.
 struct Run {
     model: Option<EstimationModel>,
     outputs: Vec<Vec<f64>>,
 }
 
-/// Computes the errors of the fixed steps at an estimate by extrapolation to short steps (Richardson);
-/// `None` if they shift no estimate by more than [`thresholds::MAX_SUMMED_STEP_ERROR`], or do not
-/// converge.
+/// Computes the errors of the fixed steps at an estimate by Richardson extrapolation. `None` if no
+/// estimate is shifted by more than [`thresholds::MAX_SUMMED_STEP_ERROR`], or if the extrapolation
+/// does not converge.
 pub(crate) fn compute_step_errors(
     shooting: &Shooting<'_>,
     estimate: &Estimate,
@@ -84,7 +85,8 @@ pub(crate) fn compute_step_errors(
     })
 }
 
-/// Returns windows whose measurements are shifted so that their residuals are those of short steps.
+/// Returns windows with shifted measurements. Their residuals equal those of a simulation with
+/// short steps.
 pub(crate) fn shift_measurements<'d>(
     windows: &Windows<'d>,
     noise: &[f64],
@@ -100,7 +102,8 @@ pub(crate) fn shift_measurements<'d>(
     shifted
 }
 
-/// Combines the numbers of windows; those of a window that only one of them has are empty.
+/// Combines the values of two sets of windows element by element. A window that is missing in one
+/// of them becomes empty.
 pub(crate) fn combine(
     a: &[Vec<f64>],
     b: &[Vec<f64>],

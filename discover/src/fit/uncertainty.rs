@@ -1,5 +1,4 @@
-//! Uncertainty of unknowns at an estimate, for residuals that are white noise of one standard
-//! deviation.
+//! Uncertainty of unknowns for residuals that are white noise of one standard deviation.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -13,19 +12,19 @@ use crate::fit::shooting::Shooting;
 /// observable.
 #[derive(Clone, Copy)]
 pub(crate) struct Uncertainty {
-    /// Part due to noise in the records.
+    /// Part due to the noise of the records.
     pub from_noise: f64,
-    /// Part due to the priors of the unknowns, within which nuisances may vary.
+    /// Part due to the priors of the unknowns: nuisances may vary within them.
     pub from_priors: f64,
 }
 
 impl Uncertainty {
-    /// Returns the total standard deviation with the part due to noise multiplied by `wider`.
+    /// Returns the total standard deviation; the part due to noise is multiplied by `wider`.
     pub fn combine(self, wider: f64) -> f64 {
         (wider * self.from_noise).hypot(self.from_priors)
     }
 
-    /// The larger of each part.
+    /// Returns the larger value of each part.
     fn max(self, other: Self) -> Self {
         Self {
             from_noise: self.from_noise.max(other.from_noise),
@@ -67,9 +66,9 @@ fn by_derivatives(
         .collect()
 }
 
-/// With information `R'R = J'J + P`, of records and priors, an estimate moves by `(R'R)^-1 J'` times the
-/// residuals and by `(R'R)^-1 P` times what the priors' means are off by: the variances are
-/// `(R'R)^-1 - (R'R)^-1 P (R'R)^-1` and `(R'R)^-1 P (R'R)^-1`.
+/// The information of records and priors is `R'R = J'J + P`. An estimate changes by `(R'R)^-1 J'`
+/// times the change of the residuals, and by `(R'R)^-1 P` times the error of the prior means. The
+/// variances are therefore `(R'R)^-1 - (R'R)^-1 P (R'R)^-1` and `(R'R)^-1 P (R'R)^-1`.
 fn uncertainty(factor: &DMatrix<f64>, weights: &DVector<f64>, column: usize) -> Uncertainty {
     let unit = DVector::from_fn(factor.ncols(), |row, _| f64::from(u8::from(row == column)));
     let half = factor.transpose().solve_lower_triangular(&unit);

@@ -1,6 +1,6 @@
 //! Elimination of the initial state from the derivatives of a window by a QR factorisation
-//! (variable projection: Golub and Pereyra, SIAM J. Numer. Anal. 10, 1973). The result depends on
-//! the unknowns only.
+//! (variable projection: Golub and Pereyra, SIAM J. Numer. Anal. 10, 1973). The result depends only
+//! on the unknowns.
 
 use crate::ids::{UnknownId, WindowId};
 use nalgebra::{DMatrix, DVector};
@@ -8,10 +8,10 @@ use nalgebra::{DMatrix, DVector};
 use crate::fit::prior::InitialStatePrior;
 use crate::fit::sensitivity::WindowDerivatives;
 
-/// A window with its initial state eliminated.
+/// Derivatives of a window with the initial state eliminated.
 pub struct ReducedBlock {
-    /// R of the QR factorisation of the columns by state, by unknowns and of the residual, with the
-    /// priors.
+    /// R of the QR factorisation of [derivatives by state, derivatives by unknowns, residual], with
+    /// the rows of the priors.
     pub factor: DMatrix<f64>,
     /// Independent directions of the initial state.
     directions: DMatrix<f64>,
@@ -61,7 +61,7 @@ pub fn eliminate_initial_state(
 }
 
 impl ReducedBlock {
-    /// Returns the columns of unknowns and residual after the elimination.
+    /// Returns the columns of the unknowns and of the residual after the elimination.
     pub fn reduced_columns(&self) -> DMatrix<f64> {
         let states = self.directions.ncols();
         let remaining = self.factor.ncols() - states;
@@ -70,8 +70,8 @@ impl ReducedBlock {
             .into_owned()
     }
 
-    /// Returns the step of the initial state, along its directions, for a step of the unknowns, with a damping in weights
-    /// of its prior.
+    /// Returns the step of the initial state, along its directions, for a step of the unknowns.
+    /// `damping` is in weights of the prior.
     pub fn solve_initial_state_step(
         &self,
         unknowns: &DVector<f64>,
@@ -97,17 +97,16 @@ impl ReducedBlock {
     }
 }
 
-/// Derivatives of a window with the factorisation that eliminates the initial state from any
-/// column.
+/// Derivatives of a window, with a factorisation that eliminates the initial state from any column.
 #[derive(Clone)]
 pub struct StateProjection {
-    /// The residual.
+    /// Residual.
     pub residual: DVector<f64>,
-    /// Derivatives by the unknowns.
+    /// Derivatives with respect to the unknowns.
     pub by_unknown: DMatrix<f64>,
-    /// Along the directions of the initial state, with the priors' rows below.
+    /// Derivatives along the directions of the initial state; the rows of the priors are below.
     by_state: DMatrix<f64>,
-    /// Residuals of the rows of the priors.
+    /// Residuals of the prior rows.
     prior_residual: DVector<f64>,
 }
 
@@ -144,7 +143,8 @@ impl StateProjection {
         }
     }
 
-    /// Returns the products of columns, the residual last, after the elimination.
+    /// Returns the products of all pairs of columns after the elimination. The residual is the last
+    /// column.
     pub fn compute_products(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
         let (rows, count) = columns.shape();
         let states = self.by_state.ncols();
@@ -187,14 +187,14 @@ pub fn compute_triangular_factor(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<
 /// Contribution of the prior of a nuisance to products of columns.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PriorTerm {
-    /// One over the variance, times the weight of the priors.
+    /// Reciprocal of the variance, times the weight of the priors.
     pub weight: f64,
-    /// Deviation of the nuisance from its mean, SI.
+    /// Deviation of the nuisance from its prior mean, SI.
     pub deviation: f64,
 }
 
-/// Adds a prior, or subtracts it if its weight is negative, to the products of a nuisance with
-/// itself and with the residual, which is the last column.
+/// Adds a prior to the products of a nuisance with itself and with the residual, which is the last
+/// column. A negative weight subtracts it.
 pub(crate) fn add_prior(products: &mut DMatrix<f64>, nuisance: UnknownId, prior: PriorTerm) {
     let PriorTerm { weight, deviation } = prior;
     let (row, last) = (nuisance.index(), products.ncols() - 1);

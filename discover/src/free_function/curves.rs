@@ -1,5 +1,6 @@
-//! Curves: for every direction of force and every variable the free function that explains the
-//! records best, through the model linearised along the reference motion.
+//! Curves: for each pair of a direction (equation, state or input) and a variable, the free
+//! function that explains the records best. The responses are those of the model linearised along
+//! the reference motion.
 
 use eomgen_codegen::program::evaluator::Point;
 use nalgebra::{DMatrix, DVector};
@@ -17,7 +18,7 @@ use crate::thresholds;
 /// Free function of a variable in an equation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Name of the equation, state or input that it is added to.
+    /// Name of the equation, state or input to which the function is added.
     pub equation: String,
     /// Variable of the function.
     pub variable: String,
@@ -27,28 +28,28 @@ pub struct Curve {
     pub unit: String,
     /// Knots in the unit of the variable, ascending.
     pub knots: Vec<f64>,
-    /// Values at the knots; lines between them.
+    /// Values at the knots; the function is linear between knots.
     pub values: Vec<f64>,
     /// Standard deviation of each value.
     pub band: Vec<f64>,
-    /// True if the variable belongs to the direction, as the rate of an equation does.
+    /// True if the variable belongs to the direction, for example the rate of an equation.
     pub is_own_variable: bool,
     /// RMS residual of the training records, in standard deviations of the noise.
     pub train_rms: f64,
     /// RMS residual of the test records, in standard deviations of the noise.
     pub test_rms: f64,
-    /// Gain of the logarithm of the evidence over no function.
+    /// Increase of the logarithm of the evidence compared with the model without a function.
     pub log_evidence: f64,
 }
 
-/// Direction of a change.
+/// Quantity to which the free function is added.
 #[derive(Clone, Debug)]
 enum Direction {
-    /// A force in an equation.
+    /// Force in an equation.
     Equation(EquationId),
-    /// The rate of a first-order state, by its place among the accelerations.
+    /// Rate of a first-order state, by its index among the accelerations.
     State(usize),
-    /// An input, by its index.
+    /// Input, by its index.
     Input(usize),
 }
 
@@ -57,12 +58,12 @@ enum Direction {
 enum Variable {
     Position(EquationId),
     Rate(EquationId),
-    /// By its index among the states.
+    /// State, by its index.
     State(usize),
     Input(usize),
 }
 
-/// A quantity with its name and unit.
+/// Quantity with its name and unit.
 #[derive(Clone, Debug)]
 struct Named<T> {
     of: T,
@@ -70,15 +71,15 @@ struct Named<T> {
     unit: String,
 }
 
-/// Unit responses and values of the variables of a record, at both ends of each step.
+/// Unit responses and values of the variables along a record, at both ends of each step.
 struct Sampled {
-    /// For each direction the accelerations: a column per end.
+    /// Accelerations for each direction; one column per end of a step.
     accelerations: Vec<DMatrix<f64>>,
-    /// For each variable its values.
+    /// Values of each variable.
     values: Vec<Vec<f64>>,
 }
 
-/// Fits a curve for every direction and variable; the likeliest first.
+/// Fits a curve for every direction and variable, sorted by decreasing evidence.
 pub(crate) fn fit_curves(scene: &Scene<'_>) -> Vec<Curve> {
     let Scene {
         problem,
@@ -114,7 +115,8 @@ pub(crate) fn fit_curves(scene: &Scene<'_>) -> Vec<Curve> {
     let Some(best) = built.iter().min_by(|a, b| least(a).total_cmp(&least(b))) else {
         return Vec::new();
     };
-    // Effective sample size: with the plain one every pair is accepted on coloured noise.
+    // The variance uses the effective sample size. With the plain sample size, every pair would be
+    // accepted on coloured noise.
     let drives = best.drives(motion, &sampled);
     let none = DMatrix::zeros(drives.len(), drives.len());
     let solution = segments.solve(&best.products, &none);
@@ -128,17 +130,17 @@ pub(crate) fn fit_curves(scene: &Scene<'_>) -> Vec<Curve> {
     curves
 }
 
-/// Products of the columns of a pair.
+/// Normal equations of one pair of direction and variable.
 struct PairProducts {
     direction: usize,
     variable: usize,
     functions: HatFunctions,
     products: Products,
-    /// Products of the training records with the nuisances eliminated.
+    /// Products of the columns over the training records, with the nuisances eliminated.
     reduced: DMatrix<f64>,
 }
 
-/// Directions and variables of a model.
+/// Lists the directions and variables of a model.
 fn list_pairs(equations: &EquationSet, fit: &Fit) -> (Vec<Named<Direction>>, Vec<Named<Variable>>) {
     let model = fit.model.specification();
     let degrees = fit.model.degrees_of_freedom();
@@ -175,7 +177,8 @@ fn list_pairs(equations: &EquationSet, fit: &Fit) -> (Vec<Named<Direction>>, Vec
         });
     }
     for (number, input) in model.inputs.iter().enumerate() {
-        // A prescribed motion cannot be changed without its rates.
+        // The input is left out if its rates are prescribed too: the rates would not match a
+        // changed input.
         if input.rate.is_none() && input.rate_of.is_none() {
             directions.push(Named {
                 of: Direction::Input(number),
@@ -235,7 +238,7 @@ fn sample_record(
     sampled
 }
 
-/// Derivatives of the accelerations by an input.
+/// Returns the derivatives of the accelerations with respect to an input.
 fn respond_to_input(
     evaluator: &mut EquationEvaluator,
     point: Point<'_>,
@@ -294,7 +297,8 @@ impl PairProducts {
         build_drives(motion, sampled, pair, &self.functions)
     }
 
-    /// Curvature and slope of the squares by the coefficients, and the squares without a function.
+    /// Returns the Gram matrix and the right-hand side of the coefficients, and the sum of squares
+    /// without a function.
     fn parts(&self) -> (DMatrix<f64>, DVector<f64>, f64) {
         let count = self.reduced.ncols() - 1;
         (
@@ -307,7 +311,8 @@ impl PairProducts {
         )
     }
 
-    /// Remaining squares of the training records with a function that is hardly penalised.
+    /// Returns the sum of squares of the training residuals with the smallest penalty on the
+    /// function.
     fn least_squares(&self) -> f64 {
         let (gram, slope, squares) = self.parts();
         let small = thresholds::CURVE_PENALTY_DECADES.0;
@@ -318,8 +323,8 @@ impl PairProducts {
         }
     }
 
-    /// Fits the function with the likeliest penalty. `variance`: of the residuals, with the number of
-    /// samples per independent one.
+    /// Fits the function with the likeliest penalty. `variance`: variance of the residuals times
+    /// the number of samples per independent sample.
     fn fit(
         &self,
         segments: &Segments,
@@ -374,7 +379,7 @@ fn is_own_variable(direction: &Direction, variable: &Variable) -> bool {
     }
 }
 
-/// The weight of a penalty at a decade relative to the information of the records.
+/// Returns the weight of the penalty, 10^`decade` times the information of the records.
 fn relative_penalty(gram: &DMatrix<f64>, functions: &HatFunctions, decade: f64) -> f64 {
     let size = gram.trace() / functions.penalty().trace();
     size.max(f64::MIN_POSITIVE.sqrt()) * 10f64.powf(decade)

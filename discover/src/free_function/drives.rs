@@ -11,20 +11,20 @@ use crate::thresholds;
 /// A model that is evaluated along a reference motion.
 pub(crate) struct DrivenModel {
     evaluator: Evaluator,
-    /// For each state of the reference motion its index among those of the model.
+    /// Index in this model of each state of the reference motion.
     places: Vec<usize>,
-    /// Indices of the other states, which are of first order.
+    /// Indices of the first-order states that the reference motion does not have.
     added: Vec<usize>,
     degrees_of_freedom: usize,
-    /// Accelerations and rates of the first-order states of the reference, at both ends of each
-    /// step: columns `2 step` and `2 step + 1`.
+    /// Accelerations and rates of the first-order states of the reference motion, at both ends of
+    /// each step: columns `2 step` and `2 step + 1`.
     accelerations: Vec<DMatrix<f64>>,
-    /// Quantities of the channels at the samples of each record.
+    /// Values of the channels, without sensor errors, at the samples of each record.
     outputs: Vec<DMatrix<f64>>,
 }
 
 impl DrivenModel {
-    /// Creates the reference's own model at these values of its parameters.
+    /// Creates the model of the reference motion with other parameter values.
     pub fn new(model: &EstimationModel, values: &[f64]) -> Self {
         Self {
             evaluator: model.create_evaluator(values),
@@ -36,8 +36,8 @@ impl DrivenModel {
         }
     }
 
-    /// Creates a model with the states of the reference's model and further ones of first order;
-    /// `None` if it has other states.
+    /// Creates a model that has the states of the reference model and additional first-order
+    /// states; `None` if other states differ.
     pub fn with_added_states(
         reference: &EstimationModel,
         model: &EstimationModel,
@@ -60,7 +60,7 @@ impl DrivenModel {
         })
     }
 
-    /// Evaluates the accelerations and quantities along the reference motion once for all.
+    /// Stores the accelerations and channel values along the reference motion.
     pub fn record_motion(mut self, motion: &ReferenceMotion, model: &EstimationModel) -> Self {
         self.outputs = self.measure_outputs(motion, model);
         self.accelerations = motion
@@ -71,13 +71,13 @@ impl DrivenModel {
         self
     }
 
-    /// Returns the recorded quantities of the channels.
+    /// Returns the stored channel values.
     pub fn outputs(&self) -> &[DMatrix<f64>] {
         &self.outputs
     }
 
-    /// Returns the quantities of the channels at the samples of each record. `model`: the own
-    /// model, which has the states of the reference.
+    /// Returns the channel values at the samples of each record. `model`: a model with the states
+    /// of the reference motion.
     pub fn measure_outputs(
         &mut self,
         motion: &ReferenceMotion,
@@ -107,8 +107,8 @@ impl DrivenModel {
         records.collect()
     }
 
-    /// Returns the accelerations and the rates of the reference's first-order states at both ends of
-    /// each step. Added states begin at 0 and follow their own rates.
+    /// Returns the accelerations and the rates of the first-order states of the reference motion at
+    /// both ends of each step. Added states start at 0 and follow their own rates.
     fn accelerate_along(&mut self, record: &ReferenceRecord) -> DMatrix<f64> {
         let states = self.evaluator.program().states();
         let first = self.degrees_of_freedom;
@@ -139,8 +139,8 @@ impl DrivenModel {
         found
     }
 
-    /// Moves the added states over a step: each one's rate is linear in it, along the mean of the
-    /// reference motion.
+    /// Integrates the added states over a step. The rate of each added state is linearised in this
+    /// state along the mean of the reference motion.
     fn advance_added(
         &mut self,
         record: &ReferenceRecord,
@@ -168,7 +168,7 @@ impl DrivenModel {
             state[place] = old + change;
             self.evaluator.rates(Point { t, state, inputs }, rates);
             let slope = (rates[place] - rate) / change * length;
-            // The mean of exp(slope) over the step.
+            // Mean of exp(s) for s from 0 to `slope`.
             let mean = match slope.abs() < 1e-6 {
                 true => 1.0 + 0.5 * slope,
                 false => slope.exp_m1() / slope,
@@ -178,8 +178,8 @@ impl DrivenModel {
     }
 }
 
-/// Returns the mean over each step of the accelerations of a moved model minus those of the
-/// reference's model, times a factor.
+/// Returns the accelerations of a changed model minus those of the reference model, averaged over
+/// each step and multiplied by a factor.
 pub(crate) fn average_drive(
     motion: &ReferenceMotion,
     base: &DrivenModel,

@@ -5,15 +5,15 @@ use nalgebra::DMatrix;
 
 use crate::thresholds;
 
-/// Hat functions on ascending knots; level beyond both ends.
+/// Hat functions on ascending knots, constant beyond both ends.
 #[derive(Clone, Debug)]
 pub(super) struct HatFunctions {
     pub knots: Vec<f64>,
 }
 
 impl HatFunctions {
-    /// Places the knots over the range of values; denser around 0 if `bends_at_zero` and 0 is inside.
-    /// `None` if the values do not vary.
+    /// Distributes the knots over the range of the values. If `bends_at_zero` and the range
+    /// contains 0, knots are denser around 0. `None` if all values are equal.
     pub fn over_values(values: &mut [f64], bends_at_zero: bool) -> Option<Self> {
         values.sort_by(f64::total_cmp);
         let last = values.len().checked_sub(1)?;
@@ -28,7 +28,7 @@ impl HatFunctions {
         let largest = low.abs().max(high.abs());
         let is_around_zero = bends_at_zero && low < 0.0 && high > 0.0;
         let knot = |k: usize| match is_around_zero {
-            // Squares of evenly spaced numbers, with their signs.
+            // Signed squares of evenly spaced numbers.
             true => {
                 let (a, b) = (-(low.abs() / largest).sqrt(), (high.abs() / largest).sqrt());
                 let s = a + (b - a) * k as f64 / (count - 1) as f64;
@@ -57,8 +57,8 @@ impl HatFunctions {
         }
     }
 
-    /// Returns the penalty of a bend per unit of the coefficients: the squares of second
-    /// differences, and a small part of the squares of the coefficients, which makes it proper.
+    /// Returns the penalty matrix of the coefficients: squared second differences plus a small
+    /// multiple of the identity, which makes the matrix positive definite.
     pub fn penalty(&self) -> DMatrix<f64> {
         let count = self.knots.len();
         let mut differences = DMatrix::zeros(count - 2, count);

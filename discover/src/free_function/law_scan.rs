@@ -1,6 +1,6 @@
-//! Scan of laws with a shape along a reference motion: places, speeds, levels and widths over
-//! decades, with the sizes by linear least squares (variable projection). It needs no simulation of
-//! the laws, so that no start of a fit decides whether a law is found.
+//! Scan of laws with one shape parameter along a reference motion. The position, speed, level or
+//! width is scanned over decades; the sizes follow by linear least squares (variable projection).
+//! The laws are not simulated, so the result does not depend on the initial values of a fit.
 
 use eomgen_model_spec::edit::Edit;
 use rayon::prelude::*;
@@ -15,10 +15,10 @@ use crate::thresholds;
 /// A law with its shape and sizes from a scan.
 #[derive(Clone, Debug)]
 pub struct ScannedLaw {
-    /// The law with the found shape as initial size.
+    /// Law with the best scanned shape as its initial value.
     pub candidate: Candidate,
-    /// Differences of its other parameters from their values without the effect, SI; of inverse
-    /// parameters the inverse.
+    /// Differences of the other parameters from their values without the effect, SI. For inverse
+    /// parameters, the difference of the inverse.
     pub sizes: Vec<f64>,
     /// RMS residual of training and test records, in standard deviations.
     pub rms: f64,
@@ -37,19 +37,19 @@ pub struct LawScan {
 #[derive(Clone, Copy, Debug)]
 struct ScannedParameter {
     index: usize,
-    /// True if the law is linear in its other parameters at a fixed value of this one. Otherwise
-    /// it has no other parameter.
+    /// True if the law is linear in its other parameters at a fixed value of this parameter.
+    /// Otherwise it has no other parameter.
     is_shape: bool,
 }
 
-/// A law at a value of its scanned parameter.
+/// Fit of a law at one value of its scanned parameter.
 #[derive(Clone, Debug)]
 struct Trial {
     value: f64,
     fit: LinearFit,
 }
 
-/// A law whose equations are derived.
+/// Law with its derived equations.
 struct DerivedLaw<'c> {
     candidate: &'c Candidate,
     scanned: ScannedParameter,
@@ -71,7 +71,7 @@ pub(crate) fn scan_laws(scene: &Scene<'_>, candidates: &[Candidate]) -> LawScan 
     }
 }
 
-/// Returns the parameter of a candidate that is scanned, if it is the only one that is not a size.
+/// Returns the only parameter of a candidate that is not a size; `None` if there are several.
 fn find_scanned(candidate: &Candidate) -> Option<ScannedParameter> {
     if candidate.dropped_prior.is_some() || candidate.angle_order.is_some() {
         return None;
@@ -169,8 +169,8 @@ impl<'c> DerivedLaw<'c> {
         })
     }
 
-    /// Fits the law at a value of its scanned parameter, SI; `None` if it is not visible there or has
-    /// a wrong sign.
+    /// Fits the law at one value of its scanned parameter, SI; `None` if the law has no influence
+    /// there or a fitted sign is wrong.
     fn try_value(&self, scene: &Scene<'_>, value: f64) -> Option<Trial> {
         let parameters = &self.candidate.parameters;
         let drive_at = |values: &[f64], factor: f64| -> Option<Drive> {

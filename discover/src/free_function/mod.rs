@@ -1,9 +1,10 @@
-//! Free functions: what the model lacks, before it has a name. A smoother follows the records
-//! (`reference_motion` with `smoother` and `transition`), the model is linearised once along that
-//! motion, and all responses go through the same linear recursion (`segments`, `drives`,
-//! `nuisances`). All of it is a `scene`. Laws with a shape are scanned over decades along the
-//! motion (`law_scan`); for every direction of force and every variable a curve is fitted
-//! (`curves` of `hat_functions`). Nothing here is accepted: the fit of a named law decides.
+//! Free functions: form of the missing term before it has a physical name. A smoother estimates the
+//! motion of the records (`reference_motion`, `smoother`, `transition`), and the model is
+//! linearised once along this motion. All responses use the same linear recursion (`segments`,
+//! `drives`, `nuisances`); `scene` contains all of these. Laws with a shape parameter are scanned
+//! along the motion (`law_scan`). For every direction and every variable a curve is fitted
+//! (`curves`, `hat_functions`). Free functions do not accept effects; only the fit of a named law
+//! does.
 
 pub mod curves;
 pub(crate) mod drives;

@@ -10,8 +10,8 @@ use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{Unknown, UnknownKind};
 use crate::thresholds;
 
-/// Returns the response to each unknown of a fit, per standard deviation of its prior, or per scale
-/// without a prior.
+/// Returns the response to each unknown of a fit, per standard deviation of its prior; without a
+/// prior, per scale of the unknown.
 pub(crate) fn respond_to_unknowns(
     motion: &ReferenceMotion,
     problem: &EstimationProblem<'_>,
@@ -87,7 +87,7 @@ pub(crate) fn respond_to_unknowns(
     found
 }
 
-/// The step of a parameter's difference quotient, away from a bound that is near.
+/// Returns the step of a parameter's difference quotient; it is negative close to the upper bound.
 fn parameter_step(unknown: &Unknown, value: f64) -> f64 {
     let step = thresholds::PARAMETER_QUOTIENT_IN_SCALES * unknown.scale;
     match value + step > unknown.bounds.high {

@@ -1,5 +1,5 @@
-//! Reference motion: the motion that the records show, by a smoother with unknown accelerations, and
-//! the model linearised along it. It follows the records whatever the model lacks.
+//! Reference motion: motion of the records, estimated by a smoother with unknown accelerations, and
+//! the model linearised along it. The motion follows the records even if the model lacks an effect.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_records::record::Record;
@@ -22,9 +22,9 @@ pub(crate) struct ReferenceMotion {
     pub records: Vec<ReferenceRecord>,
     /// Number of training records.
     pub training: usize,
-    /// Unknowns of the fit at which the model is linearised, SI: declared values.
+    /// Values of the unknowns at which the model is linearised, SI: the declared values.
     pub theta: Vec<f64>,
-    /// Values of the parameters of the model there.
+    /// Values of the model parameters for `theta`.
     pub values: Vec<f64>,
 }
 
@@ -32,7 +32,8 @@ pub(crate) struct ReferenceMotion {
 pub(crate) struct ReferenceRecord {
     /// Times of the samples, s.
     pub times: Vec<f64>,
-    /// Inputs at the beginning and the end of the interval after each sample. Held ones are those of the sample.
+    /// Inputs at both ends of the interval after each sample. A held input has its value at the
+    /// sample.
     pub inputs: Vec<[Vec<f64>; 2]>,
     /// States at the samples, SI.
     pub states: Vec<Vec<f64>>,
@@ -41,25 +42,26 @@ pub(crate) struct ReferenceRecord {
     /// Sensor outputs of the states minus measurements, in standard deviations, a row per sample;
     /// NaN if missing.
     pub differences: Vec<DVector<f64>>,
-    /// Derivatives of the sensor outputs by the state, in standard deviations.
+    /// Derivatives of the sensor outputs with respect to the state, in standard deviations.
     pub by_state: Vec<DMatrix<f64>>,
-    /// Independent directions of the state at each sample, a column each, SI; empty without constraints.
+    /// Independent directions of the state at each sample, one per column, SI; empty without
+    /// constraints.
     directions: Vec<DMatrix<f64>>,
 }
 
-/// Linearised step from a sample to the next. With constraints it begins with the projection onto them, and drives are
-/// projected as well.
+/// Linearised step from one sample to the next. With constraints, the initial state and the drives
+/// are projected onto them.
 pub(crate) struct ReferenceStep {
-    /// Derivatives of the end by the state.
+    /// Derivatives of the final state with respect to the initial state.
     pub transition: DMatrix<f64>,
-    /// Derivatives of the end by constant changes of the accelerations and of the rates of
-    /// first-order states.
+    /// Derivatives of the final state with respect to constant changes of the accelerations and of
+    /// the rates of first-order states.
     pub drive: DMatrix<f64>,
-    /// End of the model's motion minus the reference motion.
+    /// Final state of the model minus the reference motion.
     pub defect: DVector<f64>,
 }
 
-/// Model with the scales of its states.
+/// Fitted model with the scales of its states.
 struct ScaledModel<'a> {
     model: &'a EstimationModel,
     simulation: Simulation<'a>,
@@ -77,7 +79,7 @@ struct ScaledModel<'a> {
 struct UsedRecord<'a> {
     record: &'a Record,
     times: &'a [f64],
-    /// Measurements of the samples at their own times, a row per sample.
+    /// Measurements at the sample times, one row per sample.
     measured: Vec<DVector<f64>>,
 }
 
@@ -115,14 +117,16 @@ impl ReferenceMotion {
 }
 
 impl ReferenceRecord {
-    /// Returns independent directions of the state at a sample, a column each: all states without constraints.
+    /// Returns independent directions of the state at a sample, one per column. Without constraints
+    /// these are all states.
     pub fn initial_directions(&self, sample: usize) -> DMatrix<f64> {
         let count = self.states[sample].len();
         let own = self.directions.get(sample).cloned();
         own.unwrap_or_else(|| DMatrix::identity(count, count))
     }
 
-    /// Returns the point at the beginning or, with the same held inputs, at the end of a step.
+    /// Returns time, state and inputs at the beginning of a step, or at its end with the same held
+    /// inputs.
     pub fn end_point(&self, step: usize, is_end: bool) -> Point<'_> {
         let sample = step + usize::from(is_end);
         Point {
@@ -151,7 +155,7 @@ impl<'a> UsedRecord<'a> {
     }
 }
 
-/// The value of a column at a time near a sample, on the line between its neighbours.
+/// Returns the value of a column at a time near a sample, by linear interpolation.
 fn interpolate(times: &[f64], column: &[f64], at: f64, near: usize) -> f64 {
     if at == times[near] {
         return column[near];
@@ -188,7 +192,7 @@ impl<'a> ScaledModel<'a> {
             (window.times[window.times.len() - 1] - window.times[0]) / window.times.len() as f64
         });
         let accelerations = squares.iter().zip(&ranges[first..]).map(|(sum, range)| {
-            // At rest: what moves a state through a small part of its range in a sample.
+            // Lower limit for a record at rest.
             let least = thresholds::MIN_ACCELERATION_IN_RANGES * range / step;
             (sum / count).sqrt().max(least)
         });
@@ -204,7 +208,8 @@ impl<'a> ScaledModel<'a> {
         })
     }
 
-    /// Smooths a record: along the filter first, then along the smoothed motion.
+    /// Smooths a record twice: linearised along the filter estimates, then along the first smoothed
+    /// motion.
     fn follow_record(&mut self, used: &UsedRecord<'_>, first: &[f64]) -> Option<ReferenceRecord> {
         let first = DVector::from_iterator(
             first.len(),
@@ -234,7 +239,7 @@ impl<'a> ScaledModel<'a> {
         self.linearise_along(used, &states)
     }
 
-    /// Moves the scaled states at the samples onto the constraints.
+    /// Projects the scaled states at the samples onto the constraints.
     fn project_all(
         &self,
         used: &UsedRecord<'_>,
@@ -254,7 +259,7 @@ impl<'a> ScaledModel<'a> {
         projected.collect()
     }
 
-    /// Returns the state on the constraints, SI, that is nearest to a scaled state at a sample.
+    /// Returns the state, SI, on the constraints that is nearest to a scaled state at a sample.
     fn project(
         &self,
         used: &UsedRecord<'_>,
@@ -266,7 +271,8 @@ impl<'a> ScaledModel<'a> {
         self.simulation.move_onto_constraints(state, t, inputs).ok()
     }
 
-    /// Returns the derivatives of the projection onto the constraints at a state at a sample, scaled.
+    /// Returns the derivatives of the projection onto the constraints at a scaled state of a
+    /// sample.
     fn differentiate_projection(
         &self,
         used: &UsedRecord<'_>,
@@ -278,8 +284,8 @@ impl<'a> ScaledModel<'a> {
             .differentiate_projection(state, at, &self.ranges)
     }
 
-    /// Smooths a record once. `along`: scaled states along which the model is linearised; the
-    /// estimates of the filter if absent.
+    /// Smooths a record once. `along`: scaled states at which the model is linearised; if absent,
+    /// the filter estimates.
     fn smooth_record(
         &mut self,
         used: &UsedRecord<'_>,
@@ -313,7 +319,7 @@ impl<'a> ScaledModel<'a> {
         pairs.map(|(x, range)| x * range).collect()
     }
 
-    /// Linearises the step from a sample. `end`: scaled state at its end, if it is known.
+    /// Linearises the step that starts at a sample. `end`: scaled state at its end, if known.
     fn linearise_step(
         &mut self,
         used: &UsedRecord<'_>,
@@ -364,7 +370,7 @@ impl<'a> ScaledModel<'a> {
         })
     }
 
-    /// Derivatives of the scaled rates by the scaled state.
+    /// Returns the derivatives of the scaled rates with respect to the scaled state.
     fn differentiate_rates(&mut self, point: Point<'_>) -> DMatrix<f64> {
         let count = point.state.len();
         let mut rates = vec![0.0; count];
@@ -390,7 +396,7 @@ impl<'a> ScaledModel<'a> {
         jacobian
     }
 
-    /// Sensor outputs of a state, in standard deviations.
+    /// Returns the sensor outputs of a state, in standard deviations.
     fn measure(&mut self, point: Point<'_>) -> DVector<f64> {
         let mut values = Vec::with_capacity(self.noise.len());
         let (evaluator, buffers) = (&mut self.evaluator, &mut self.buffers);
@@ -445,7 +451,7 @@ impl<'a> ScaledModel<'a> {
             })
     }
 
-    /// Linearises the model along smoothed states, in SI.
+    /// Linearises the model along the smoothed states, in SI.
     fn linearise_along(
         &mut self,
         used: &UsedRecord<'_>,
@@ -488,7 +494,8 @@ impl<'a> ScaledModel<'a> {
         }
         let inputs = (0..used.times.len()).map(|sample| {
             let next = used.times.get(sample + 1).unwrap_or(&used.times[sample]);
-            // Half a step on, so that rounding of a sample's time does not decide.
+            // The time of the held sample is half a step later, so that rounding cannot select the
+            // previous sample.
             let middle = 0.5 * (used.times[sample] + next);
             let inputs = &used.record.inputs;
             let held = inputs.last_sample(middle);

@@ -1,4 +1,4 @@
-//! Reference motion, linearised model and segments that laws and curves are compared with.
+//! Reference motion, linearised model and segments for the evaluation of laws and curves.
 
 use crate::fit::fit_result::Fit;
 use crate::free_function::drives::{DrivenModel, average_drive, is_visible};
@@ -12,11 +12,11 @@ use crate::thresholds;
 pub(crate) struct Scene<'s> {
     /// Problem of the dataset.
     pub problem: &'s EstimationProblem<'s>,
-    /// The fit that lacks something.
+    /// Fit whose residual is to be explained.
     pub fit: &'s Fit,
-    /// The motion that the records show.
+    /// Reference motion of the records.
     pub motion: ReferenceMotion,
-    /// Accelerations of the model along it.
+    /// Accelerations of the model along the reference motion.
     pub base: DrivenModel,
     /// Segments with free initial states.
     pub segments: Segments,
@@ -45,9 +45,9 @@ impl<'s> Scene<'s> {
         })
     }
 
-    /// Returns the residual of training and test records in short segments with the accelerations of
-    /// another fit, in standard deviations; `None` if it has further coordinates or the same
-    /// accelerations.
+    /// Returns the RMS residual in segments with the accelerations of another fit, over training
+    /// and test records, in standard deviations. `None` if the other fit has additional coordinates
+    /// or equal accelerations.
     pub fn evaluate_fit(&self, fit: &Fit) -> Option<f64> {
         let shooting = fit.training_shooting(self.problem);
         let values = shooting.parameter_values(&fit.train.estimate.theta);

@@ -16,12 +16,12 @@ use crate::thresholds;
 /// record: a column per step.
 pub(crate) type Drive = Vec<DMatrix<f64>>;
 
-/// Change of the outputs by a nuisance: by accelerations and directly, in standard deviations of the
-/// noise per standard deviation of the prior.
+/// Change of the outputs due to a nuisance, through the accelerations and directly. Unit: standard
+/// deviations of the noise per standard deviation of the prior.
 pub(crate) struct NuisanceResponse {
     /// Changes of the accelerations.
     pub drive: Option<Drive>,
-    /// Changes of the outputs of each record, a row per sample, a column per channel.
+    /// Direct changes of the outputs of each record, one row per sample and one column per channel.
     pub outputs: Vec<DMatrix<f64>>,
     /// True if the nuisance has a prior.
     pub has_prior: bool,
@@ -34,7 +34,7 @@ pub(crate) struct Segments {
     list: Vec<Segment>,
     /// Weight of the prior of each nuisance.
     prior_weights: Vec<f64>,
-    /// Residuals with nuisances alone.
+    /// Fit of the nuisances without added columns.
     pub alone: LinearFit,
 }
 
@@ -46,15 +46,15 @@ struct Segment {
     nuisances: DMatrix<f64>,
 }
 
-/// Products of columns: nuisances, added columns, residual.
+/// Products of the columns: nuisances, added columns, residual.
 pub(super) struct Products {
-    /// Of the training records.
+    /// Products over the training records.
     pub train: DMatrix<f64>,
-    /// Of the test records.
+    /// Products over the test records.
     pub test: DMatrix<f64>,
 }
 
-/// Linear fit of added columns.
+/// Linear fit of the added columns.
 #[derive(Clone, Debug)]
 pub(crate) struct LinearFit {
     /// Coefficients of the added columns.
@@ -66,14 +66,14 @@ pub(crate) struct LinearFit {
 }
 
 impl LinearFit {
-    /// Returns the RMS of both sets of records.
+    /// Returns the root mean square of the training and the test RMS.
     pub fn rms(&self) -> f64 {
         (0.5 * (self.train_rms.powi(2) + self.test_rms.powi(2))).sqrt()
     }
 }
 
 impl Segments {
-    /// Splits the records into segments of a length, s.
+    /// Splits the records into segments of a given length, s.
     pub fn split_motion(
         motion: &ReferenceMotion,
         fit: &Fit,
@@ -117,7 +117,7 @@ impl Segments {
         segments
     }
 
-    /// Number of measured numbers of the training and of the test records.
+    /// Returns the number of measured values of the training records and of the test records.
     fn counts(&self) -> (f64, f64) {
         let (mut train, mut test) = (0.0, 0.0);
         for segment in &self.list {
@@ -130,7 +130,7 @@ impl Segments {
         (f64::max(train, 1.0), f64::max(test, 1.0))
     }
 
-    /// Fits the sizes of drives. `fixed`: drive of size 1.
+    /// Fits the sizes of drives. `fixed`: drive whose size is 1.
     pub fn fit_drives(
         &self,
         motion: &ReferenceMotion,
@@ -154,7 +154,7 @@ impl Segments {
     }
 
     /// Minimises the sum of squares of the training records with priors and a penalty on the added
-    /// columns; the last number of the solution, that of the residual, is 1.
+    /// columns. The last number of the solution, the factor of the residual, is 1.
     pub(super) fn solve(&self, products: &Products, penalty: &DMatrix<f64>) -> DVector<f64> {
         let train = &products.train;
         let (unknowns, nuisances) = (train.ncols() - 1, self.prior_weights.len());
@@ -215,8 +215,8 @@ impl Segments {
         Some(added - across.transpose() * gram.cholesky()?.solve(&across))
     }
 
-    /// Returns the number of samples per independent one in the residuals of a solution on the
-    /// training records: one and twice the sum of their first correlations that are positive.
+    /// Returns the number of samples per independent sample in the training residuals of a
+    /// solution: 1 plus twice the sum of the autocorrelations up to the first negligible one.
     pub(super) fn correlation_samples(
         &self,
         motion: &ReferenceMotion,
@@ -249,12 +249,12 @@ impl Segments {
         1.0 + 2.0 * positive.sum::<f64>()
     }
 
-    /// Number of measured numbers of the training records.
+    /// Returns the number of measured values of the training records.
     pub(super) fn training_count(&self) -> f64 {
         self.counts().0
     }
 
-    /// Computes the products of columns. `fixed`: drive of size 1.
+    /// Computes the products of the columns. `fixed`: drive whose size is 1.
     pub(super) fn products(
         &self,
         motion: &ReferenceMotion,
@@ -296,12 +296,12 @@ impl Segments {
     }
 }
 
-/// Rows of a segment without a measurement.
+/// Returns the rows of a segment without a measurement.
 fn is_missing(record: &ReferenceRecord, first: usize, channels: usize, row: usize) -> bool {
     !record.differences[first + row / channels][row % channels].is_finite()
 }
 
-/// The responses of the outputs of a segment that begins at a sample, a column per drive.
+/// Returns the responses of the outputs of a segment, one column per drive.
 fn respond(
     record: &ReferenceRecord,
     first: usize,

@@ -1,49 +1,51 @@
 //! Extended smoother of a record: states of the model and unknown accelerations that follow random
 //! walks (Rauch, Tung and Striebel, AIAA Journal 3, 1965; in the form of Bierman, Automatica 9, 1973,
-//! which inverts no covariance). It follows a record within its noise, whatever the model lacks.
+//! which inverts no covariance). The smoothed motion follows a record within its noise even if the
+//! model lacks an effect.
 
 use nalgebra::{DMatrix, DVector};
 
 /// Model near a sample, in scaled states and accelerations.
 pub(super) struct LocalModel {
-    /// State from which the step begins.
+    /// State at the beginning of the step.
     pub state: DVector<f64>,
     /// State at the end of the step.
     pub end: DVector<f64>,
-    /// Derivatives of the end by the state.
+    /// Derivatives of the final state with respect to the initial state.
     pub transition: DMatrix<f64>,
-    /// Derivatives of the end by accelerations that are constant during the step.
+    /// Derivatives of the final state with respect to accelerations that are constant during the
+    /// step.
     pub drive: DMatrix<f64>,
 }
 
-/// Outputs near a sample, in standard deviations of the noise.
+/// Linearised outputs near a sample, in standard deviations of the noise.
 pub(super) struct LocalOutputs {
-    /// State at which they are linearised.
+    /// State at which the outputs are linearised.
     pub state: DVector<f64>,
-    /// Differences measured minus expected; NaN if missing.
+    /// Measured minus expected outputs; NaN if missing.
     pub difference: DVector<f64>,
-    /// Derivatives of the expected outputs by the state.
+    /// Derivatives of the expected outputs with respect to the state.
     pub by_state: DMatrix<f64>,
 }
 
 /// Standard deviations of a smoother, in scaled units.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Widths {
-    /// Of each state at the first sample.
+    /// Standard deviation of each state at the first sample.
     pub first_state: f64,
-    /// Of the step of each acceleration from sample to sample.
+    /// Standard deviation of the change of each acceleration from sample to sample.
     pub acceleration_step: f64,
 }
 
-/// Quantities of the filter at a sample.
+/// Filter estimate at a sample.
 struct FilteredSample {
     mean: DVector<f64>,
     covariance: DMatrix<f64>,
     by_state: DMatrix<f64>,
     gain: DMatrix<f64>,
-    /// Differences over their covariance.
+    /// Innovations multiplied by the inverse of their covariance.
     weighted: DVector<f64>,
-    /// To the next sample.
+    /// Transition matrix to the next sample.
     transition: DMatrix<f64>,
 }
 
@@ -51,12 +53,12 @@ struct FilteredSample {
 pub(super) struct Smoothed {
     /// States at the samples, scaled.
     pub states: Vec<DVector<f64>>,
-    /// Logarithm of the likelihood of the differences.
+    /// Logarithm of the likelihood of the innovations.
     pub log_likelihood: f64,
 }
 
-/// Smooths a record of `samples` samples. `outputs` and `model` linearise at a sample; they receive
-/// the estimate of the filter there.
+/// Smooths a record of `samples` samples. The functions `outputs` and `model` linearise at a
+/// sample; their argument is the filter estimate there.
 pub(super) fn smooth(
     samples: usize,
     first: &DVector<f64>,
@@ -72,7 +74,7 @@ pub(super) fn smooth(
     for k in 0..all {
         covariance[(k, k)] = match k < states {
             true => widths.first_state.powi(2),
-            // An unknown acceleration of the usual size.
+            // Accelerations are scaled, so the usual size is 1.
             false => 1.0,
         };
     }
@@ -159,7 +161,8 @@ mod tests {
 
     use super::{LocalModel, LocalOutputs, Widths, smooth};
 
-    /// The smoothed states of a linear model are the least-squares solution of all equations at once.
+    /// For a linear model the smoothed states are the least-squares solution of all equations at
+    /// once.
     #[test]
     fn smoothed_states_solve_the_least_squares_problem() {
         let (h, samples) = (0.1, 12);
@@ -195,7 +198,7 @@ mod tests {
             },
         )
         .unwrap();
-        // Unknowns: the first state, the first acceleration and its steps.
+        // Unknowns: the first state, the first acceleration and its changes.
         let unknowns = 2 + samples;
         let mut rows: Vec<(DVector<f64>, f64)> = Vec::new();
         let unit = |k: usize, size: f64| {

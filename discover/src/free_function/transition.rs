@@ -4,19 +4,20 @@
 
 use nalgebra::DMatrix;
 
-/// Terms of the series of the integral, which is exact to double precision for a norm below 1/2.
+/// Number of terms of the Taylor series of the integral; its error is below double precision for a
+/// norm below 1/2.
 const SERIES_TERMS: usize = 12;
 
-/// Maximum number of squarings; a matrix of a larger norm is held at rest by the model.
+/// Maximum number of squarings. For a matrix of a larger norm, the result is not computed.
 const MAX_SQUARINGS: u32 = 200;
 
-/// Transition over a step of length h of `x' = J x + b`, with a constant drive b:
-/// `x(h) = exponential x(0) + h integral b`.
+/// Transition over a step of length h of `x' = J x + b`, with constant b: `x(h) = exponential x(0)
+/// + h integral b`.
 #[derive(Clone, Debug)]
 pub(super) struct Transition {
     /// exp(h J).
     pub exponential: DMatrix<f64>,
-    /// The mean of exp(s J) over the step.
+    /// Mean of exp(s J) for s from 0 to h.
     pub integral: DMatrix<f64>,
 }
 
@@ -64,7 +65,7 @@ mod tests {
             let found = Transition::of_step(&step).unwrap();
             let (s, c) = f64::sin_cos(w * h);
             let exact = [[c, s / w], [-w * s, c]];
-            // The integral of the exponential from 0 to h, over h.
+            // Mean of exp(s J) for s from 0 to h.
             let mean = [
                 [s / (w * h), (1.0 - c) / (w * w * h)],
                 [-(1.0 - c) / h, s / (w * h)],

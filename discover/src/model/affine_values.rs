@@ -1,21 +1,21 @@
 //! Affine values of a program, found from its operations. A numerical test would depend on units:
-//! the root of a pressure is flat at one pascal.
+//! the square root of a pressure seems constant near one pascal.
 
 use eomgen_codegen::program::{Op, Program, ValueId};
 
-/// Dependence of a value on the state, from the least to the most.
+/// Dependence of a value on the state, in increasing order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Form {
-    /// Not at all.
+    /// The value does not depend on the state.
     Constant,
-    /// As a sum over states and a constant.
+    /// The value is a weighted sum of states plus a constant.
     Affine,
-    /// In some other way, or on inputs or time.
+    /// Any other dependence, also on inputs or time.
     Other,
 }
 
-/// Returns true if the values are sums over states and a constant. The factors depend on parameters
-/// only.
+/// Returns true if the values are weighted sums of states plus a constant. The weights depend only
+/// on parameters.
 pub(crate) fn are_affine(program: &Program, values: &[ValueId]) -> bool {
     let mut forms = vec![Form::Other; program.values.len()];
     for id in program.reachable(values) {
@@ -26,14 +26,14 @@ pub(crate) fn are_affine(program: &Program, values: &[ValueId]) -> bool {
         .all(|value| forms[value.index()] <= Form::Affine)
 }
 
-/// Returns the form of a value from the forms of its operands.
+/// Returns the dependence of a value from the dependence of its operands.
 fn form(program: &Program, id: ValueId, forms: &[Form]) -> Form {
     let value = program.value(id);
     if value.parameter_only {
         return Form::Constant;
     }
     let of = |id: &ValueId| forms[id.index()];
-    // A product is affine if one factor is and the other is constant.
+    // A product is affine if one factor is affine and the other is constant.
     let product = |a: Form, b: Form| match a.min(b) {
         Form::Constant => a.max(b),
         Form::Affine | Form::Other => Form::Other,

@@ -1,20 +1,22 @@
-//! Changes of a state that constraints allow, from the derivative of the projection onto the constraints.
+//! Changes of a state that satisfy the constraints to first order, from the derivative of the
+//! projection onto the constraints.
 //!
-//! The derivative D of a projection at a point on the constraints satisfies D D = D. Its singular values are 0, or at least
-//! 1 in any scales of the states, so that the limit 1/2 gives its rank.
+//! The derivative D of a projection at a point on the constraints satisfies D D = D. Its singular
+//! values are 0, or at least 1 in any scales of the states; therefore the limit 1/2 gives its rank.
 
 use eomgen_analysis::qr_iteration;
 use nalgebra::DMatrix;
 
 use crate::thresholds;
 
-/// Least singular value of an allowed direction.
+/// Minimum singular value of an allowed direction.
 const MIN_SINGULAR_VALUE: f64 = 0.5;
 
-/// Projection of a state onto the constraints; `None` if there is none near it.
+/// Projection of a state onto the constraints; `None` if no near state satisfies them.
 pub(crate) type ProjectState<'p> = dyn FnMut(&[f64]) -> Option<Vec<f64>> + 'p;
 
-/// Returns the derivatives of the projection at a state, in ranges of the states; `None` off the constraints.
+/// Returns the derivatives of the projection at a state, scaled by the ranges of the states. `None`
+/// if the state does not satisfy the constraints.
 pub(crate) fn differentiate_projection(
     state: &[f64],
     ranges: &[f64],
@@ -39,8 +41,8 @@ pub(crate) fn differentiate_projection(
     Some(derivative)
 }
 
-/// Returns a basis of the allowed directions, a column each, SI, from the derivatives of the projection in ranges of the
-/// states. The columns are orthonormal in these ranges.
+/// Returns a basis of the allowed directions, one per column, SI, from the derivatives of the
+/// projection scaled by the ranges of the states. The scaled columns are orthonormal.
 pub(crate) fn find_allowed_directions(
     derivative: &DMatrix<f64>,
     ranges: &[f64],

@@ -1,7 +1,7 @@
-//! Check of the columns of a dataset against the model, simulated over the beginning of a training
-//! record. An error is a column that follows the model with the opposite sign, with a unit factor,
-//! or that follows another channel. A missing effect causes none of these. Neither do initial states
-//! that the record does not show: the motions that they cause are removed from both sides.
+//! Check of the columns of a dataset against a simulation of the beginning of a training record. A
+//! column is wrong if it follows the model with the opposite sign or a unit factor, or if it
+//! follows another channel. Missing effects do not cause such deviations. Nor do unknown initial
+//! states: the motions that they cause are removed from both sides.
 
 use crate::model::estimation_model::EstimationModel;
 use crate::model::first_state::find_measured_states;
@@ -10,7 +10,7 @@ use crate::model::unknowns::ExpectedSensor;
 use crate::thresholds;
 use eomgen_records::Refusal;
 
-/// Factors between units that are often taken for each other.
+/// Factors between units that are often confused.
 const FACTORS: [(f64, &str, &str); 6] = [
     (1e3, "a thousand times", ""),
     (1e-3, "a thousandth of", ""),
@@ -28,13 +28,14 @@ const FACTORS: [(f64, &str, &str); 6] = [
     ),
 ];
 
-/// Change of an unknown first state that gives its free motion, relative to its typical size.
+/// Change of an unknown initial state for the computation of its free motion, relative to its
+/// typical size.
 const FREE_MOTION_FRACTION: f64 = 1e-3;
 
-/// Least part of a free motion, relative to its length, that the other free motions do not explain.
+/// Minimum fraction of a free motion that other free motions do not explain, relative to its norm.
 const MIN_INDEPENDENT_PART: f64 = 1e-9;
 
-/// Returns a description of a factor between two units, relative to `expected`; `None` for other
+/// Returns a description of the factor between two units, relative to `expected`; `None` for other
 /// factors.
 pub(crate) fn describe_unit_factor(factor: f64, expected: &str) -> Option<String> {
     let is_near = |unit: f64| (factor / unit - 1.0).abs() < thresholds::FACTOR_TOLERANCE;
@@ -42,11 +43,11 @@ pub(crate) fn describe_unit_factor(factor: f64, expected: &str) -> Option<String
     Some(format!("{times} {expected}{as_units}"))
 }
 
-/// Checks the columns of the first training record and returns remarks.
+/// Checks the columns of the first training record. Returns notes.
 ///
 /// # Errors
 ///
-/// A column with a wrong name.
+/// A column that contains another quantity than declared.
 pub fn check_channels(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();
     let record = &problem.dataset.train[0];
@@ -57,7 +58,7 @@ pub fn check_channels(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec
     let samples = record.times.len().min(thresholds::CHECKED_SAMPLES);
     let times = &record.times[..samples];
     let channels = &problem.dataset.channels;
-    // A model that cannot be run so far is tested by its fit.
+    // If the model cannot be simulated here, errors appear in its fit.
     let simulate = |first: &[f64]| -> Option<Vec<Vec<f64>>> {
         let mut simulation = model.create_simulation(&model.values).ok()?;
         let run = simulation
@@ -140,7 +141,7 @@ pub fn check_channels(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec
     Ok(notes)
 }
 
-/// Returns the states whose first values the record does not show.
+/// Returns the states whose initial values the record does not show.
 fn find_unknown_states(problem: &EstimationProblem<'_>, model: &EstimationModel) -> Vec<usize> {
     if !problem.estimates_initial_states() {
         return Vec::new();
@@ -150,15 +151,15 @@ fn find_unknown_states(problem: &EstimationProblem<'_>, model: &EstimationModel)
     all.filter(|state| !measured.contains(state)).collect()
 }
 
-/// Values of a channel by the model, at the samples.
+/// Expected values of a channel at the samples.
 struct Expectation {
     values: Vec<f64>,
-    /// Changes of the values by each unknown first state.
+    /// Changes of the values due to each unknown initial state.
     free: Vec<Vec<f64>>,
 }
 
 impl Expectation {
-    /// Returns the values that a sensor shows. Its delay hardly changes the correlation.
+    /// Applies gain and bias of a sensor. Its delay hardly changes the correlation.
     fn apply_sensor(mut self, sensor: &ExpectedSensor) -> Self {
         for value in &mut self.values {
             *value = sensor.gain * *value + sensor.bias;
@@ -170,11 +171,12 @@ impl Expectation {
     }
 }
 
-/// Correlation of a column with its expectation after removing a line and free motions from both.
+/// Correlation of a column with its expected values. A linear trend and free motions are removed
+/// from both.
 struct Correspondence {
     correlation: f64,
     factor: f64,
-    /// True if there is enough to be followed.
+    /// True if the motion of the column is large enough for the comparison.
     shows: bool,
 }
 
@@ -222,7 +224,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-/// Returns an orthonormal basis of columns, by the Gram-Schmidt method with a second pass.
+/// Returns an orthonormal basis of the columns, by the Gram-Schmidt method with a second pass.
 fn orthonormal_basis(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let mut basis: Vec<Vec<f64>> = Vec::new();
     for mut column in columns {

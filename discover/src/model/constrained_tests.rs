@@ -1,4 +1,5 @@
-//! Tests of constrained motions: a pendulum in Cartesian coordinates against the same pendulum by its angle.
+//! Tests of constrained motions: a pendulum in Cartesian coordinates is compared with the same
+//! pendulum described by its angle.
 
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::runge_kutta::RungeKutta;
@@ -29,14 +30,15 @@ fn samples() -> Vec<f64> {
     (0..200).map(|k| 5e-3 * f64::from(k)).collect()
 }
 
-/// Returns the Cartesian state at an angle and its rate.
+/// Returns the Cartesian state for an angle and its rate.
 fn state_at([angle, rate]: [f64; 2]) -> Vec<f64> {
     let (sin, cos) = angle.sin_cos();
     let speed = LENGTH * rate;
     vec![LENGTH * sin, -LENGTH * cos, speed * cos, speed * sin]
 }
 
-/// Integrates the pendulum by its angle in steps of 50 us; returns the Cartesian states at the samples.
+/// Integrates the equation of the angle in steps of 50 us; returns the Cartesian states at the
+/// samples.
 fn integrate_angle(start: [f64; 2]) -> Vec<Vec<f64>> {
     let mut state = start.to_vec();
     let mut method = RungeKutta::new(2);
@@ -82,7 +84,8 @@ fn constrained_motion_matches_that_of_the_angle_and_does_not_drift() {
             };
             assert!((x.hypot(y) - LENGTH).abs() < 1e-14 && (x * v + y * w).abs() < 1e-13);
         }
-        // A start off the constraints is moved onto them: here along the rod.
+        // An initial state that violates the constraints is projected onto them, here along the
+        // rod.
         start.iter_mut().take(2).for_each(|x| *x *= 1.1);
         let moved = simulation.move_onto_constraints(&start, 0.0, &inputs);
         let moved = moved.expect("a state");
@@ -104,7 +107,7 @@ fn derivatives_along_allowed_directions_match_those_by_the_angle() {
     assert_eq!(directions.ncols(), 2);
     let small = 1e-4;
     for direction in directions.column_iter() {
-        // The change of angle and rate along the direction.
+        // Change of angle and rate along the direction.
         let (sin, cos) = f64::sin_cos(start[0]);
         let turn = (cos * direction[0] + sin * direction[1]) / LENGTH;
         let allowed = (sin * direction[0] - cos * direction[1]).abs();

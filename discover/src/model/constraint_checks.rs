@@ -1,4 +1,4 @@
-//! Check of the records and of stated initial states against the constraints of a model.
+//! Check of the records and of given initial states against the constraints of a model.
 
 use eomgen_codegen::independence::rows::ConstraintRows;
 use eomgen_codegen::program::evaluator::Point;
@@ -14,15 +14,16 @@ use crate::model::first_state::estimate_without_constraints;
 use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{UnknownKind, list_sensor_unknowns};
 
-/// Least RMS residual of a constraint at measured coordinates, in standard deviations of noise and sensors, that is noted.
-/// Normal errors exceed it in one of 500 million records.
+/// RMS residual of a constraint at measured coordinates above which a note is written, in standard
+/// deviations of noise and sensor errors. Normal errors exceed it in one of 500 million records.
 const MIN_CONTRADICTION: f64 = 6.0;
 
-/// Checks the constraints at the first states of the records and at measured coordinates; returns notes.
+/// Checks the constraints at the initial states of the records and at measured coordinates. Returns
+/// notes.
 ///
 /// # Errors
 ///
-/// Constraints that no state near a first state satisfies.
+/// Constraints that no state near an initial state satisfies.
 pub fn check_constraints(
     problem: &EstimationProblem<'_>,
     text: &str,
@@ -47,15 +48,16 @@ pub fn check_constraints(
     Ok(notes)
 }
 
-/// A measured coordinate.
+/// Measured coordinate.
 struct MeasuredCoordinate {
     place: usize,
     channel: usize,
-    /// Standard deviations of noise and bias together, SI, and of the gain.
+    /// Standard deviations: of noise and bias together, SI, and of the gain.
     sd: [f64; 2],
 }
 
-/// Describes the constraints that a record contradicts: those whose coordinates are all measured.
+/// Describes the constraints that a record contradicts, among those whose coordinates are all
+/// measured.
 fn describe_contradictions(
     problem: &EstimationProblem<'_>,
     model: &EstimationModel,
@@ -64,7 +66,8 @@ fn describe_contradictions(
 ) -> Vec<String> {
     let measured = list_measured_coordinates(problem, model, record);
     let constraints = &model.specification().constraints;
-    // Sum of squares in standard deviations, number of samples, largest residual with its time.
+    // Elements: sum of squares in standard deviations, number of samples, largest residual and its
+    // time.
     let mut found = vec![(0.0, 0.0, (0.0_f64, 0.0)); constraints.len()];
     let mut state = model.initial_state();
     for (sample, t) in record.times.iter().enumerate() {
@@ -112,8 +115,8 @@ fn describe_contradictions(
     .collect()
 }
 
-/// Returns the variance of the residual of a constraint with these derivatives; `None` if it depends on a coordinate that
-/// is not measured.
+/// Returns the variance of the residual of a constraint. `row`: derivatives of the constraint.
+/// `None` if it depends on an unmeasured coordinate.
 fn variance_along(row: &[f64], measured: &[MeasuredCoordinate], state: &[f64]) -> Option<f64> {
     let mut variance = 0.0;
     for (place, derivative) in row.iter().enumerate().filter(|(_, entry)| **entry != 0.0) {

@@ -1,5 +1,5 @@
-//! Compiled model for an estimation: its part that is linear between switches, the measured
-//! outputs, and steps that are short enough for the noise of the sensors. It is simulated in
+//! Compiled model for fits, with its part that is linear between switches, its measured outputs,
+//! and steps that are short enough for the noise of the sensors. Simulations are in
 //! [`crate::model::simulation`].
 
 use std::sync::Arc;
@@ -35,10 +35,10 @@ use eomgen_records::samples::typical_step;
 use eomgen_sim::exponential::{ExponentialIntegrator, UnsupportedModel};
 use eomgen_sim::inputs::HeldInputs;
 
-/// A derived model with its measured outputs. Copies share the derivation.
+/// Derived model with its measured outputs. Copies share the derivation.
 #[derive(Clone)]
 pub struct EstimationModel {
-    /// The model.
+    /// Compiled equations.
     compiled: Arc<CompiledModel>,
     /// Names of the independent parameters, in the order of their values.
     pub parameters: Vec<String>,
@@ -50,46 +50,47 @@ pub struct EstimationModel {
     ranges: Vec<Option<(f64, f64)>>,
     linear: Option<LinearPart>,
     pub(crate) measured: MeasuredOutputs,
-    /// Expected values of the sensor of each channel.
+    /// Expected sensor of each channel.
     pub sensors: Vec<ExpectedSensor>,
-    /// Longest Runge-Kutta step of a motion without a linear part; `None` for a solver with error
+    /// Maximum Runge-Kutta step of a model without a linear part; `None` for a solver with error
     /// control.
     pub(crate) longest_step: Option<LongestStep>,
-    /// The usual time from sample to sample, s, and into how many parts of it steps are made
-    /// shorter where the linear part is not all.
+    /// Usual sample interval, s, and number of steps per sample interval if the model has a
+    /// nonlinear remainder.
     sample: f64,
     refinement: f64,
-    /// Stop request of its simulations.
+    /// Stop request of the simulations.
     pub(crate) stop: StopRequest,
-    /// Work of its simulations, and its limit.
+    /// Number of evaluations in simulations, and its limit.
     pub(crate) work: WorkLimit,
 }
 
-/// Differences between Runge-Kutta steps of one length and of half of it are so many times the error of
-/// the shorter ones, which falls with the fourth power.
+/// Ratio of the difference between the results of Runge-Kutta steps h and h/2 to the error of the
+/// steps h/2. The error decreases with the fourth power of the step.
 const RUNGE_KUTTA_GAIN: f64 = 15.0;
 
-/// The same ratio for the exponential integrator, whose error falls with the second power.
+/// The corresponding ratio for the exponential integrator, whose error decreases with the second
+/// power of the step.
 const INTEGRATOR_GAIN: f64 = 3.0;
 
 /// Part of a model that is linear between switches.
 #[derive(Clone)]
 enum LinearPart {
-    /// All of it.
+    /// The whole model.
     Whole,
-    /// A part with fewer terms.
+    /// Part of the model without the nonlinear terms.
     Part(Arc<LinearTerms>),
 }
 
-/// A model of the terms that are linear between switches.
+/// Model of the terms that are linear between switches.
 struct LinearTerms {
     compiled: CompiledModel,
-    /// For each of its parameters the one of the whole model.
+    /// Index of each of its parameters in the whole model.
     parameters: Vec<ParameterId>,
 }
 
 impl EstimationModel {
-    /// Derives the model of a specification. `linear`: the text of the same model without terms
+    /// Derives the model of a specification. `linear`: text of the same model without the terms
     /// that are nonlinear between switches, if it has such terms.
     ///
     /// # Errors
@@ -111,11 +112,11 @@ impl EstimationModel {
         Ok(model)
     }
 
-    /// Derives the equations only, for a comparison with another model.
+    /// Derives the equations only, for comparison with another model.
     ///
     /// # Errors
     ///
-    /// As [`EstimationModel::derive`].
+    /// Errors of [`EstimationModel::derive`].
     pub fn derive_equations(
         text: &str,
         name: &str,
@@ -159,13 +160,13 @@ impl EstimationModel {
         })
     }
 
-    /// Removes the limit of work, which is that of one fit.
+    /// Returns the model without a limit on work, because the limit applies to one fit.
     pub(crate) fn without_work_limit(mut self) -> Self {
         self.work = WorkLimit::default();
         self
     }
 
-    /// Moves a state into the domain of the model.
+    /// Clamps the coordinates of a state to their ranges.
     pub fn clamp_state(&self, mut state: Vec<f64>) -> Vec<f64> {
         for (entry, range) in state.iter_mut().zip(&self.ranges) {
             if let Some((low, high)) = range {
@@ -175,7 +176,8 @@ impl EstimationModel {
         state
     }
 
-    /// Converts a state of another model to this one. States that exist only in this model are 0.
+    /// Converts a state of another model to a state of this model. States that exist only in this
+    /// model are 0.
     pub fn map_state(&self, other: &Self, state: &[f64]) -> Vec<f64> {
         let value = |name: &String| {
             let index = other.states.iter().position(|known| known == name);
@@ -184,7 +186,7 @@ impl EstimationModel {
         self.states.iter().map(value).collect()
     }
 
-    /// Returns true if a state is in the domain of the model.
+    /// Returns true if the coordinates of a state are within their ranges.
     pub fn is_admissible(&self, state: &[f64]) -> bool {
         let ranged = state.iter().zip(&self.ranges);
         ranged
@@ -202,7 +204,7 @@ impl EstimationModel {
         self.compiled.typical_sizes()
     }
 
-    /// Returns true if the quantity of a channel jumps at times that depend on the motion: an
+    /// Returns true if the quantity of a channel jumps at times that depend on the motion:
     /// acceleration with dry friction or impacts.
     pub(crate) fn has_jumps(&self, channel: usize) -> bool {
         let program = self.program();
@@ -254,9 +256,9 @@ impl EstimationModel {
         given.unwrap_or_else(|_| vec![0.0; self.state_count()])
     }
 
-    /// Chooses the number of fixed steps per output interval such that the outputs change by less
-    /// than a fraction of the noise, tested on the beginning of a record. `numbers`: number of
-    /// fitted numbers. If no number of steps suffices, a solver with error control remains in use.
+    /// Chooses the number of fixed steps per output interval, tested on the beginning of a record.
+    /// The outputs may change by less than a fraction of the noise. `numbers`: number of fitted
+    /// values. If no number of steps suffices, a solver with error control is used.
     pub fn choose_steps(
         &mut self,
         record: &Record,
@@ -304,7 +306,8 @@ impl EstimationModel {
             };
             if coarse.as_ref().zip(fine.as_ref()).is_some_and(near) {
                 if has_linear_part {
-                    // The integrator gains a factor of four by each doubling: the coarser is enough.
+                    // Each doubling reduces the error of the integrator by a factor of four, so the
+                    // coarser steps suffice.
                     self.refinement = f64::from(1 << (doubling - 1));
                 }
                 return;
@@ -317,8 +320,8 @@ impl EstimationModel {
         self.longest_step = None;
     }
 
-    /// Returns a copy with twice as many fixed steps; `None` if the motions have no fixed steps, or
-    /// the largest number of them.
+    /// Returns a copy with half the fixed step. `None` if the model has no fixed steps, or already
+    /// the maximum number of them.
     pub(crate) fn with_halved_steps(&self) -> Option<Self> {
         let mut finer = self.clone();
         let steps = match (&self.linear, self.longest_step) {
@@ -335,8 +338,8 @@ impl EstimationModel {
         (steps <= f64::from(1 << thresholds::MAX_STEP_DOUBLINGS)).then_some(finer)
     }
 
-    /// Returns the ratio of the difference between fixed steps of one length and of half of it to the
-    /// error of the shorter ones.
+    /// Returns the ratio of the difference between fixed steps h and h/2 to the error of the steps
+    /// h/2.
     pub(crate) fn step_gain(&self) -> f64 {
         match self.linear.is_some() {
             true => INTEGRATOR_GAIN,
@@ -344,11 +347,11 @@ impl EstimationModel {
         }
     }
 
-    /// Creates a simulation at these values of the independent parameters.
+    /// Creates a simulation for given values of the independent parameters.
     ///
     /// # Errors
     ///
-    /// Values at which the model cannot be simulated; [`SimulationError::Stopped`].
+    /// Values for which the model cannot be simulated; [`SimulationError::Stopped`].
     pub fn create_simulation(&self, values: &[f64]) -> Result<Simulation<'_>, SimulationError> {
         if self.stop.is_requested() {
             return Err(SimulationError::Stopped);
@@ -375,7 +378,7 @@ impl EstimationModel {
         simulation.work = self.work.clone();
         simulation.use_constraints(self.compiled.projection(values));
         if self.measured.has_rates() {
-            // A model without a derivation with sides is not held either.
+            // If the model cannot be derived with sides, it is simulated without sticking.
             simulation.measure_sticking(self.compiled.sided_model(values).ok().flatten());
         }
         let (linear, own) = match &self.linear {
@@ -398,13 +401,13 @@ impl EstimationModel {
         let integrator = ExponentialIntegrator::new(affine, self.sample, self.refinement)
             .map(|integrator| integrator.with_typical_sizes(self.typical_sizes()));
         match (integrator, self.is_linear()) {
-            // A part that moves that much faster than the samples show is no longer seen to move.
+            // A motion that is much faster than the sampling is not visible in the samples.
             (Err(UnsupportedModel::TooManySteps(steps)), _)
                 if steps.is_nan() || steps > thresholds::MAX_PARTS_PER_STEP =>
             {
                 return Err(SimulationError::TooFast);
             }
-            // The exact propagator holds all inputs.
+            // The exact propagator requires held inputs.
             (Err(_), _) if moves_by_inputs => self.add_sticking(&mut simulation, values),
             (Err(_), true) => {
                 let exact = exact
@@ -423,25 +426,25 @@ impl EstimationModel {
         Ok(simulation)
     }
 
-    /// Adds surfaces that hold the motion to a simulation. A model without a derivation with sides is simulated without
-    /// them.
+    /// Adds sticking surfaces to a simulation, unless the model cannot be derived with sides.
     fn add_sticking(&self, simulation: &mut Simulation<'_>, values: &[f64]) {
         if let Ok(Some(sided)) = self.compiled.sided_model(values) {
             simulation.use_sticking(sided);
         }
     }
 
-    /// Returns the projection onto the constraints at these parameter values; `None` without constraints.
+    /// Returns the projection onto the constraints for given parameter values; `None` without
+    /// constraints.
     pub(crate) fn create_projection(&self, values: &[f64]) -> Option<Projection> {
         self.compiled.projection(values)
     }
 
-    /// Returns the values of a state at a time (s) that its projection onto the constraints changes, at the parameters of
-    /// the specification.
+    /// Returns the values of a state at a time (s) that change by its projection onto the
+    /// constraints, for the parameters of the specification.
     ///
     /// # Errors
     ///
-    /// The constraints that no near state satisfies, or that depend on each other there.
+    /// Constraints that no near state satisfies, or that depend on each other.
     pub(crate) fn list_changes_by_constraints(
         &self,
         state: &[f64],
@@ -452,17 +455,18 @@ impl EstimationModel {
         Ok(changes)
     }
 
-    /// Returns residuals and derivatives of the constraints at these parameter values; `None` without constraints.
+    /// Returns residuals and derivatives of the constraints for given parameter values; `None`
+    /// without constraints.
     pub(crate) fn create_constraint_rows(&self, values: &[f64]) -> Option<ConstraintRows> {
         self.compiled.constraint_rows(values)
     }
 
-    /// Creates an evaluator of the equations at these parameter values.
+    /// Creates an evaluator of the equations for given parameter values.
     pub(crate) fn create_evaluator(&self, values: &[f64]) -> Evaluator {
         self.compiled.evaluator(values)
     }
 
-    /// Returns the model at the parameters of the specification for a page.
+    /// Returns the model with the parameters of the specification for a page.
     ///
     /// # Errors
     ///
@@ -477,12 +481,13 @@ impl EstimationModel {
     }
 }
 
-/// Returns true if the model of a text is linear between switches.
+/// Returns true if the model of a specification is linear between switches.
 pub fn is_linear(text: &str, name: &str, order: Option<usize>) -> bool {
     compile_model(text, name, order).is_ok_and(|compiled| compiled.piecewise_linear().is_ok())
 }
 
-/// The linear part of a model whose text is given, if it has the model's states.
+/// Derives the linear part of a model from its text; `None` if its states differ from those of the
+/// model.
 fn linear_part(
     text: &str,
     name: &str,
@@ -502,8 +507,8 @@ fn linear_part(
     })))
 }
 
-/// Returns true if a model has surfaces that can hold a motion, such as dry friction, which its linear
-/// part lacks. The integrator of the linear part does not see the motion stop there.
+/// Returns true if a model has sticking surfaces, such as dry friction, that its linear part lacks.
+/// The integrator of the linear part would not stop the motion there.
 fn can_hold_more(whole: &CompiledModel, part: &CompiledModel) -> bool {
     let known = &part.program().guards;
     let is_known = |guard: &ProgramGuard| known.iter().any(|own| own.formula == guard.formula);
@@ -517,7 +522,7 @@ fn can_hold_more(whole: &CompiledModel, part: &CompiledModel) -> bool {
     holding_count(whole) > holding_count(part)
 }
 
-/// The model of a text.
+/// Compiles the model of a specification text.
 fn compile_model(text: &str, name: &str, order: Option<usize>) -> Result<CompiledModel, Error> {
     let Checked { model, .. } = eomgen_model_spec::check(edited_source(name, text))?;
     CompiledModel::derive(model, order.map_or(Orders::Declared, Orders::Uniform))
@@ -575,7 +580,7 @@ table = "1/2*m*dot(x)^2"
         };
         let (is_integrated, right) = simulate(None);
         assert!(!is_integrated && right[1].abs() < 1e-6, "{right:?}");
-        // Without friction the linear part does not see the motion stop.
+        // Without friction, the linear part alone would not stop the motion.
         let (is_integrated, end) = simulate(Some(&format!(
             "{STAGE}free = {{ on = \"x\", value = \"0*T\" }}\n"
         )));

@@ -12,7 +12,7 @@ use crate::thresholds;
 use eomgen_records::dataset::{Channel, Initial, Quantity};
 use eomgen_records::record::Record;
 
-/// Estimates the first state of a record. With constraints, it is on them.
+/// Estimates the initial state of a record. It satisfies the constraints of the model.
 pub fn estimate_first_state(
     model: &EstimationModel,
     record: &Record,
@@ -27,7 +27,7 @@ pub fn estimate_first_state(
     admissible.find_nearest(state, (*t, &record.inputs))
 }
 
-/// Returns the first state of a record before its projection onto the constraints.
+/// Returns the initial state of a record before its projection onto the constraints.
 pub(crate) fn estimate_without_constraints(
     model: &EstimationModel,
     record: &Record,
@@ -36,7 +36,7 @@ pub(crate) fn estimate_without_constraints(
 ) -> Vec<f64> {
     let mut state = model.initial_state();
     match initial {
-        // Information on the initial state does not apply to a later part.
+        // A known initial state applies to the beginning of the record only.
         _ if record.is_continued => apply_measurements(model, record, channels, state),
         Initial::Rest => state,
         Initial::Values(values) => {
@@ -52,7 +52,7 @@ pub(crate) fn estimate_without_constraints(
     }
 }
 
-/// Returns the indices of the states whose first values channels measure.
+/// Returns the indices of the states whose initial values are measured by channels.
 pub fn find_measured_states(model: &EstimationModel, channels: &[Channel]) -> Vec<usize> {
     let degrees = model.degrees_of_freedom();
     let measured = channels.iter();
@@ -60,7 +60,7 @@ pub fn find_measured_states(model: &EstimationModel, channels: &[Channel]) -> Ve
     measured.flatten().collect()
 }
 
-/// Returns the states that value and slope of a quantity measure.
+/// Returns the states that are measured by the value and by the slope of a quantity.
 fn measured_states(quantity: Quantity, degrees: usize) -> [Option<usize>; 2] {
     match quantity {
         Quantity::Coordinate(coordinate) => [Some(coordinate), Some(degrees + coordinate)],
@@ -73,7 +73,8 @@ fn measured_states(quantity: Quantity, degrees: usize) -> [Option<usize>; 2] {
     }
 }
 
-/// Replaces parts of a state by the quantities that sensors measure at the beginning of a record.
+/// Replaces elements of a state by the quantities that sensors measure at the beginning of a
+/// record.
 fn apply_measurements(
     model: &EstimationModel,
     record: &Record,
@@ -89,7 +90,7 @@ fn apply_measurements(
         let (value, slope) = (sensor.quantity(value), slope / sensor.gain);
         let places = measured_states(channel.quantity, degrees);
         for (place, number) in places.into_iter().zip([value, slope]) {
-            // A sensor of gain 0 does not show its quantity.
+            // With a sensor gain of 0, the quantity is not finite.
             if let Some(place) = place.filter(|_| number.is_finite()) {
                 state[place] = number;
                 if let Some(is_measured) = is_measured.get_mut(place) {
@@ -98,7 +99,7 @@ fn apply_measurements(
             }
         }
     }
-    // Noise may put what is measured beyond where the model lives.
+    // Because of noise, measured values may be outside the ranges of the model.
     let mut state = model.clamp_state(state);
     if let Some(rows) = model.create_constraint_rows(&model.values) {
         let at = (record.times[0], &record.inputs);
@@ -118,8 +119,9 @@ fn apply_measurements(
     state
 }
 
-/// Returns value and slope at the first time of the parabola through a column's first samples. A
-/// line would give the slope at their middle, and this delay would look like that of a sensor.
+/// Returns value and slope at the first time of a parabola through the first samples of a column. A
+/// line would give the slope in the middle of these samples, which would be interpreted as a sensor
+/// delay.
 fn fit_first_samples(times: &[f64], column: &[f64]) -> (f64, f64) {
     let points: Vec<(f64, f64)> = (times.iter().zip(column))
         .filter(|(_, value)| value.is_finite())
@@ -137,9 +139,9 @@ fn fit_first_samples(times: &[f64], column: &[f64]) -> (f64, f64) {
     fitted.map_or((0.0, 0.0), |fitted| (fitted[0], fitted[1] / span))
 }
 
-/// Returns the range of each state in the motion from a first state of each record, SI: the RMS about
-/// the mean. `values`: parameters of the model, which may have a strong influence; `noise`: standard
-/// deviation of each channel, SI.
+/// Returns the range of each state, SI: its RMS deviation from the mean in the motion from the
+/// first state of each record. `values`: parameters of the model; `noise`: standard deviation of
+/// each channel, SI.
 pub fn compute_state_ranges(
     model: &EstimationModel,
     values: &[f64],
@@ -151,7 +153,7 @@ pub fn compute_state_ranges(
         return vec![1.0; model.state_count()];
     };
     let moved = measure_ranges(&mut simulation, records, firsts);
-    // A state that no channel depends on is given a range of one unit.
+    // A state without influence on any channel has the range 1.
     let mut of = |(state, range): (usize, f64)| match range > 0.0 {
         true => range,
         false => (records.first().zip(firsts.first()))
@@ -161,8 +163,8 @@ pub fn compute_state_ranges(
     moved.into_iter().enumerate().map(&mut of).collect()
 }
 
-/// The range of each state in the records, or in the longest beginnings of them that can be followed; 0
-/// if it does not move.
+/// Returns the range of each state in the records, or in the longest initial segments that can be
+/// simulated; 0 if it is constant.
 fn measure_ranges(
     simulation: &mut Simulation<'_>,
     records: &[Record],
@@ -176,7 +178,7 @@ fn measure_ranges(
                 .simulate_states(first, times, &record.inputs)
                 .ok()
         });
-        // Every tenth sample is enough for a range.
+        // For a range, every tenth sample is sufficient.
         let states = motions.flat_map(|states| states.into_iter().step_by(10));
         let states: Vec<Vec<f64>> = states.collect();
         let of = |state: usize| root_mean_square(states.iter().map(|values| values[state]));
@@ -192,14 +194,15 @@ fn count_states(firsts: &[Vec<f64>]) -> usize {
     firsts.first().map_or(0, Vec::len)
 }
 
-/// The root mean square of values around their mean.
+/// Returns the standard deviation of values.
 fn root_mean_square(values: impl Iterator<Item = f64> + Clone) -> f64 {
     let count = values.clone().count() as f64;
     let mean = values.clone().sum::<f64>() / count;
     (values.map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
-/// The change of a state that moves the outputs by [`thresholds::UNMOVED_STATE_IN_NOISE`]; none if none does.
+/// Returns the change of a state for which the outputs change by the fraction
+/// [`thresholds::UNMOVED_STATE_IN_NOISE`] of the noise; `None` if it has no influence.
 fn find_unmoved(
     simulation: &mut Simulation<'_>,
     record: &Record,

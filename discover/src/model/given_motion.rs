@@ -1,5 +1,5 @@
-//! Given motions: the required inputs, which channels measure, follow from inverse dynamics.
-//! Nothing is integrated.
+//! Given motion: the inputs measured by channels follow from inverse dynamics. No equation is
+//! integrated.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::{DMatrix, DVector};
@@ -7,21 +7,21 @@ use nalgebra::{DMatrix, DVector};
 use crate::model::measured_outputs::{MeasuredInput, MeasuredOutputs};
 use crate::thresholds;
 
-/// A model along motions that records give. A row of a record holds its inputs, then all
-/// coordinates, all rates and all second derivatives.
+/// Inverse dynamics of a model along motions from records. A row of a record contains its inputs,
+/// all coordinates, all rates and all second rates, in this order.
 pub(crate) struct GivenMotion {
     /// Number of inputs.
     inputs: usize,
     degrees: usize,
-    /// The inputs that are sought, as many as degrees of freedom.
+    /// Inputs that are computed, one for each degree of freedom.
     required: Vec<MeasuredInput>,
-    /// The rates of the state.
+    /// Buffer for the rates of the state.
     rates: Vec<f64>,
 }
 
 impl GivenMotion {
-    /// Creates the given motion of a model with measured inputs; `None` if a state is missing in
-    /// the records.
+    /// Creates the inverse dynamics of a model with measured inputs; `None` if the records do not
+    /// contain all states.
     pub fn from_measured_inputs(evaluator: &Evaluator, measured: &MeasuredOutputs) -> Option<Self> {
         let program = evaluator.program();
         let (states, degrees) = (program.states(), program.degrees_of_freedom());
@@ -34,15 +34,15 @@ impl GivenMotion {
         })
     }
 
-    /// Returns the state in a row of a record; `None` if the row is from another model.
+    /// Returns the state in a row of a record; `None` if the row belongs to another model.
     pub fn state_of_row<'r>(&self, row: &'r [f64]) -> Option<&'r [f64]> {
         let is_own = row.len() == self.inputs + 3 * self.degrees;
         is_own.then(|| &row[self.inputs..self.inputs + 2 * self.degrees])
     }
 
-    /// Returns the inputs at a row of a record, including the required ones, for which the model
-    /// has the recorded second derivatives; `None` if there are none. Second derivatives are linear
-    /// in most inputs, so that one Newton step suffices.
+    /// Returns the inputs for a row of a record. The computed inputs give the recorded second
+    /// rates; `None` if there are no such inputs. Second rates are usually linear in the inputs, so
+    /// one Newton step suffices.
     pub fn solve_inputs(
         &mut self,
         evaluator: &mut Evaluator,
@@ -78,7 +78,8 @@ impl GivenMotion {
                 inputs[input.place] += change;
             }
             present = at(&inputs);
-            // Terms that nearly cancel leave their rounding. Second rates have different units.
+            // The tolerance includes terms that nearly cancel, because their rounding remains. Each
+            // second rate has its own scale, because units differ.
             let applied = self.required.iter().map(|input| inputs[input.place].abs());
             let applied = DVector::from_iterator(self.required.len(), applied);
             let sizes = wanted.abs() + left.abs() + matrix.abs() * applied;
@@ -99,7 +100,7 @@ mod tests {
     use crate::model::estimation_model::EstimationModel;
     use eomgen_records::dataset::{Channel, Quantity, TransducerPriors};
 
-    /// Two joints with a gear between them, whose motors both work on the second.
+    /// Two joints coupled by a gear; both motors act on the second joint.
     const ARM: &str = r#"[model]
 name = "arm"
 [parameters]

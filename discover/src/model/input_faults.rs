@@ -1,8 +1,8 @@
-//! Errors of inputs: `gain * (input + bias)` replaces an input, with two parameters of the
+//! Errors of inputs. An input is replaced by `gain * (input + bias)`, with two parameters in the
 //! specification. A wrong torque constant of a motor is a gain, an amplifier offset a bias.
 //!
-//! A delay of the input is estimated as a common delay of all sensors: initial states are free, and
-//! models depend on the starting time only through their inputs.
+//! A delay of the input is estimated as a common delay of all sensors. This is equivalent, because
+//! initial states are free and models depend on absolute time only through their inputs.
 
 use eomgen_model_spec::edit::{self, Edit, EditError, NewParameter, NewValue};
 use eomgen_model_spec::model::Input;
@@ -17,9 +17,9 @@ pub const INPUT_DELAY_EFFECT: &str = "input_delay";
 /// Error of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InputFault {
-    /// A factor.
+    /// Wrong factor.
     Gain,
-    /// An offset.
+    /// Offset.
     Bias,
 }
 
@@ -35,8 +35,8 @@ impl InputFault {
         }
     }
 
-    /// Returns the name of the effect, used if the error exceeds its declared prior or none is
-    /// declared.
+    /// Returns the name of the effect. It is reported if the error exceeds its declared prior, or
+    /// if no prior is declared.
     pub fn effect_name(self) -> &'static str {
         match self {
             Self::Gain => "input_gain",
@@ -106,8 +106,8 @@ pub fn find_delayed_input(inputs: &[InputPriors]) -> Option<(&str, PriorInSi)> {
     delayed.find_map(|input| Some((input.name.as_str(), input.delay?)))
 }
 
-/// Returns a specification in which inputs have their declared errors as start values. Parameters
-/// from an earlier search are kept.
+/// Returns a specification in which the inputs have their declared errors as initial values.
+/// Parameters from an earlier search are kept.
 ///
 /// # Errors
 ///
@@ -125,7 +125,7 @@ pub fn add_declared_faults(
             };
             let source = edited_source(path, &text);
             let Ok(checked) = eomgen_model_spec::check(source.clone()) else {
-                // The derivation reports errors in a text.
+                // Errors of an invalid text are reported by the derivation.
                 return Ok(text);
             };
             let (model, name) = (&checked.model, fault.parameter_name(&priors.name));
@@ -134,7 +134,7 @@ pub fn add_declared_faults(
                 continue;
             };
             let doc = fault.describe_parameter(&priors.name);
-            // One of that name that is something else is refused as taken.
+            // Another parameter of the same name is an error, reported as a name in use.
             let mut known = model.parameters.iter();
             if known.any(|known| known.name == name && known.doc == doc) {
                 continue;

@@ -1,6 +1,6 @@
-//! Interpolation error of measured quantities due to held inputs: at each sample the inputs jump, and
-//! slopes or second derivatives of quantities jump with them. Samples of a record do not show this
-//! error, because a cubic through all samples has its kinks at the samples.
+//! Interpolation error of measured quantities due to held inputs. At each sample the inputs jump,
+//! and with them slopes or second derivatives of quantities. The samples of a record do not show
+//! this error, because a cubic through all samples has its kinks at the samples.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_records::dataset::Dataset;
@@ -12,22 +12,22 @@ use crate::model::input_faults::find_delayed_input;
 use crate::model::measured_outputs::Output;
 use crate::model::output_times::lagrange_weight;
 
-/// Change of a state that gives the slope of a quantity, relative to the typical size of the state.
+/// Change of a state for the slope of a quantity, relative to the typical size of the state.
 const STATE_CHANGE: f64 = 1e-4;
 
 /// Fractions of a sample interval at which the error is computed.
 const FRACTIONS: [f64; 3] = [0.25, 0.5, 0.75];
 
-/// Samples of the cubic, in sample intervals from the sample before the interval.
+/// Nodes of the cubic, in sample intervals, relative to the beginning of the interval.
 const NODES: [f64; 4] = [-1.0, 0.0, 1.0, 2.0];
 
-/// Jumps of the first and of the second derivative of each channel per unit of an input.
+/// Jumps of the first and second derivative of each channel, per unit of an input.
 type Gains = [Vec<f64>; 2];
 
-/// Returns the RMS error, SI, of a cubic through four samples of each channel due to the jumps of
-/// the inputs; 0 for a channel that is not interpolated, because its delay is 0, and for
-/// accelerations, which jump themselves. The jumps of the derivatives are those at the first state
-/// of each training record.
+/// Returns the RMS error, SI, of a cubic through four samples of each channel due to jumps of the
+/// inputs. It is 0 for a channel without delay, which is not interpolated, and for accelerations,
+/// which jump themselves. The jumps of the derivatives are computed at the first state of each
+/// training record.
 pub(crate) fn compute_jump_errors(model: &EstimationModel, dataset: &Dataset) -> Vec<f64> {
     let channels = dataset.channels.len();
     let (mut squares, mut count) = (vec![0.0; channels], 0.0);
@@ -60,7 +60,7 @@ pub(crate) fn compute_jump_errors(model: &EstimationModel, dataset: &Dataset) ->
     }
     let errors = squares.iter().enumerate().map(|(channel, square)| {
         let error = model.sensors[channel].gain.abs() * f64::sqrt(square / f64::max(count, 1.0));
-        // An error that is not finite is unknown: the model is singular at the first state.
+        // If the model is singular at the first state, the error is not finite and is unknown.
         let is_interpolated = is_smooth(model, channel) && is_delayed(model, dataset, channel);
         if error.is_finite() && is_interpolated {
             error
@@ -79,7 +79,7 @@ fn is_smooth(model: &EstimationModel, channel: usize) -> bool {
     )
 }
 
-/// Returns true if the delay of a channel is or may be other than 0.
+/// Returns true if the delay of a channel differs from 0 or is estimated.
 fn is_delayed(model: &EstimationModel, dataset: &Dataset, channel: usize) -> bool {
     let delay = dataset.channels[channel].priors.delay;
     let is_known = delay.is_some_and(|prior| prior.sd == 0.0);
@@ -88,12 +88,12 @@ fn is_delayed(model: &EstimationModel, dataset: &Dataset, channel: usize) -> boo
         || find_delayed_input(&dataset.inputs).is_some()
 }
 
-/// Returns the changes of the inputs at the samples of a record after the first.
+/// Returns the changes of the inputs at the samples of a record, without its first sample.
 fn input_changes(record: &Record) -> Vec<Vec<f64>> {
     let difference = |pair: &[f64]| -> Vec<f64> {
         let [before, after] = [pair[0], pair[1]].map(|t| record.inputs.last_sample(t));
         let changes = after.iter().zip(before).map(|(a, b)| a - b).enumerate();
-        // A prescribed motion is a spline.
+        // A prescribed motion is a spline and does not jump.
         let held = changes.map(|(input, change)| match record.inputs.is_held(input) {
             true => change,
             false => 0.0,
@@ -103,7 +103,7 @@ fn input_changes(record: &Record) -> Vec<Vec<f64>> {
     record.times.windows(2).map(difference).collect()
 }
 
-/// Returns the gains of each input; zeros for an input that does not change.
+/// Returns the gains for each input; zeros for a constant input.
 fn compute_gains(
     model: &EstimationModel,
     evaluator: &mut Evaluator,
@@ -136,7 +136,7 @@ fn compute_gains(
     });
     let input_gains: Vec<Vec<f64>> = input_gains.collect();
     let slopes = input_gains.into_iter().map(|jump| {
-        // The second derivative of a function of coordinates jumps with the accelerations.
+        // For a function of coordinates, the second derivative jumps with the accelerations.
         let mut of_coordinates = vec![0.0; states];
         of_coordinates[..degrees].copy_from_slice(&jump[degrees..2 * degrees]);
         [jump, of_coordinates]
@@ -177,8 +177,8 @@ fn slope_along(
         .collect()
 }
 
-/// Returns the errors of the cubic at a fraction of a sample interval of length 1 if a derivative
-/// of this order jumps by 1 at the beginning or at the end of the interval.
+/// Returns the errors of the cubic at a fraction of a sample interval of length 1, if the
+/// derivative of order `order` jumps by 1 at the beginning or at the end of the interval.
 fn error_of_kinks(order: i32, at: f64) -> [f64; 2] {
     [0.0, 1.0].map(|kink| {
         let function = |t: f64| f64::max(t - kink, 0.0).powi(order) / f64::from(order);
@@ -195,7 +195,8 @@ mod tests {
 
     #[test]
     fn kinks_at_the_ends_of_an_interval_have_errors_of_opposite_sides() {
-        // Half way: a jump of the slope by 1 leaves 1/16, one of the second derivative 1/32.
+        // In the middle of the interval, a slope jump of 1 causes an error of 1/16, and a jump of
+        // the second derivative an error of 1/32.
         let [before, after] = error_of_kinks(1, 0.5);
         assert!((before + 1.0 / 16.0).abs() < 1e-15 && (after + 1.0 / 16.0).abs() < 1e-15);
         let [before, after] = error_of_kinks(2, 0.5);

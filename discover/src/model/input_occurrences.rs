@@ -11,14 +11,14 @@ pub fn list_replaceable(model: &Model) -> impl Iterator<Item = &Input> {
     inputs.filter(|input| input.rate.is_none() && input.rate_of.is_none())
 }
 
-/// Returns the input of a model that has one, whose rates may be inputs too.
+/// Returns the only input of a model, not counting its rates; `None` if there are several.
 pub fn find_only_input(model: &Model) -> Option<&Input> {
     let mut inputs = model.inputs.iter().filter(|input| input.rate_of.is_none());
     let first = inputs.next();
     first.filter(|_| inputs.next().is_none())
 }
 
-/// An entry of a specification.
+/// Entry of a specification.
 struct Written<'m> {
     section: Section,
     name: &'m str,
@@ -62,7 +62,7 @@ fn entries(model: &Model) -> Vec<Written<'_>> {
     found.extend(observables.map(of(Section::Observables)));
     found.extend(states.map(of(Section::States)));
     for definition in &model.definitions {
-        // A vector of another section is written out by definitions, which no file holds.
+        // A vector in another section is expanded to definitions that are not in the file.
         let owner = found.iter().find(|entry| entry.span == definition.span);
         let section = owner.map_or(Section::Definitions, |owner| owner.section);
         let entry = (definition.name.as_str(), definition.span, &definition.value);
@@ -99,7 +99,7 @@ pub fn find_occurrences(model: &Model, input: &str) -> Vec<(Section, Vec<String>
             }
         };
         let names = &mut found[at].1;
-        // Components of one vector have one name.
+        // All components of a vector have the same name.
         if !names.iter().any(|name| name == entry.name) {
             names.push(entry.name.to_owned());
         }

@@ -8,15 +8,15 @@ use crate::model::measured_outputs::MeasuredOutputs;
 /// Measured outputs as linear functions of the state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearOutputs {
-    /// A row per channel, a column per state.
+    /// Coefficients: one row per channel, one column per state.
     rows: Vec<Vec<f64>>,
     constant: Vec<f64>,
 }
 
 impl LinearOutputs {
-    /// Returns the outputs at the parameters of an evaluator; `None` if they are nonlinear or
-    /// depend on more than the state. Measured inputs and accelerations are excluded: a force
-    /// changes them at once.
+    /// Returns the outputs for the parameters of an evaluator; `None` if they are nonlinear or
+    /// depend on more than the state. Measured inputs and accelerations are excluded, because
+    /// forces change them immediately.
     pub(crate) fn linearise_outputs(
         outputs: &MeasuredOutputs,
         evaluator: &mut Evaluator,
@@ -43,7 +43,8 @@ impl LinearOutputs {
         let mut state = vec![0.0; n];
         let constant = quantities(&state);
         let mut rows = vec![vec![0.0; n]; constant.len()];
-        // At so large a state the constant is lost to rounding; a power of two keeps the factor exact.
+        // For such a large state, the constant is lost to rounding. A power of two keeps the factor
+        // exact.
         let away = 2f64.powi(300);
         for column in 0..n {
             state[column] = away;
@@ -78,7 +79,7 @@ mod tests {
     use crate::model::estimation_model::EstimationModel;
     use eomgen_records::dataset::{Channel, Quantity, TransducerPriors};
 
-    /// A cylinder whose flow falls with its pressure.
+    /// Hydraulic cylinder whose flow decreases with its pressure.
     const CYLINDER: &str = r#"[model]
 name = "cylinder"
 [parameters]

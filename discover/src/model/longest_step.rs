@@ -7,8 +7,8 @@ use crate::thresholds;
 pub(crate) struct LongestStep(pub f64);
 
 impl LongestStep {
-    /// Returns the number of steps for an interval, s. A small delay of a sample needs no further
-    /// step.
+    /// Returns the number of steps for an interval, s. A slightly longer sample interval needs no
+    /// additional step.
     pub fn count_steps(self, time: f64) -> usize {
         let steps = (time / self.0 - thresholds::SAMPLING_JITTER).ceil();
         steps.max(1.0) as usize

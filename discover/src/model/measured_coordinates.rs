@@ -1,9 +1,10 @@
-//! Positions of a constrained machine from those that sensors measure.
+//! Initial positions of a constrained machine from measured coordinates.
 //!
-//! The measured coordinates move from the initial state of the specification to their values in small steps, and the others
-//! follow by Newton's method on the constraints. A linkage thus stays in its branch of assembly, however far its crank
-//! turned. The projection of a start moves all coordinates alike, so that measured ones would leave their values, and can end in
-//! another branch.
+//! The measured coordinates change in small steps from the initial state of the specification to
+//! their measured values. The others follow by Newton's method on the constraints. Therefore a
+//! linkage stays in its assembly branch, even after several turns of its crank. The projection onto
+//! the constraints is not sufficient: it would also change the measured coordinates, and it could
+//! end in another branch.
 
 use eomgen_analysis::qr_iteration;
 use eomgen_codegen::independence::rows::ConstraintRows;
@@ -12,7 +13,7 @@ use eomgen_codegen::program::evaluator::Point;
 use eomgen_sim::inputs::HeldInputs;
 use nalgebra::{DMatrix, DVector};
 
-/// Longest step of a measured coordinate, in its typical size: 0.1 rad for an angle.
+/// Maximum step of a measured coordinate, relative to its typical size: 0.1 rad for an angle.
 const LONGEST_STEP: f64 = 0.1;
 
 /// Maximum number of steps: 16 turns of a crank.
@@ -21,16 +22,18 @@ const MAX_STEPS: usize = 1000;
 /// Maximum number of Newton corrections in a step.
 const MAX_CORRECTIONS: usize = 20;
 
-/// Size of the correction of a measured coordinate, relative to that of another one.
+/// Weight of the correction of a measured coordinate, relative to the other coordinates.
 const MEASURED_SHARE: f64 = 1e-3;
 
-/// Singular value of the scaled constraints, relative to the largest, below which they depend on each other.
+/// Singular value of the scaled constraints, relative to the largest, below which the constraints
+/// depend on each other.
 const MIN_SINGULAR_FRACTION: f64 = 1e-9;
 
-/// Correction, relative to the typical sizes, at which the constraints hold. The projection onto the constraints follows.
+/// Correction, relative to the typical sizes, at which the iteration ends. The projection onto the
+/// constraints follows.
 const LAST_CORRECTION: f64 = 1e-9;
 
-/// Coordinates that sensors measure, and the constraints that determine the others.
+/// Measured coordinates, and the constraints that determine the other coordinates.
 pub(crate) struct MeasuredCoordinates {
     /// Residuals and derivatives of the constraints.
     pub rows: ConstraintRows,
@@ -43,8 +46,8 @@ pub(crate) struct MeasuredCoordinates {
 }
 
 impl MeasuredCoordinates {
-    /// Moves a state on the constraints to the measured coordinates of another state, at a time (s); `None` if the
-    /// constraints cannot be satisfied on the way.
+    /// Moves a state on the constraints to the measured coordinates of another state, at a time
+    /// (s). `None` if the constraints cannot be satisfied in an intermediate step.
     pub fn move_to(
         &mut self,
         state: &mut [f64],
@@ -68,7 +71,7 @@ impl MeasuredCoordinates {
         Some(())
     }
 
-    /// Corrects the coordinates until the constraints hold.
+    /// Corrects the coordinates until the constraints are satisfied.
     fn satisfy_constraints(&mut self, state: &mut [f64], (t, inputs): (f64, &[f64])) -> Option<()> {
         for _ in 0..MAX_CORRECTIONS {
             let point = Point { t, state, inputs };

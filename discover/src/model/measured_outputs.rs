@@ -1,4 +1,4 @@
-//! States and observables of a model that channels measure.
+//! Quantities of a model that are measured by channels.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::program::{Program, ValueId};
@@ -23,13 +23,13 @@ pub(crate) enum Output {
 /// Indices of an observed acceleration and of the observable whose time derivative it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ObservedAcceleration {
-    /// Index of the derivative.
+    /// Index of the derivative among the observables.
     pub place: usize,
-    /// Index of the differentiated observable, which contains rates.
+    /// Index of the differentiated observable. It contains rates.
     pub observable: usize,
 }
 
-/// A measured input.
+/// Measured input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MeasuredInput {
     /// Index of the input.
@@ -38,11 +38,12 @@ pub(crate) struct MeasuredInput {
     pub noise: f64,
 }
 
-/// Work arrays for values other than states.
+/// Buffers for quantities other than states.
 pub(crate) struct OutputBuffers {
     observables: Vec<f64>,
     rates: Vec<f64>,
-    /// Sticking surfaces of the motion, if any; evaluation with sign(0) = 0 does not show them.
+    /// Sticking surfaces of the motion, if any. They are needed because the evaluation uses sign(0)
+    /// = 0.
     pub rest: Option<StickingMotion>,
 }
 
@@ -50,7 +51,7 @@ pub(crate) struct OutputBuffers {
 #[derive(Clone, Debug)]
 pub(crate) struct MeasuredOutputs {
     outputs: Vec<Output>,
-    /// The inputs among them, each once.
+    /// Measured inputs, each only once.
     inputs: Vec<MeasuredInput>,
     /// Number of observables of the model.
     observables: usize,
@@ -60,8 +61,8 @@ pub(crate) struct MeasuredOutputs {
 }
 
 impl MeasuredOutputs {
-    /// Finds the measured quantities of a program. `rates`: for each channel the source of the
-    /// derivative of an observable, if the channel measures one.
+    /// Creates the measured quantities of a program. `rates`: source of each channel that measures
+    /// the derivative of an observable.
     pub fn new(channels: &[Channel], rates: &[Option<Output>], program: &Program) -> Self {
         let degrees_of_freedom = program.degrees_of_freedom();
         let channels_with_rates = channels.iter().zip(rates);
@@ -83,7 +84,7 @@ impl MeasuredOutputs {
         }
     }
 
-    /// Returns the values of the observables among the measured quantities.
+    /// Returns the program values of the measured observables.
     pub fn observable_values(&self, program: &Program) -> Vec<ValueId> {
         let of = |output: &Output| match output {
             Output::Observable(observable) => Some(program.observable_values[*observable]),
@@ -103,7 +104,7 @@ impl MeasuredOutputs {
         &self.outputs
     }
 
-    /// Returns true if accelerations are measured. They jump with a force.
+    /// Returns true if accelerations are measured, which jump with forces.
     pub fn has_rates(&self) -> bool {
         (0..self.count()).any(|channel| self.is_rate(channel))
     }
@@ -116,7 +117,7 @@ impl MeasuredOutputs {
         )
     }
 
-    /// Returns the measured inputs, which a given motion determines.
+    /// Returns the measured inputs, which follow from a given motion.
     pub fn inputs(&self) -> &[MeasuredInput] {
         &self.inputs
     }
@@ -130,8 +131,8 @@ impl MeasuredOutputs {
         }
     }
 
-    /// Adds the effect of changes of the accelerations, and of the rates of first-order states, to
-    /// a row of quantities. `over`: a short time, s, in which such changes move the rates slightly.
+    /// Adds the effect of changed accelerations and rates of first-order states to a row of
+    /// quantities. `over`: short time, s, in which these changes move the rates slightly.
     pub fn add_to_accelerations(
         &self,
         evaluator: &mut Evaluator,

@@ -1,12 +1,12 @@
-//! Models and data of an estimation: the compiled model with its measured outputs
-//! ([`estimation_model`], [`simulation`]), records divided into
-//! [`windows`](eomgen_records::windows), the [`unknowns`] with their priors, errors of inputs
-//! ([`input_faults`]), and the [`problem`] that all fits to one dataset share. [`channel_checks`]
-//! compares columns with the model, `constraint_checks` with its constraints; [`output_times`] are the times of computed outputs, `input_jumps`
-//! the error between them; `admissible_states` and `allowed_directions` are those of the constraints,
-//! `measured_coordinates` the first positions of a linkage;
-//! `given_motion` contains the inverse dynamics; [`smoothing`] has no delay; [`stop`] ends a search
-//! early, `work` a fit that costs too much.
+//! Models and data of a fit. Models: the compiled model with its measured outputs
+//! ([`estimation_model`], [`simulation`]), `admissible_states` and `allowed_directions` of
+//! constraints, `measured_coordinates` for the initial positions of a linkage, `given_motion` for
+//! inverse dynamics. Data: records divided into [`windows`](eomgen_records::windows), zero-phase
+//! [`smoothing`], [`output_times`] of computed outputs and the interpolation error between them
+//! (`input_jumps`). Unknowns: [`unknowns`] with their priors, errors of inputs ([`input_faults`]).
+//! Checks: [`channel_checks`] compares columns with the model, `constraint_checks` with its
+//! constraints. The [`problem`] is shared by all fits to one dataset; [`stop`] ends a search early,
+//! and `work` ends a fit that costs too much.
 
 pub(crate) mod admissible_states;
 pub(crate) mod affine_values;

@@ -1,22 +1,22 @@
-//! Nonlinear remainder: difference between the rates of the whole model and those of its linear
-//! part, from two compiled programs.
+//! Nonlinear remainder: rates of the whole model minus rates of its linear part, from two compiled
+//! programs.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use eomgen_sim::exponential::Force;
 
-/// Rates of a model minus those of its linear part, at fixed parameters.
+/// Rates of a model minus those of its linear part, with fixed parameters.
 pub(crate) struct NonlinearRemainder {
     whole: Evaluator,
     linear: Evaluator,
     rates: [Vec<f64>; 2],
-    /// For each guard of the linear part that of the whole model, if they differ.
+    /// Index in the whole model of each guard of the linear part, if they differ.
     guards: Option<Vec<usize>>,
     values: Vec<f64>,
 }
 
 impl NonlinearRemainder {
-    /// Combines both models, which have the same states.
+    /// Combines a model and its linear part, which must have the same states.
     pub fn new(whole: Evaluator, linear: Evaluator) -> Self {
         let states = whole.program().states();
         Self {
@@ -29,8 +29,9 @@ impl NonlinearRemainder {
     }
 }
 
-/// For each guard of the linear part the whole model's: the one of the same formula, or, of
-/// those that have none, the next. None if all are the same, or those that have none are not as many.
+/// Returns the index in the whole model of each guard of the linear part: the guard with the same
+/// formula, or else the next guard without a counterpart. `None` if all guards are equal, or if the
+/// numbers of guards without a counterpart differ.
 fn corresponding_guards(whole: &Evaluator, linear: &Evaluator) -> Option<Vec<usize>> {
     let formulas = |model: &Evaluator| -> Vec<String> {
         let guards = model.program().guards.iter();
@@ -92,7 +93,8 @@ mod tests {
     use eomgen_records::record::Record;
     use eomgen_sim::exponential::NoDrives;
 
-    /// The rig, and the rig with teeth that deviate by more than twice the play.
+    /// Returns the text of the test rig, and of the test rig with a transmission error of more than
+    /// twice the play.
     fn texts() -> (String, String) {
         let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models");
         let rig = fs::read_to_string(models.join("planetary_arm_rig.toml")).expect("the rig");
@@ -105,8 +107,8 @@ mod tests {
         (rig, with)
     }
 
-    /// The rig with such teeth, integrated, and its text, a record of its torque, its channels and
-    /// a state in the middle of the play, as the teeth see it.
+    /// Returns the model of the test rig with transmission error and its text. Also returns a
+    /// record of its torque, its channels, and an initial state in the middle of the play.
     fn simulate_rig() -> (EstimationModel, String, Record, [Channel; 1], Vec<f64>) {
         let (rig, with) = texts();
         let channels = [Channel {
@@ -153,7 +155,7 @@ mod tests {
         };
         let ((carries_tangents, found), (_, wanted)) = (states(&integrated), states(&solved));
         assert!(carries_tangents);
-        // The play is 25 um. At an impact a difference in time is one in place.
+        // The play is 25 um. Near an impact, a time error causes a position error.
         let differences = found.iter().zip(&wanted).map(|(a, b)| (a[0] - b[0]).abs());
         let mut differences: Vec<f64> = differences.collect();
         differences.sort_by(f64::total_cmp);
@@ -168,7 +170,7 @@ mod tests {
         let mut simulation = integrated
             .create_simulation(&integrated.values)
             .expect("a simulation");
-        // The teeth touch once and part before the third sample.
+        // The teeth touch once and separate before the third sample.
         let times = &record.times[..4];
         let free = NeighbourDrives {
             count: 0,
@@ -187,7 +189,8 @@ mod tests {
                 states.expect("a motion")[3][0]
             });
             let quotient = (more - less) / (2.0 * size);
-            // The force is held over two steps, and the contact lasts three.
+            // The tolerance is large: the force is held over two steps, and the contact lasts
+            // three.
             let is_near = (tangent - quotient).abs() < 3e-2 * quotient.abs();
             assert!(is_near, "{state}: {tangent:e} for {quotient:e}");
         }

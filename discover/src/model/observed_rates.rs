@@ -1,13 +1,13 @@
-//! Measured rates and accelerations of observables, added to the model as further observables and
-//! derived with it.
+//! Measured rates and accelerations of observables. They are added to the model as further
+//! observables before the derivation.
 
 use eomgen_model_spec::model::{Model, ObservedRate};
 
 use crate::model::measured_outputs::{ObservedAcceleration, Output};
 use eomgen_records::dataset::{Channel, Quantity};
 
-/// Adds the derivatives of observables that channels measure to a model. Returns the source of the
-/// derivative of each channel, if it measures one.
+/// Adds the measured derivatives of observables to a model. Returns for each channel the source of
+/// the derivative, if it measures one.
 pub(crate) fn add_observed_rates(model: &mut Model, channels: &[Channel]) -> Vec<Option<Output>> {
     let mut of = |channel: &Channel| match channel.quantity {
         Quantity::ObservedRate(rate) => Some(add(model, rate)),
@@ -42,7 +42,7 @@ mod tests {
 
     use crate::model::estimation_model::EstimationModel;
 
-    /// A pendulum whose support is moved, with a state of first order that follows a torque.
+    /// Pendulum with a moving support, and a first-order state that follows a torque.
     const SUPPORTED: &str = r#"[model]
 name = "supported"
 [parameters]
@@ -76,7 +76,8 @@ size = "abs(x)"
 side = "sign(x)"
 "#;
 
-    /// A channel of a derivative of an observable, by the observable's name.
+    /// Channel of the derivative of an observable, given by its name. `times`: order of the
+    /// derivative.
     fn channel(name: &str, times: u8) -> Channel {
         let names = ["place", "velocity", "torque", "filtered", "size", "side"];
         let observable = names
@@ -93,7 +94,7 @@ side = "sign(x)"
         }
     }
 
-    /// The quantity of such a channel at a state with these inputs.
+    /// Returns the value of the channel for a state and inputs.
     fn measure_output(name: &str, times: u8, state: &[f64], inputs: &[f64]) -> f64 {
         let channel = [channel(name, times)];
         let model = EstimationModel::derive_equations(SUPPORTED, "supported", None, &channel);

@@ -1,5 +1,5 @@
-//! Times of computed outputs: the samples, and times between them if the interpolation of a delayed
-//! sensor needs them.
+//! Times of computed outputs: the samples, and intermediate times if a delayed sensor is
+//! interpolated.
 
 use std::borrow::Cow;
 
@@ -20,17 +20,18 @@ pub struct OutputTimes<'s> {
 }
 
 impl OutputRate {
-    /// At the samples only.
+    /// Outputs at the samples only.
     #[cfg(test)]
     pub const SAMPLES: Self = Self(1);
 
-    /// Selects the rate at which a cubic through four neighbours has an error below a fraction of
-    /// the noise. The error of a smooth motion is estimated from the records: every other sample
-    /// predicts the one between them with sixteen times the error, less the contribution of the
-    /// noise. `jump_errors`: error of each channel due to jumps of the inputs at the samples, SI.
-    /// At `RATE_BETWEEN_SAMPLES` no cubic crosses a sample, which removes this error.
+    /// Selects the number of outputs per sample interval for which interpolation by a cubic has an
+    /// error below a fraction of the noise. For smooth motion the error is estimated from the
+    /// records: every second sample predicts the sample between with 16 times the error, from which
+    /// the contribution of the noise is subtracted. `jump_errors`: error of each channel due to
+    /// jumps of the inputs at the samples, SI. From `RATE_BETWEEN_SAMPLES` on, the four points of a
+    /// cubic are in one sample interval, which removes this error.
     pub fn select(dataset: &Dataset, jump_errors: &[f64]) -> Self {
-        // A motion that is given is known at its samples.
+        // A given motion is known at its samples.
         if dataset.gives_motion() {
             return Self(1);
         }
@@ -56,7 +57,7 @@ impl OutputRate {
         Self(rate)
     }
 
-    /// The times for these samples.
+    /// Returns the output times for given sample times.
     pub fn times(self, samples: &[f64]) -> OutputTimes<'_> {
         if self.0 == 1 {
             return OutputTimes {
@@ -88,8 +89,9 @@ impl OutputTimes<'_> {
         all.into_iter().step_by(self.rate).collect()
     }
 
-    /// Returns the first of `count` neighbouring times whose polynomial is evaluated in the interval
-    /// that begins at index `before`. The times are in one sample interval if it has enough of them.
+    /// Returns the index of the first of `count` neighbouring times for the interpolation in the
+    /// interval that begins at index `before`. If possible, all these times are in one sample
+    /// interval.
     pub fn first_node(&self, before: usize, count: usize) -> usize {
         let last = self.times.len() - count;
         let centred = before.saturating_sub(count / 2 - 1).min(last);
@@ -106,15 +108,14 @@ impl OutputTimes<'_> {
     }
 }
 
-/// Least rate at which the four points of a cubic are in one sample interval. Held inputs jump at
-/// samples only.
+/// Minimum number of outputs per sample interval for which the four points of a cubic are in one
+/// interval. Held inputs jump only at samples.
 const RATE_BETWEEN_SAMPLES: usize = 4;
 
-/// By so much the error of a cubic falls where its points are twice as dense.
+/// Ratio of the errors of a cubic for point distances of 2 h and h.
 const ORDER: f64 = 16.0;
 
-/// Returns the error of a cubic through neighbouring samples of a column, half way between two of
-/// them.
+/// Returns the RMS error of a cubic through every second sample of a column, at the middle sample.
 fn error_of_cubic<'c>(columns: impl Iterator<Item = (&'c [f64], &'c [f64])>, noise: f64) -> f64 {
     let (mut sum, mut expected, mut count) = (0.0, 0.0, 0.0);
     for (times, values) in columns {
@@ -138,7 +139,7 @@ fn error_of_cubic<'c>(columns: impl Iterator<Item = (&'c [f64], &'c [f64])>, noi
     square.max(0.0).sqrt() / ORDER
 }
 
-/// Returns the weight of one of several points at a time, in the polynomial through all points
+/// Returns the weight of one of several points at a time, for the polynomial through all points
 /// (Lagrange).
 pub(crate) fn lagrange_weight(
     times: &[f64],
@@ -158,7 +159,8 @@ mod tests {
 
     #[test]
     fn the_error_of_a_sine_is_the_one_of_the_remainder() {
-        // Half way between samples 0.1 rad apart: 9/16 of 0.1^4/24 of its fourth derivative.
+        // Error in the middle between samples with a distance of 0.1 rad: 9/16 of 0.1^4/24 of the
+        // fourth derivative.
         let times: Vec<f64> = (0..2000).map(|i| 0.1 * f64::from(i)).collect();
         let values: Vec<f64> = times.iter().map(|t| t.sin()).collect();
         let found = error_of_cubic(std::iter::once((&times[..], &values[..])), 0.0);

@@ -1,4 +1,4 @@
-//! Data shared by all fits to one dataset: windows, noise of the channels, and compilation of
+//! Data that all fits to one dataset share: windows, noise of the channels, and compilation of
 //! specifications.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -16,7 +16,7 @@ use eomgen_records::dataset::{Dataset, StartSource};
 use eomgen_records::record::Record;
 use eomgen_records::windows::Windows;
 
-/// Data shared by all fits to one dataset.
+/// Data that all fits to one dataset share.
 pub struct EstimationProblem<'d> {
     /// The dataset.
     pub dataset: &'d Dataset,
@@ -28,11 +28,11 @@ pub struct EstimationProblem<'d> {
     pub train: Windows<'d>,
     /// Held-out windows.
     pub test: Windows<'d>,
-    /// Order of the fields of the model; `None` for their default.
+    /// Order of the fields of the model; `None` for the default order.
     pub order: Option<usize>,
     /// Path of the specification, for messages.
     pub path: String,
-    /// States of the specification's own model. Other states are from candidates.
+    /// States of the specification. Additional states belong to candidates.
     pub states: Vec<String>,
     /// Stop request of the search.
     pub stop: StopRequest,
@@ -42,13 +42,13 @@ pub struct EstimationProblem<'d> {
     most_evaluations: u64,
 }
 
-/// Number of hypotheses tested on the test records, over all threads, for the correction of
+/// Number of hypotheses tested on the test records, over all threads. It is used to adjust
 /// p-values.
 #[derive(Debug, Default)]
 pub struct TestCounter(AtomicUsize);
 
 impl TestCounter {
-    /// Counts one more hypothesis.
+    /// Increments the number of hypotheses.
     pub fn increment(&self) {
         self.0.fetch_add(1, Ordering::Relaxed);
     }
@@ -58,14 +58,15 @@ impl TestCounter {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Returns a p-value corrected for all hypotheses (Bonferroni), valid for any dependence.
+    /// Returns a p-value adjusted for all hypotheses (Bonferroni), which is valid for any
+    /// dependence between them.
     pub fn adjust_p_value(&self, p_value: f64) -> f64 {
         (p_value * self.number().max(1) as f64).min(1.0)
     }
 }
 
-/// Returns the interpolation error of each channel due to jumps of the inputs, SI; none if a given
-/// motion or an invalid text leaves it unknown.
+/// Returns the interpolation error of each channel due to jumps of the inputs, SI. Empty if the
+/// motion is given or the text is invalid.
 fn jump_errors(dataset: &Dataset, order: Option<usize>, path: &str, text: &str) -> Vec<f64> {
     if dataset.gives_motion() {
         return Vec::new();
@@ -75,7 +76,7 @@ fn jump_errors(dataset: &Dataset, order: Option<usize>, path: &str, text: &str) 
 }
 
 impl<'d> EstimationProblem<'d> {
-    /// Prepares the problem of a dataset and of a specification.
+    /// Creates the problem of a dataset and a specification.
     pub fn new(dataset: &'d Dataset, order: Option<usize>, path: &str, text: &str) -> Self {
         let states = || {
             let model = eomgen_model_spec::check(edited_source(path, text))
@@ -84,7 +85,7 @@ impl<'d> EstimationProblem<'d> {
             Some(model.state_names(&model.orders(order).ok()?))
         };
         Self {
-            // The derivation reports errors in a text.
+            // Errors of an invalid text are reported by the derivation.
             states: states().unwrap_or_default(),
             dataset,
             noise: dataset
@@ -103,7 +104,7 @@ impl<'d> EstimationProblem<'d> {
         }
     }
 
-    /// Returns the problem with this maximum number of evaluations of the rates in each fit.
+    /// Returns the problem with a maximum number of evaluations of the rates in each fit.
     pub fn limit_evaluations(&self, most: u64) -> Self {
         Self {
             dataset: self.dataset,
@@ -120,8 +121,8 @@ impl<'d> EstimationProblem<'d> {
         }
     }
 
-    /// Compiles the model of a text for these records. `linear`: the text without terms that are
-    /// nonlinear between switches, if it has such terms.
+    /// Compiles the model of a specification for the records. `linear`: text without the terms that
+    /// are nonlinear between switches, if it has such terms.
     ///
     /// # Errors
     ///
@@ -143,7 +144,7 @@ impl<'d> EstimationProblem<'d> {
         Ok(model)
     }
 
-    /// Estimates the first state of a record.
+    /// Estimates the initial state of a record.
     pub fn estimate_first_state(&self, model: &EstimationModel, record: &Record) -> Vec<f64> {
         first_state::estimate_first_state(
             model,
@@ -153,14 +154,15 @@ impl<'d> EstimationProblem<'d> {
         )
     }
 
-    /// Returns true if initial states are fitted. They are not if they are read from the record or
-    /// if the motion is given.
+    /// Returns true if initial states are fitted, not read from the record. With given motion they
+    /// are not fitted.
     pub fn estimates_initial_states(&self) -> bool {
         self.dataset.start == StartSource::Estimate && !self.dataset.gives_motion()
     }
 
-    /// Returns the range of each state in the training records, from these first states of the records. The range
-    /// of a coordinate that a candidate adds is multiplied by a factor because its motion is unknown.
+    /// Returns the range of each state in the training records, for given first states. The range
+    /// of a coordinate that a candidate adds is multiplied by a factor, because its motion is
+    /// unknown.
     pub fn compute_state_ranges(
         &self,
         model: &EstimationModel,

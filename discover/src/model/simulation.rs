@@ -1,13 +1,15 @@
-//! Simulation of a model at fixed parameters: by the exponential integrator if the model has a
-//! linear part, by exact propagation between switches if fixed steps would be too short, otherwise
-//! by Runge-Kutta steps or a solver with error control. A given motion is read from the records.
-//! Outputs are computed with the motion, and derivatives with tangent vectors.
+//! Simulation of a model with fixed parameters. A model with a linear part is simulated by the
+//! exponential integrator, or by exact propagation between switches if fixed steps would be too
+//! short. Other models are simulated by Runge-Kutta steps or by a solver with error control. A
+//! given motion is read from the records. Outputs are computed with the motion, and derivatives
+//! with tangent vectors.
 //!
-//! Motions with constraints begin at the projection of the requested state onto the constraints, so that a difference
-//! quotient by an initial state contains the derivative of the projection, and is 0 along directions that the
-//! constraints forbid. Runge-Kutta steps are projected at each sample. Between samples the constraints drift by less than
-//! the error of a step, which is a small part of the noise. Unlike a stabilising term, the projection leaves the
-//! eigenvalues of the motion, and thus the longest step, as they are, and measured accelerations contain no residual.
+//! With constraints, a motion starts at the projection of the requested state onto the constraints.
+//! A difference quotient with respect to an initial state then contains the derivative of the
+//! projection and is 0 along forbidden directions. Runge-Kutta steps are projected at each sample.
+//! Between samples the constraint residual is smaller than the error of a step, which is a small
+//! fraction of the noise. Unlike a stabilising term, the projection does not change the eigenvalues
+//! of the motion or the maximum step, and measured accelerations contain no residual.
 
 use std::cell::RefCell;
 
@@ -33,7 +35,7 @@ use eomgen_sim::exponential::{
 };
 use eomgen_sim::ode::runge_kutta::RungeKutta;
 
-/// A model at fixed parameters.
+/// Simulation of a model with fixed parameters.
 pub struct Simulation<'m> {
     measured: &'m MeasuredOutputs,
     /// Typical sizes of the states, for the solver.
@@ -41,24 +43,24 @@ pub struct Simulation<'m> {
     evaluator: RefCell<Evaluator>,
     buffers: OutputBuffers,
     linear_outputs: Option<LinearOutputs>,
-    /// The longest Runge-Kutta step; none where a solver decides.
+    /// Maximum Runge-Kutta step; `None` if a solver with error control is used.
     longest_step: Option<LongestStep>,
     integrator: Option<ExponentialIntegrator>,
     remainder: Option<NonlinearRemainder>,
     propagator: Option<Propagator>,
-    /// Behaviour of surfaces that hold a motion, such as dry friction, for the solver.
+    /// Sticking surfaces, such as dry friction, for the solver.
     sided: Option<SidedModel>,
-    /// The same for accelerations that are measured.
+    /// Sticking surfaces for measured accelerations.
     resting: Option<SidedModel>,
-    /// Inputs of a model whose motion is given by the records.
+    /// Inverse dynamics, if the motion is given.
     given: Option<GivenMotion>,
     /// Projection onto the constraints.
     constraints: Option<Projection>,
-    /// The most steps of the solver with error control in one motion.
+    /// Maximum number of steps of the solver with error control in one motion.
     most_steps: u64,
     /// Stop request that ends simulations.
     pub(crate) stop: StopRequest,
-    /// Work of simulations, and its limit.
+    /// Number of evaluations in simulations, and its limit.
     pub(crate) work: WorkLimit,
 }
 
@@ -66,52 +68,54 @@ pub struct Simulation<'m> {
 pub struct NeighbourDrives<'d> {
     /// Number of drives.
     pub count: usize,
-    /// Values along a motion.
+    /// Differences of accelerations along a motion.
     pub drives: &'d mut dyn DrivingAccelerations,
 }
 
-/// A motion with tangent vectors.
+/// Motion with tangent vectors.
 #[derive(Clone, Debug, Default)]
 pub struct LinearisedMotion {
     /// Outputs of the motion.
     pub outputs: Outputs,
     /// States at the samples.
     pub states: Vec<Vec<f64>>,
-    /// Derivatives by the initial states: for each sample a row per state, one number per channel.
+    /// Derivatives with respect to the initial states: for each sample one row per state, with one
+    /// number per channel.
     pub by_state: Vec<f64>,
-    /// Derivatives by each parameter, then by each drive, in the same layout.
+    /// Derivatives with respect to each parameter, then each drive, in the layout of `by_state`.
     pub by_parameter_and_drive: Vec<f64>,
 }
 
-/// A motion and its outputs.
+/// Motion and its outputs.
 #[derive(Clone, Debug, Default)]
 pub struct Motion {
     /// State at each sample.
     pub states: Vec<Vec<f64>>,
-    /// Quantities of the channels: a row per sample, a number per channel.
+    /// Channel values: one row per sample, one number per channel.
     pub outputs: Vec<f64>,
 }
 
-/// Outputs of a window and its end state.
+/// Outputs and final state of a window.
 #[derive(Clone, Debug, Default)]
 pub struct Outputs {
-    /// Row per sample, number per channel.
+    /// Channel values: one row per sample, one number per channel.
     pub values: Vec<f64>,
     /// State at the last sample.
     pub end_state: Vec<f64>,
 }
 
-/// Outputs of a window with their derivatives by its initial state.
+/// Outputs of a window and their derivatives with respect to its initial state.
 #[derive(Clone, Debug, Default)]
 pub struct OutputTangents {
     /// Outputs of the motion.
     pub outputs: Outputs,
-    /// Derivatives: for each sample a row per initial state, one number per channel.
+    /// Derivatives: for each sample one row per initial state, with one number per channel.
     pub by_state: Vec<f64>,
 }
 
 impl<'m> Simulation<'m> {
-    /// Creates a simulation by Runge-Kutta steps, or by a solver if no step size is given.
+    /// Creates a simulation by Runge-Kutta steps, or by a solver with error control if no step size
+    /// is given.
     pub(crate) fn new(
         (measured, typical_sizes): (&'m MeasuredOutputs, &'m [f64]),
         evaluator: Evaluator,
@@ -161,12 +165,12 @@ impl<'m> Simulation<'m> {
         self.longest_step = None;
     }
 
-    /// Adds sticking surfaces for measured accelerations.
+    /// Adds sticking surfaces for the computation of measured accelerations.
     pub(crate) fn measure_sticking(&mut self, sided: Option<SidedModel>) {
         self.resting = sided.filter(SidedModel::can_hold_motion);
     }
 
-    /// Selects the motion of the records instead of a simulated one.
+    /// Uses the motion of the records instead of a simulation.
     pub(crate) fn use_given_motion(&mut self, given: GivenMotion) {
         self.given = Some(given);
     }
@@ -176,8 +180,8 @@ impl<'m> Simulation<'m> {
         self.constraints = constraints;
     }
 
-    /// Returns the state on the constraints that is nearest to a state at a time (s) in the norm of the kinetic energy;
-    /// the state itself without constraints.
+    /// Returns the state on the constraints that is nearest to a state at a time (s), in the norm
+    /// of the kinetic energy. Without constraints, returns the state itself.
     ///
     /// # Errors
     ///
@@ -199,8 +203,9 @@ impl<'m> Simulation<'m> {
         Ok(found)
     }
 
-    /// Returns independent directions of an initial state, a column each: all states, or with constraints a basis of the
-    /// changes that the constraints allow, in ranges of the states; `None` off the constraints.
+    /// Returns independent directions of an initial state, one per column: all states, or with
+    /// constraints a basis of the changes that satisfy them, in ranges of the states. `None` if the
+    /// state does not satisfy the constraints.
     pub(crate) fn find_initial_directions(
         &self,
         state: &[f64],
@@ -214,8 +219,9 @@ impl<'m> Simulation<'m> {
         }
     }
 
-    /// Returns the derivatives of the projection onto the constraints at a state, in ranges of the states: the identity
-    /// without constraints; `None` off the constraints.
+    /// Returns the derivatives of the projection onto the constraints at a state, in ranges of the
+    /// states. Without constraints, the identity. `None` if the state does not satisfy the
+    /// constraints.
     pub(crate) fn differentiate_projection(
         &self,
         state: &[f64],
@@ -234,7 +240,7 @@ impl<'m> Simulation<'m> {
         self.constraints.is_some()
     }
 
-    /// Limits the number of solver steps and of surface crossings; a motion that exceeds it fails.
+    /// Limits the number of solver steps and of switches. A motion that exceeds the limit fails.
     pub fn limit_steps(&mut self, most: usize) {
         self.most_steps = most as u64;
         if let Some(integrator) = &mut self.integrator {
@@ -252,8 +258,8 @@ impl<'m> Simulation<'m> {
         self.integrator.is_some() && self.linear_outputs.is_some()
     }
 
-    /// Returns true if derivatives by parameters are exact: the whole model is linear between
-    /// switches.
+    /// Returns true if derivatives with respect to parameters are exact, because the whole model is
+    /// linear between switches.
     pub(crate) fn has_exact_derivatives(&self) -> bool {
         self.has_tangents() && self.remainder.is_none()
     }
@@ -263,16 +269,16 @@ impl<'m> Simulation<'m> {
         self.linear_outputs.as_ref()
     }
 
-    /// Selects the parameters of the derivatives: for each the values on both sides. `own`: values
-    /// of the model, whose parameters are all in its linear part.
+    /// Selects the parameters for derivatives; for each of them, the model values on both sides.
+    /// `own`: values of the model, whose parameters are all in its linear part.
     pub(crate) fn differentiate_by(&mut self, own: &[f64], moved: Vec<Vec<MovedParameters>>) {
         if let Some(integrator) = &mut self.integrator {
             integrator.set_moved_parameters(own, moved);
         }
     }
 
-    /// Simulates a motion with tangent vectors, if available: by each initial state if `by_state`,
-    /// by this number of parameters, and by the drives.
+    /// Simulates a motion with tangent vectors, if available: for each initial state if `by_state`,
+    /// for the given number of parameters, and for the drives.
     pub fn simulate_with_tangents(
         &mut self,
         initial: &[f64],
@@ -326,7 +332,7 @@ impl<'m> Simulation<'m> {
         Some(found)
     }
 
-    /// Returns an error after a stop request or beyond the limit of work.
+    /// Returns an error if a stop was requested or the limit on work is reached.
     fn check_may_simulate(&self) -> Result<(), SimulationError> {
         if self.stop.is_requested() {
             return Err(SimulationError::Stopped);
@@ -385,8 +391,8 @@ impl<'m> Simulation<'m> {
         self.by_error_control(initial, samples, inputs)
     }
 
-    /// Returns the states at the samples by solvers with error control. If the explicit one needs
-    /// many steps per sample, the implicit one is tried.
+    /// Returns the states at the samples by solvers with error control. If the explicit solver
+    /// needs many steps per sample, the implicit solver is tried.
     fn by_error_control(
         &mut self,
         initial: &[f64],
@@ -418,7 +424,7 @@ impl<'m> Simulation<'m> {
             match ended {
                 Ok(()) => return Ok(trajectory.states),
                 Err(SolveError::TooManySteps { .. }) if !is_last => {}
-                // The implicit method finds no step: the explicit one may.
+                // If the implicit solver fails, the explicit solver continues with more steps.
                 Err(_) if method == Method::Radau => {}
                 Err(error) => return Err(SimulationError::Solver(error)),
             }
@@ -427,8 +433,8 @@ impl<'m> Simulation<'m> {
         Err(SimulationError::Diverged)
     }
 
-    /// The states at the samples by classical Runge-Kutta steps, none of them longer than the longest. Held inputs are
-    /// looked at once per step.
+    /// Returns the states at the samples by classical Runge-Kutta steps up to the maximum step.
+    /// Held inputs are read once per step.
     fn by_runge_kutta(
         &mut self,
         initial: &[f64],
@@ -447,7 +453,8 @@ impl<'m> Simulation<'m> {
             self.work.add(4 * steps as u64);
             for step in 0..steps {
                 let begin = pair[0] + step as f64 * h;
-                // Half a step on, so that rounding of a sample's time does not decide.
+                // The time of the held sample is half a step later, so that rounding cannot select
+                // the previous sample.
                 let held = inputs.last_sample(begin + 0.5 * h);
                 method.step(&mut state, (begin, h), |_, t, state, rates| {
                     let inputs = &inputs.evaluate_with_held(t, held);
@@ -465,12 +472,11 @@ impl<'m> Simulation<'m> {
         Ok(states)
     }
 
-    /// Returns the quantities of the channels at the samples of a motion that starts at the first
-    /// sample.
+    /// Returns the channel values at the samples of a motion that starts at the first sample.
     ///
     /// # Errors
     ///
-    /// As [`Simulation::simulate_states`].
+    /// Errors of [`Simulation::simulate_states`].
     pub fn simulate_outputs(
         &mut self,
         initial: &[f64],
@@ -484,12 +490,12 @@ impl<'m> Simulation<'m> {
         })
     }
 
-    /// Returns states and quantities of the channels at the samples of a motion that starts at the
-    /// first sample.
+    /// Returns the states and channel values at the samples of a motion that starts at the first
+    /// sample.
     ///
     /// # Errors
     ///
-    /// As [`Simulation::simulate_states`].
+    /// Errors of [`Simulation::simulate_states`].
     pub fn simulate_motion(
         &mut self,
         initial: &[f64],
@@ -506,9 +512,9 @@ impl<'m> Simulation<'m> {
         Ok(Motion { states, outputs })
     }
 
-    /// Returns the quantities of the channels and their derivatives by each initial state, if the
-    /// exact propagator is used: for each sample a row per state, one number per channel. `steps`:
-    /// difference in each state for nonlinear observables.
+    /// Returns the channel values and their derivatives with respect to each initial state, if the
+    /// exact propagator is used. Layout: for each sample one row per state, with one number per
+    /// channel. `steps`: change of each state for difference quotients of nonlinear observables.
     pub fn propagate_with_tangents(
         &mut self,
         initial: &[f64],
@@ -557,14 +563,14 @@ impl<'m> Simulation<'m> {
         })
     }
 
-    /// Determines the held surfaces of this motion at the times at which its accelerations are
+    /// Determines the sticking surfaces of a motion at the times at which its accelerations are
     /// measured.
     fn look_at(&mut self, motion: (&[f64], &[Vec<f64>]), inputs: &HeldInputs) {
         let sided = self.resting.take();
         self.buffers.rest = sided.map(|sided| StickingMotion::new(sided, motion, inputs));
     }
 
-    /// The next motion is another one.
+    /// Removes the sticking surfaces of the motion.
     fn look_away(&mut self) {
         self.resting = self
             .buffers
@@ -573,7 +579,7 @@ impl<'m> Simulation<'m> {
             .map(StickingMotion::into_sided_model);
     }
 
-    /// Appends the channels' quantities at a state.
+    /// Appends the channel values at a state.
     fn measure(&mut self, t: f64, state: &[f64], inputs: &HeldInputs, values: &mut Vec<f64>) {
         if let Some(linear_outputs) = &self.linear_outputs {
             linear_outputs.append(state, values);
@@ -636,7 +642,7 @@ push = { on = "x", value = "2*T - T*z/p" }
         (0..=20).map(|k| 5e-3 * f64::from(k)).collect()
     }
 
-    /// Integrates the stage by classical Runge-Kutta steps of 1 us; returns the position at the end.
+    /// Integrates the stage by classical Runge-Kutta steps of 1 us; returns the final position.
     fn integrate_stage() -> f64 {
         let rates = |[_, v, z]: [f64; 3]| [v, 2.0 - z / 1e-6, v - v.abs() * z / 1e-6];
         let h = 1e-6;
@@ -663,7 +669,7 @@ push = { on = "x", value = "2*T - T*z/p" }
         let end = states.expect("states")[20][0];
         let right = integrate_stage();
         assert!((end / right - 1.0).abs() < 1e-5, "{end}, {right}");
-        // Without the implicit method, 1000 evaluations per sample are needed.
+        // Without the implicit solver, 1000 evaluations per sample would be needed.
         assert!(model.work.done() < 200 * 20, "{}", model.work.done());
     }
 

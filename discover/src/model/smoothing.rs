@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use crate::thresholds;
 
-/// Smooths a column by a second-order Butterworth filter, forwards and backwards. Missing samples
-/// are interpolated first.
+/// Smooths a column by a second-order Butterworth filter, run forwards and backwards. Missing
+/// samples are interpolated first.
 pub fn smooth_column(times: &[f64], column: &[f64]) -> Vec<f64> {
     let mut values = fill_missing(times, column);
     let padding = values
@@ -54,8 +54,8 @@ pub fn fill_missing(times: &[f64], column: &[f64]) -> Vec<f64> {
     values
 }
 
-/// Returns the column with both ends reflected through their end points, so that the filter starts
-/// on a smooth continuation.
+/// Returns the column extended at both ends by point reflection, so that the filter starts on a
+/// smooth continuation.
 fn reflect_ends(values: &[f64], padding: usize) -> Vec<f64> {
     let last = values.len() - 1;
     let before = (1..=padding).rev().map(|k| 2.0 * values[0] - values[k]);
@@ -63,7 +63,8 @@ fn reflect_ends(values: &[f64], padding: usize) -> Vec<f64> {
     before.chain(values.iter().copied()).chain(after).collect()
 }
 
-/// A second-order Butterworth low-pass by the bilinear transform, started in equilibrium.
+/// Applies a second-order Butterworth low-pass filter (bilinear transform), which starts in
+/// equilibrium.
 fn low_pass(values: &mut [f64]) {
     let c = 1.0 / (PI * thresholds::SMOOTHING_CUT_OFF).tan();
     let a0 = 1.0 + 2f64.sqrt() * c + c * c;

@@ -7,14 +7,14 @@ use eomgen_model_spec::source::Source;
 /// Two texts of one specification.
 #[derive(Clone, Debug)]
 pub struct SpecificationTexts {
-    /// The whole specification.
+    /// Whole specification.
     pub full: String,
-    /// The specification without terms that are nonlinear between switches, if it has such terms.
+    /// Specification without terms that are nonlinear between switches, if it has such terms.
     pub linear: String,
 }
 
 impl SpecificationTexts {
-    /// Takes the whole specification as linear until it is derived.
+    /// Uses the text for both the whole specification and its linear part.
     pub fn from_text(text: &str) -> Self {
         Self {
             full: text.to_owned(),
@@ -23,8 +23,8 @@ impl SpecificationTexts {
     }
 }
 
-/// Returns the source of an edited specification. `path`: path of the original file, in whose folder the tables of mode
-/// shapes are.
+/// Returns the source of an edited specification. `path`: path of the original file; its folder
+/// contains the tables of mode shapes.
 pub fn edited_source(path: &str, text: &str) -> Source {
     let folder = Path::new(path).parent().unwrap_or(Path::new(""));
     Source::new(path, text).in_folder(folder)

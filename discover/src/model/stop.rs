@@ -6,15 +6,15 @@ use std::time::{Duration, Instant};
 
 use crate::error::DiscoverError;
 
-/// Request to stop a search, from any thread. All later simulations fail, so that later results are
-/// invalid.
+/// Request to stop a search from any thread. All simulations after the request fail, so that their
+/// results are invalid.
 #[derive(Clone, Debug)]
 pub struct StopRequest {
     is_requested: Arc<AtomicBool>,
     begin: Instant,
     /// Time limit of the search.
     most: Option<Duration>,
-    /// When the search is over, ns after the beginning; the largest number where it is not.
+    /// End of the search in ns after its beginning; `u64::MAX` without a running time limit.
     limit: Arc<AtomicU64>,
 }
 
@@ -40,7 +40,8 @@ impl StopRequest {
         self.is_requested.load(Ordering::Relaxed) || self.is_time_over()
     }
 
-    /// Creates a request that ends the search after a time, with the results until then.
+    /// Creates a request with a time limit. After this time the search returns the results found
+    /// until then.
     pub fn with_time_limit(most: Duration) -> Self {
         Self {
             most: Some(most),

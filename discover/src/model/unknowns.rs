@@ -1,5 +1,5 @@
-//! Unknowns of an estimation in addition to the initial states: parameters of the model and errors
-//! of the sensors, each with prior and bounds.
+//! Unknowns of a fit in addition to the initial states: parameters of the model and errors of the
+//! sensors, each with prior and bounds.
 
 use crate::ids::ChannelId;
 use crate::interval::Interval;
@@ -25,12 +25,12 @@ pub enum UnknownKind {
     Bias(ChannelId),
     /// Delay of a channel, s.
     Delay(ChannelId),
-    /// Common delay of all channels due to the input, s.
+    /// Common delay of all channels, which represents the delay of the input, s.
     InputDelay,
 }
 
 impl UnknownKind {
-    /// Returns the name of the parameter, also for its inverse.
+    /// Returns the name of the parameter or inverse parameter.
     pub fn parameter_name(&self) -> Option<&str> {
         match self {
             Self::Parameter(name) | Self::InverseParameter(name) => Some(name),
@@ -38,7 +38,7 @@ impl UnknownKind {
         }
     }
 
-    /// Returns the value in the form of the specification, from its estimate, SI.
+    /// Converts an estimate to the value in the specification, SI.
     pub fn value_in_specification(&self, value: f64) -> f64 {
         match self {
             Self::InverseParameter(_) => 1.0 / value,
@@ -60,14 +60,14 @@ pub struct NormalPrior {
     pub sd: f64,
 }
 
-/// An unknown of an estimation.
+/// Unknown of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unknown {
     /// Kind of the unknown.
     pub kind: UnknownKind,
     /// Name in messages.
     pub label: String,
-    /// Start value, SI.
+    /// Initial value, SI.
     pub start: f64,
     /// Prior.
     pub prior: Option<NormalPrior>,
@@ -75,12 +75,12 @@ pub struct Unknown {
     pub bounds: Interval,
     /// Admissible values without the declared prior, SI.
     pub bounds_without_prior: Interval,
-    /// Significant change, SI.
+    /// Change with a significant effect, SI.
     pub scale: f64,
 }
 
 impl Unknown {
-    /// Returns true for parameters of the model, false for those of sensors.
+    /// Returns true for parameters of the model, false for sensor unknowns.
     pub(crate) fn is_model_parameter(&self) -> bool {
         matches!(
             self.kind,
@@ -102,7 +102,7 @@ impl Unknown {
         }
     }
 
-    /// Returns an unknown of the null model, bounded to some standard deviations around its
+    /// Creates an unknown of the null model, bounded to some standard deviations around its
     /// declared value. A larger deviation is an effect.
     fn within_declared(
         (what, label): (UnknownKind, String),
@@ -124,7 +124,7 @@ impl Unknown {
 }
 
 /// Returns the unknowns of the null model: parameters declared uncertain, declared gains and biases
-/// of inputs and, if the data can determine them, the sensors.
+/// of inputs and, if the data can determine them, sensor errors.
 pub fn list_null_unknowns(
     dataset: &Dataset,
     model: &Model,
@@ -175,7 +175,7 @@ pub fn list_null_unknowns(
     unknowns
 }
 
-/// The delay of the input, if the dataset says how far it is known.
+/// Returns the delay of the input as an unknown, if the dataset declares its uncertainty.
 fn of_input_delay(dataset: &Dataset, model: &Model, step: f64) -> Option<Unknown> {
     let (input, expected) = find_delayed_input(&dataset.inputs)?;
     let mean = expected_input_delay(&dataset.inputs, model);
@@ -194,8 +194,8 @@ fn of_input_delay(dataset: &Dataset, model: &Model, step: f64) -> Option<Unknown
     })
 }
 
-/// Returns the delay of the input before a fit, s. If the specification describes sensors, an
-/// earlier fit has added the delay of the input to theirs.
+/// Returns the delay of the input before a fit, s. If the specification contains sensors, an
+/// earlier fit has added the delay of the input to their delays.
 pub fn expected_input_delay(inputs: &[InputPriors], model: &Model) -> f64 {
     let said = find_delayed_input(inputs).and_then(|(_, delay)| delay.mean);
     match model.sensors.is_empty() {
@@ -204,7 +204,8 @@ pub fn expected_input_delay(inputs: &[InputPriors], model: &Model) -> f64 {
     }
 }
 
-/// Returns a note if the mean delay of the dataset is not added to that in the specification.
+/// Returns a note if the declared delay in the dataset is assumed to be included in the sensor
+/// delays of the specification.
 pub fn note_input_delay(inputs: &[InputPriors], model: &Model) -> Option<String> {
     let (input, expected) = find_delayed_input(inputs)?;
     let mean = expected.mean.filter(|mean| *mean != 0.0)?;
@@ -216,8 +217,8 @@ pub fn note_input_delay(inputs: &[InputPriors], model: &Model) -> Option<String>
     })
 }
 
-/// Returns the unknowns of a sensor, with the priors of its channel or the default priors. Values
-/// that are declared exact are not included.
+/// Returns the unknowns of a sensor, with the priors of its channel or default priors. Values that
+/// are declared exact are left out.
 pub fn list_sensor_unknowns(
     id: ChannelId,
     channel: &Channel,
@@ -248,7 +249,7 @@ pub fn list_sensor_unknowns(
             prior(expected.bias, bias),
             free,
         ),
-        // A delay without a prior is positive: no sensor measures ahead of time.
+        // Without a prior, the delay is positive, because sensors do not lead.
         Unknown {
             bounds_without_prior: Interval::new(expected.delay.min(0.0), late.high),
             ..Unknown::within_declared(
@@ -274,14 +275,14 @@ pub struct ExpectedSensor {
 }
 
 impl ExpectedSensor {
-    /// Returns the quantity for a measured value, SI. The delay is not considered.
+    /// Converts a measured value to the quantity, SI. The delay is ignored.
     pub fn quantity(&self, measured: f64) -> f64 {
         (measured - self.bias) / self.gain
     }
 
-    /// Returns the values of the specification, otherwise of the dataset, otherwise of an ideal
-    /// sensor. A later search so continues from the values that a fit has written into the
-    /// specification.
+    /// Returns the sensor values from the specification, otherwise from the dataset, otherwise of
+    /// an ideal sensor. Therefore a later search continues from the values that a fit has written
+    /// to the specification.
     pub fn from_channel(channel: &Channel, model: &Model) -> Self {
         let written = model.sensors.iter().find(|s| s.channel == channel.name);
         let said = |prior: Option<PriorInSi>| prior.and_then(|prior| prior.mean);
@@ -300,7 +301,7 @@ impl ExpectedSensor {
     }
 }
 
-/// Returns the bounds of a parameter in the specification, restricted to its sign.
+/// Returns the bounds of a parameter that keep the sign of its value.
 pub fn bounds_with_sign(parameter: &Parameter, value: f64) -> Interval {
     let of_sign = match value {
         v if v > 0.0 => Interval::new(0.0, f64::INFINITY),

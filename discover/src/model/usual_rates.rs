@@ -8,8 +8,8 @@ use crate::model::smoothing::{differentiate_column, smooth_column};
 use crate::model::unknowns::ExpectedSensor;
 use eomgen_records::dataset::{Dataset, Quantity};
 
-/// Returns the usual rate of each measured observable and coordinate, by its name in the model: the
-/// RMS of its slope, or of the rate if it is measured or given.
+/// Returns the usual rate of each measured observable and coordinate, by its name in the model. It
+/// is the RMS of its slope, or of the rate if the rate is measured or given.
 pub fn compute_usual_rates(dataset: &Dataset, model: &Model) -> BTreeMap<String, f64> {
     let record = &dataset.train[0];
     let mut rates = BTreeMap::new();
@@ -23,7 +23,7 @@ pub fn compute_usual_rates(dataset: &Dataset, model: &Model) -> BTreeMap<String,
         let smooth = smooth_column(&record.times, column);
         let smooth: Vec<f64> = smooth.iter().map(|value| sensor.quantity(*value)).collect();
         let (name, slopes) = match channel.quantity {
-            // How fast something moves is not known from how its speed changes, and nothing else moves.
+            // An acceleration does not determine the rate; states and inputs have no site.
             Quantity::Acceleration(_) | Quantity::State(_) | Quantity::Input(_) => continue,
             Quantity::ObservedRate(rate) if rate.times > 1 => continue,
             Quantity::ObservedRate(rate) => (&model.observables[rate.observable].name, smooth),

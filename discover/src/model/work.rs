@@ -1,12 +1,13 @@
-//! Work of simulations, counted so that a busy computer gives the same answer.
+//! Work of simulations, measured in evaluations of the rates. Unlike a time limit, its limit does
+//! not depend on the load of the computer.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::error::DiscoverError;
 
-/// Number of evaluations of the rates in all simulations of a model, with a limit. Simulations beyond
-/// the limit fail, so that later results are invalid.
+/// Number of evaluations of the rates in all simulations of a model, with a limit. Simulations
+/// beyond the limit fail, so that their results are invalid.
 #[derive(Clone, Debug)]
 pub(crate) struct WorkLimit {
     done: Arc<AtomicU64>,
@@ -20,7 +21,7 @@ impl Default for WorkLimit {
 }
 
 impl WorkLimit {
-    /// Creates a limit; nothing is done yet.
+    /// Creates a limit with no evaluations so far.
     pub fn new(most: u64) -> Self {
         Self {
             done: Arc::default(),
@@ -38,7 +39,7 @@ impl WorkLimit {
         self.done.load(Ordering::Relaxed)
     }
 
-    /// Returns the number of evaluations up to the limit.
+    /// Returns the number of remaining evaluations.
     pub fn left(&self) -> u64 {
         self.most.saturating_sub(self.done())
     }

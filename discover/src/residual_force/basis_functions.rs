@@ -1,6 +1,6 @@
-//! Basis functions of an unknown force. A force over the rate may jump at rest, as friction does; a
-//! force over position or time is piecewise linear; a periodic force is a wave. Coefficients are
-//! estimated elsewhere.
+//! Basis functions of an unknown force. A force over the rate may jump at zero rate, as friction
+//! does. A force over position or time is piecewise linear; a periodic force is a sine and a
+//! cosine.
 
 use crate::ids::EquationId;
 use std::f64::consts::TAU;
@@ -11,17 +11,17 @@ use crate::thresholds;
 /// Argument of a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ForceArgument {
-    /// The rate.
+    /// Rate.
     Rate,
-    /// The position.
+    /// Position.
     Position,
-    /// The position within a turn.
+    /// Angle within one turn.
     Turn,
-    /// The time within a window; the force differs between windows.
+    /// Time within a window. The force differs between windows.
     Time,
-    /// The angle, with this order per turn.
+    /// Angle; the force has this number of periods per turn.
     Order(u32),
-    /// The time within a window, at this frequency, Hz; the force differs between windows.
+    /// Time within a window; the force has this frequency, Hz, and differs between windows.
     Frequency(f64),
 }
 
@@ -32,23 +32,23 @@ pub struct BasisFamily {
     pub equation: EquationId,
     /// Argument of the force.
     pub argument: ForceArgument,
-    /// Knots in ascending order. Over the rate, 0 occurs twice.
+    /// Knots in ascending order. Over the rate, the knot 0 occurs twice.
     pub knots: Vec<f64>,
 }
 
 /// Range of the motion in an equation over all windows.
 #[derive(Clone, Debug, Default)]
 pub struct OperatingRange {
-    /// Usual lowest and highest position.
+    /// Lowest and highest position, without outliers.
     pub position_bounds: (f64, f64),
-    /// Usual largest absolute rate.
+    /// Largest absolute rate, without outliers.
     pub largest_rate: f64,
     /// RMS of position and rate.
     pub rms: (f64, f64),
 }
 
 impl OperatingRange {
-    /// Computes the range of operating points, without the outer 1 % at each end.
+    /// Computes the range of the operating points without the outer 1 % at each end.
     pub fn from_operating_points(operating_points: &[OperatingPoint]) -> Self {
         let sorted = |of: &dyn Fn(&OperatingPoint) -> f64| {
             let mut values: Vec<f64> = operating_points.iter().map(of).collect();
@@ -82,7 +82,7 @@ impl OperatingRange {
 impl BasisFamily {
     /// Builds the family over the rate.
     pub fn build_over_rate(equation: EquationId, range: &OperatingRange) -> Self {
-        // Closer near rest, where friction bends most.
+        // Knots are denser near zero rate, where friction changes most.
         let last = (thresholds::RATE_KNOTS - 1) as f64;
         let side: Vec<f64> = (0..thresholds::RATE_KNOTS)
             .map(|k| range.largest_rate * (k as f64 / last).powi(2))
@@ -177,7 +177,8 @@ impl BasisFamily {
     }
 }
 
-/// The weights of a line with bends; level beyond its ends.
+/// Writes the weights of a piecewise linear function that is constant beyond its first and last
+/// knot.
 fn bent(bends: &[f64], at: f64, out: &mut [f64]) {
     let next = bends.partition_point(|bend| *bend <= at);
     if next == 0 {
@@ -191,7 +192,7 @@ fn bent(bends: &[f64], at: f64, out: &mut [f64]) {
     }
 }
 
-/// The same for one that closes after a turn.
+/// Writes the weights of a piecewise linear function with the period of one turn.
 fn write_periodic(bends: &[f64], at: f64, out: &mut [f64]) {
     let step = TAU / bends.len() as f64;
     let at = at.rem_euclid(TAU) / step;

@@ -1,6 +1,6 @@
 //! Equations of motion in which a force may be missing: one for each coordinate, angle and end of a
-//! flexible body. Along a motion they give the operating point and the accelerations due to a unit
-//! force.
+//! flexible body. Along a motion they provide the operating point and the accelerations due to a
+//! unit force.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::edit::{self, Edit, NewForce, NewParameter, NewTerm, NewValue, Section};
@@ -18,11 +18,11 @@ use crate::model::specification_texts::edited_source;
 /// An equation of motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equation {
-    /// Name in results.
+    /// Name of the equation in results.
     pub name: String,
-    /// Expression that the force acts on, in the notation of the specification.
+    /// Expression on which the force acts, in the notation of the specification.
     pub target: String,
-    /// Unit of that expression, `rad` or `m`.
+    /// Unit of the expression, `rad` or `m`.
     pub unit: &'static str,
     /// True if the expression is the deflection of a mesh with play.
     pub is_mesh: bool,
@@ -40,7 +40,7 @@ impl Equation {
     }
 }
 
-/// Position, rate and time of a motion in an equation.
+/// Position, rate and time at a point of a motion, for one equation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OperatingPoint {
     /// Position, m or rad.
@@ -57,20 +57,20 @@ pub struct EquationSet {
     pub list: Vec<Equation>,
     model: EstimationModel,
     values: Vec<f64>,
-    /// The parameters that are the forces, among the values.
+    /// Parameters of the model that represent the forces.
     forces: Vec<ParameterId>,
-    /// The observables that are position and rate.
+    /// Observables of position and rate for each equation.
     shown: Vec<PositionAndRate>,
 }
 
-/// Observables with position and rate in an equation.
+/// Observables of the position and the rate of one equation.
 #[derive(Clone, Copy, Debug)]
 struct PositionAndRate {
     position: ObservableId,
     rate: ObservableId,
 }
 
-/// Evaluator of the equations along a motion.
+/// Evaluator of the forced equations along a motion.
 pub struct EquationEvaluator {
     free: Evaluator,
     forced: Vec<Evaluator>,
@@ -85,8 +85,8 @@ impl EquationSet {
         Self::derive_list(problem, fit, equations(fit.model.specification()))
     }
 
-    /// Derives the equations of a fitted model and the directions between both ends of each spring,
-    /// in which a force may act as well; `None` if a force cannot be added to it.
+    /// Derives the equations of a fitted model, and forces between both ends of each spring. `None`
+    /// if a force cannot be added to the model.
     pub(crate) fn derive_with_springs(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Self> {
         let model = fit.model.specification();
         let mut list = equations(model);
@@ -200,7 +200,7 @@ impl EquationSet {
 }
 
 impl EquationEvaluator {
-    /// Appends the operating point of each equation, with time 0.
+    /// Appends the operating point of each equation; its time is 0.
     pub fn append_operating_points(&mut self, point: Point<'_>, out: &mut Vec<OperatingPoint>) {
         self.free.observables(point, &mut self.observables);
         out.clear();
@@ -231,7 +231,7 @@ impl EquationEvaluator {
     }
 }
 
-/// The unit of a position; none for another quantity.
+/// Returns the unit if it is a unit of position.
 fn read_unit(text: &str) -> Option<&'static str> {
     match text {
         "rad" => Some("rad"),
@@ -240,7 +240,7 @@ fn read_unit(text: &str) -> Option<&'static str> {
     }
 }
 
-/// Returns the sites at which effects act along one line, and the observables of a flexible body.
+/// Returns the equations in which effects can act, and those of the observables of a flexible body.
 fn equations(model: &Model) -> Vec<Equation> {
     let unit = read_unit;
     let mut found = Vec::new();
@@ -252,11 +252,10 @@ fn equations(model: &Model) -> Vec<Equation> {
             coordinates.any(|coordinate| Some(&coordinate.name) == on)
         };
         let unit = match site.kind {
-            // A force between both ends of a spring is in the equations of the joined bodies, and
-            // so is that of teeth whose deflection is no coordinate.
+            // A force between both ends of a spring acts in the equations of the joined bodies. The
+            // same is true of a mesh whose deflection is not a coordinate.
             SiteKind::Spring => None,
             SiteKind::Mesh if !is_coordinate() => None,
-            // An input has no equation.
             SiteKind::Input => None,
             _ => site.arguments.get("unit").and_then(|text| unit(text)),
         };
@@ -289,7 +288,8 @@ fn equations(model: &Model) -> Vec<Equation> {
     found
 }
 
-/// Of every definition whether it holds a field; none if it holds more than positions.
+/// Returns for each definition whether it contains a field; `None` if it depends on more than
+/// positions.
 fn bending(model: &Model) -> Vec<Option<bool>> {
     let mut known = vec![None; model.definitions.len()];
     for &definition in &model.definition_order {
@@ -298,7 +298,7 @@ fn bending(model: &Model) -> Vec<Option<bool>> {
     known
 }
 
-/// Returns true if an expression holds a field; none if it holds more than positions.
+/// Returns true if an expression contains a field; `None` if it depends on more than positions.
 fn bends(known: &[Option<bool>], expr: &Expr) -> Option<bool> {
     let (mut bends, mut is_position) = (false, true);
     expr.visit(&mut |part| match &part.kind {

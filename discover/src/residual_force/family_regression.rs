@@ -11,7 +11,7 @@ use crate::residual_force::force_response::{ForceColumns, compute_force_response
 use crate::residual_force::regression::{Coefficients, Regression};
 use crate::thresholds;
 
-/// Regression of families with the position of their columns.
+/// Regression of families and the index of the first column of each family.
 pub(crate) struct FamilyRegression {
     /// Families of basis functions.
     pub families: Vec<BasisFamily>,
@@ -64,7 +64,7 @@ impl FamilyRegression {
         first..first + self.families[family].count()
     }
 
-    /// Returns the coefficients of a family, equal in all windows.
+    /// Returns the coefficients of a family, which are equal in all windows.
     pub fn fit_shared_coefficients(&self, family: FamilyId) -> Coefficients {
         let functions: Vec<BasisFunctionId> = self
             .column_range(family)
@@ -73,7 +73,7 @@ impl FamilyRegression {
         self.regression.fit_shared(&functions)
     }
 
-    /// Returns the fraction of the squares that a family explains, less the fraction expected by
+    /// Returns the fraction of the squares explained by a family, minus the fraction expected by
     /// chance.
     pub fn explained_fraction(&self, family: FamilyId) -> f64 {
         let found = self.fit_shared_coefficients(family);
@@ -81,7 +81,7 @@ impl FamilyRegression {
         (found.decrease - chance) / self.regression.remaining_squares
     }
 
-    /// Returns the number of samples over which the residual of a family is correlated.
+    /// Returns the correlation length of the residual of a family, in samples.
     pub fn correlation_samples(&self, of: Linearisation<'_>, family: FamilyId, level: f64) -> f64 {
         let blocks = self.window_columns.iter().flatten();
         let count = blocks.map(DMatrix::ncols).next().unwrap_or(0);
@@ -112,8 +112,8 @@ impl FamilyRegression {
         compute_correlation_samples(&residuals, of.problem.noise.len())
     }
 
-    /// Returns the factor on the variance of a white unit residual: the residual of a family, its
-    /// correlation and the linearisation error.
+    /// Returns the factor on the variance of white residuals of unit variance. It contains the
+    /// residual of a family, its correlation and the linearisation error.
     pub fn variance_inflation(&self, of: Linearisation<'_>, family: FamilyId) -> f64 {
         let variance = remaining_mean_square(self, self.fit_shared_coefficients(family).decrease);
         variance
@@ -132,7 +132,7 @@ impl FamilyRegression {
     }
 }
 
-/// Returns the mean square of the residuals after a decrease of the squares.
+/// Returns the mean square of the residuals after the sum of squares has decreased by `decrease`.
 pub(crate) fn remaining_mean_square(regressed: &FamilyRegression, decrease: f64) -> f64 {
     ((regressed.regression.remaining_squares - decrease) / regressed.regression.number_count)
         .max(1.0)

@@ -7,22 +7,24 @@ use crate::residual_force::equations::Equation;
 use crate::residual_force::types::{Profile, ResidualForce};
 use crate::thresholds;
 
-/// Half the width of the tick at a point, and the margin at both ends, as fractions of the range.
+/// Half the width of an error bar's end mark, and the margin at both ends, as fractions of the
+/// range.
 const TICK: f64 = 0.008;
 const MARGIN: f64 = 0.02;
 
-/// Half the minimum distance between ticks, as a fraction of the range.
+/// Half the minimum distance between error bars, as a fraction of the range.
 const TICK_GAP: f64 = 0.003;
 
-/// Description of a figure of one profile of a force.
+/// Description of the figure of one profile.
 struct Picture {
     title: &'static str,
     axes: Axes,
-    /// True if points belong to a line.
+    /// True if the points are joined by a line.
     is_line: bool,
     /// True for amplitudes, whose bars end at 0.
     is_amplitude: bool,
-    /// True if the force is free in every window, and small where they do not show it.
+    /// True if the force is estimated separately in every window. In a window that does not show
+    /// it, the estimate is small.
     by_window: bool,
     of: fn(&ResidualForce) -> &Profile,
 }
@@ -54,7 +56,7 @@ pub fn draw_profiles(
             };
             (picture, forces.iter().map(of).collect::<Vec<_>>())
         })
-        // The remaining force means nothing without the force before.
+        // The force after the search is drawn only together with the force before.
         .filter(|(picture, _)| {
             let profile = (picture.of)(before);
             let most = largest_sd(profile);
@@ -127,7 +129,7 @@ fn pictures(equation: &Equation) -> [Picture; 6] {
         Picture {
             title: name,
             axes: over(position, equation.unit),
-            // A force that does not depend on the position scatters over it.
+            // If the force does not depend on the position, the points scatter over it.
             is_line: false,
             is_amplitude: false,
             by_window: false,
@@ -168,10 +170,10 @@ fn pictures(equation: &Equation) -> [Picture; 6] {
     ]
 }
 
-/// Abscissae and values of a curve.
+/// Abscissae and ordinates of a curve.
 type Points = (Vec<f64>, Vec<f64>);
 
-/// Returns the largest standard deviation to draw, from the force before.
+/// Returns the largest standard deviation to draw, computed from the force before.
 fn largest_sd(profile: &Profile) -> f64 {
     let known = profile.values.iter().zip(&profile.sd);
     let largest = known
@@ -185,7 +187,8 @@ fn largest_sd(profile: &Profile) -> f64 {
     }
 }
 
-/// Returns true if lines with bends over the time of a window follow what the force does fastest.
+/// Returns true if the knots over the time of a window resolve the strongest frequency of the
+/// force.
 fn is_resolved(force: &ResidualForce) -> bool {
     let gap = match force.time.arguments[..] {
         [first, second, ..] => second - first,
@@ -202,8 +205,8 @@ fn is_known(sd: f64, most: f64) -> bool {
     sd > 0.0 && sd < most
 }
 
-/// A profile with its bars as one curve that goes up and down at each point, or as crosses. `lowest` is the end of the
-/// bars, `most` the largest standard deviation to draw.
+/// Returns a profile with its error bars as one curve that goes up and down at each point, or as
+/// crosses. `lowest`: lower limit of the bars. `most`: largest standard deviation to draw.
 fn points(profile: &Profile, is_line: bool, (lowest, most): (f64, f64)) -> Points {
     let (Some(first), Some(last)) = (profile.arguments.first(), profile.arguments.last()) else {
         return Points::default();
@@ -211,7 +214,7 @@ fn points(profile: &Profile, is_line: bool, (lowest, most): (f64, f64)) -> Point
     let width = last - first;
     let (mut over, mut values) = (vec![first - MARGIN * width], vec![f64::NAN]);
     let gap = |pair: &[f64]| match pair {
-        // A plot closes gaps that are narrower than its lines.
+        // Limit: a plot joins error bars whose gap is narrower than its lines.
         [before, after] => (0.5 * (after - before) - TICK_GAP * width).clamp(0.0, TICK * width),
         _ => TICK * width,
     };
@@ -242,7 +245,7 @@ mod tests {
     use super::points;
     use crate::residual_force::types::Profile;
 
-    /// A plot takes no abscissa that is smaller than the one before.
+    /// Abscissae of a plotted curve must not decrease.
     #[test]
     fn crosses_that_are_close_do_not_overlap() {
         let profile = Profile {

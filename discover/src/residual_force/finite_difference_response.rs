@@ -1,5 +1,5 @@
-//! Responses to small forces by difference quotients of Runge-Kutta motions, if tangent vectors are
-//! not available.
+//! Responses to small forces as difference quotients of Runge-Kutta simulations. They are used if
+//! tangent vectors are not available.
 
 use crate::ids::WindowId;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
@@ -13,10 +13,10 @@ use crate::model::simulation::NeighbourDrives;
 use crate::thresholds;
 use eomgen_sim::ode::runge_kutta::RungeKutta;
 
-/// True if each of a step's four slopes is at its beginning, its middle or its end.
+/// Time of each Runge-Kutta stage in the step: 0 beginning, 1 middle, 2 end.
 const POINTS: [usize; 4] = [0, 1, 1, 2];
 
-/// A window of a model that is simulated by Runge-Kutta steps.
+/// Window of a model that is simulated with Runge-Kutta steps.
 pub(crate) struct SteppedWindow<'s> {
     shooting: &'s Shooting<'s>,
     sensors: SensorValues,
@@ -27,35 +27,36 @@ pub(crate) struct SteppedWindow<'s> {
     longest_step: LongestStep,
 }
 
-/// A step: the time in its middle, which decides what its held inputs are, and the times and states
-/// where it begins, is half way and ends.
+/// Step of the simulation. `middle`: the time that selects the held inputs. `points`: times and
+/// states at the beginning, the middle and the end.
 struct Step {
     middle: f64,
     points: [(f64, Vec<f64>); 3],
 }
 
-/// The motion without a force.
+/// Motion without a force.
 #[derive(Default)]
 struct Visited {
     steps: Vec<Step>,
-    /// The state at each output time.
+    /// State at each output time.
     states: Vec<Vec<f64>>,
-    /// The quantities there, a row per time.
+    /// Channel values, one row per output time.
     measured: Vec<f64>,
 }
 
-/// A force along the motion without it: the change per unit of the accelerations and of the rates of
-/// states of first order.
+/// Force along the unforced motion: changes of the accelerations and of the rates of first-order
+/// states, per unit of the force.
 #[derive(Clone, Default)]
 struct Force {
-    /// At the three points of each step.
+    /// Changes at the three points of each step.
     in_steps: Vec<f64>,
-    /// At each output time, if accelerations are measured.
+    /// Changes at each output time, if accelerations are measured.
     at_times: Vec<f64>,
 }
 
 impl<'s> SteppedWindow<'s> {
-    /// Creates the window at these unknowns; `None` if the model needs a solver with error control.
+    /// Creates the window for given unknowns; `None` if the model needs a solver with error
+    /// control.
     pub fn new(shooting: &'s Shooting<'s>, theta: &[f64], window: WindowId) -> Option<Self> {
         let model = shooting.model;
         let values = shooting.parameter_values(theta);
@@ -74,7 +75,7 @@ impl<'s> SteppedWindow<'s> {
     }
 
     /// Returns the response of the outputs to each drive, in standard deviations per unit of the
-    /// drive, at fixed drives along the unforced motion. `level`: size of the residuals, in
+    /// drive. The drives are evaluated along the unforced motion. `level`: RMS residual, in
     /// standard deviations.
     pub fn compute_responses(
         &mut self,
@@ -103,7 +104,7 @@ impl<'s> SteppedWindow<'s> {
                 };
                 matrix.column_mut(column).copy_from_slice(&seen);
                 let per_unit = (seen.iter().map(|c| c * c).sum::<f64>() / seen.len() as f64).sqrt();
-                // The effect of the first size gives the scale of the others.
+                // The output change of the first size gives the next size.
                 let better = wanted / (per_unit * usual);
                 let is_near = (1.0 / thresholds::FORCE_CHANGE_FACTOR
                     ..thresholds::FORCE_CHANGE_FACTOR)
@@ -118,7 +119,7 @@ impl<'s> SteppedWindow<'s> {
         is_finite.then_some(matrix)
     }
 
-    /// The sum of squares of each acceleration and of the rate of each state of first order.
+    /// Returns the sum of squares of each acceleration and of the rate of each first-order state.
     fn squares_of_rates(&mut self, own: &Visited) -> Vec<f64> {
         let first = self.evaluator.program().degrees_of_freedom();
         let windows = self.shooting.windows;
@@ -138,7 +139,7 @@ impl<'s> SteppedWindow<'s> {
         squares
     }
 
-    /// Each drive along the motion without it.
+    /// Returns each drive along the unforced motion.
     fn forces(&self, own: &Visited, driven: NeighbourDrives<'_>) -> Vec<Force> {
         let program = self.evaluator.program();
         let forced = program.states() - program.degrees_of_freedom();
@@ -172,7 +173,8 @@ impl<'s> SteppedWindow<'s> {
         found
     }
 
-    /// Returns the change of the outputs for a force of this size, in standard deviations per unit.
+    /// Returns the change of the outputs due to a force of size `size`, in standard deviations per
+    /// unit.
     fn output_change(
         &mut self,
         start: &[f64],
@@ -189,14 +191,15 @@ impl<'s> SteppedWindow<'s> {
         Some(self.shooting.map_differences(window, &seen, |seen, _| seen))
     }
 
-    /// The motion without a force.
+    /// Simulates the motion without a force.
     fn own_motion(&mut self, start: &[f64]) -> Option<Visited> {
         let mut visited = Visited::default();
         visited.measured = self.motion(start, None, Some(&mut visited))?;
         Some(visited)
     }
 
-    /// The quantities along a motion, with a force if there is one. `visited` takes its steps and states.
+    /// Returns the channel values of a motion with or without a force. The steps and states are
+    /// stored in `visited`.
     fn motion(
         &mut self,
         start: &[f64],
@@ -262,7 +265,8 @@ impl<'s> SteppedWindow<'s> {
         is_finite.then_some(measured)
     }
 
-    /// Appends the quantities at a point, with the direct effect of a force of this size on accelerations.
+    /// Appends the channel values at a point. The force, multiplied by its size, also changes
+    /// measured accelerations directly.
     fn measure(&mut self, point: Point<'_>, force: Option<(f64, &[f64])>, values: &mut Vec<f64>) {
         let measured = &self.shooting.model.measured;
         let first = values.len();
@@ -277,16 +281,16 @@ impl<'s> SteppedWindow<'s> {
 }
 
 impl Force {
-    /// The changes at an output time; empty if no accelerations are measured.
+    /// Returns the changes at an output time; empty if no accelerations are measured.
     fn derivatives_at(&self, place: usize, forced: usize) -> &[f64] {
         let own = place * forced..(place + 1) * forced;
         self.at_times.get(own).unwrap_or_default()
     }
 }
 
-/// The size at which a force changes one acceleration, or the rate of one state of first order, by its root
-/// mean square, and no other by more. Each is compared with its own, because their units differ. None if
-/// the force changes nothing that moves.
+/// Returns the size at which the RMS change of one acceleration or rate of a first-order state
+/// equals the RMS of this quantity, and no other relative change is larger. `None` if the force
+/// changes no quantity that is nonzero.
 fn usual_size(force: &Force, squares: &[f64]) -> Option<f64> {
     let mut sums = vec![0.0; squares.len()];
     for now in force.in_steps.chunks_exact(squares.len()) {

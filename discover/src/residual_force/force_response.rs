@@ -1,5 +1,5 @@
-//! First-order responses of the outputs to forces: by tangent vectors if the exponential integrator
-//! is used, otherwise by an integration with a small force.
+//! First-order responses of the outputs to forces. They are computed with tangent vectors if the
+//! exponential integrator is used, otherwise by simulations with a small force.
 
 use crate::ids::EquationId;
 use eomgen_codegen::program::evaluator::Point;
@@ -25,7 +25,7 @@ pub struct ForceColumns<'w> {
     pub fill_weights: &'w FillWeights<'w>,
 }
 
-/// Forces of these shapes as drives of neighbouring motions.
+/// Forces as drives of the linearised motion.
 struct ForceDrives<'c> {
     evaluator: EquationEvaluator,
     columns: &'c ForceColumns<'c>,
@@ -73,7 +73,8 @@ impl DrivingAccelerations for ForceDrives<'_> {
 }
 
 /// Returns a matrix for each window with one column per force, in standard deviations per unit of
-/// force; `None` for a failed simulation. Returns `None` if neither method is available.
+/// force. An element is `None` if the simulation of the window failed; the result is `None` if
+/// neither method is available.
 pub fn compute_force_responses(
     of: Linearisation<'_>,
     equations: &EquationSet,
@@ -133,7 +134,7 @@ pub fn compute_force_responses(
     Some(parts.into_iter().flatten().collect())
 }
 
-/// Returns the operating points of the equations along the motions of the windows at each sample.
+/// Returns the operating points of the equations at each sample of each window.
 pub fn compute_operating_points(
     of: Linearisation<'_>,
     equations: &EquationSet,

@@ -1,10 +1,10 @@
-//! Residual force: the equation of motion with a missing force, and the profiles of the force over
-//! time, rate, angle, shaft order, frequency and amplitude. It shows the location of the gap;
-//! effects are accepted without it. The files: `equations`, `basis_functions` of the force,
-//! `force_response` (their responses; `finite_difference_response` without tangent vectors),
-//! `regression` (their coefficients), `family_regression`, `ranking` (comparison of equations),
-//! `ripple_orders` (comparison of waves over an angle; `orders_of_given_motion` for a given
-//! motion), `profiles` of one equation, `wording` and `figures`; `types` contains the results.
+//! Residual force: the equation of motion in which a force is missing, and profiles of this force
+//! over time, rate, angle, shaft order, frequency and amplitude. It shows the location of the gap;
+//! effects are accepted without it. Files: `equations`; `basis_functions`; `force_response` and,
+//! without tangent vectors, `finite_difference_response`; `regression` and `family_regression`
+//! (coefficients); `ranking` (comparison of equations); `ripple_orders` and, for given motion,
+//! `orders_of_given_motion` (orders of waves over an angle); `profiles` of one equation; `wording`
+//! and `figures`; `types` (results).
 
 pub mod basis_functions;
 pub mod equations;
@@ -37,14 +37,14 @@ use crate::residual_force::types::{ForceKind, ResidualForce};
 use crate::thresholds;
 use eomgen_records::samples::typical_step;
 
-/// Estimates the residual force of a fit, with the profiles of a named equation or of the best one;
-/// `None` if the responses cannot be computed.
+/// Estimates the residual force of a fit, with the profiles of a named equation or of the best
+/// equation. `None` if the responses cannot be computed.
 pub fn estimate_residual_force(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     wanted: Option<&str>,
 ) -> Option<ResidualForce> {
-    // If the motion is given, the residual of a channel is the residual force.
+    // With given motion, the residual of a channel is the residual force.
     if problem.dataset.gives_motion() {
         return None;
     }
@@ -140,14 +140,14 @@ pub fn estimate_residual_force(
     } else if found.frequency.explained_fraction > thresholds::MIN_FORCE_FRACTION
         && equation == ranking.best
     {
-        // A line may be between the bends over time.
+        // A piecewise linear force over time can miss a narrow frequency band.
         found.explained_fraction = found.frequency.explained_fraction;
         found.kind = Some(ForceKind::Time);
     }
     Some(found)
 }
 
-/// Waves over an angle: orders that are gone through at least once.
+/// Returns waves over an angle, for the orders with at least one full period in the motion.
 fn orders(equation: EquationId, range: &OperatingRange) -> Vec<BasisFamily> {
     if range.width() <= TAU / 4.0 {
         return Vec::new();
@@ -158,8 +158,8 @@ fn orders(equation: EquationId, range: &OperatingRange) -> Vec<BasisFamily> {
     orders.map(wave).collect()
 }
 
-/// Waves over time: frequencies from one period per window of this length, s, on, and that at which
-/// the residual is largest.
+/// Returns waves over time: from one period per `length`, s, upwards, and at the frequency of the
+/// largest residual.
 fn frequencies(equation: EquationId, of: Linearisation<'_>, length: f64) -> Vec<BasisFamily> {
     let step = typical_step(&of.problem.dataset.train[0].times);
     let mut frequencies: Vec<f64> = find_peak_frequency(of.problem, of.fit)

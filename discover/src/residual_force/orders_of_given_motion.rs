@@ -1,5 +1,5 @@
-//! Spectrum over the angles for a given motion, from the residuals of the channels, because nothing
-//! is integrated.
+//! Orders of periodic effects for a given motion. They follow directly from the residuals of the
+//! channels, because no equation is integrated.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -12,18 +12,19 @@ use crate::model::problem::EstimationProblem;
 use crate::thresholds;
 use eomgen_records::samples::typical_step;
 
-/// The samples of all channels along one angle.
+/// Motion of one angle in all windows.
 struct Along {
     /// Angle at each sample of a window, rad.
     angles: Vec<Vec<f64>>,
     /// Range of the angle over all windows, rad.
     travel: f64,
-    /// The usual size of its rate, rad/s.
+    /// RMS rate of the angle, rad/s.
     rate: f64,
 }
 
-/// Returns for each angle coordinate the orders, per turn, whose waves explain most of the training
-/// residuals, the best first. Only orders that the motion covers and its samples resolve are tried.
+/// Returns for each angle coordinate the orders, in periods per turn, whose waves explain most of
+/// the training residuals. The best order is first. Only orders that the motion covers and its
+/// samples resolve are tried.
 pub(crate) fn find_orders(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -43,7 +44,7 @@ pub(crate) fn find_orders(
 }
 
 impl Along {
-    /// A coordinate, by its place.
+    /// Creates the motion of a coordinate, given by its index.
     fn of(problem: &EstimationProblem<'_>, fit: &Fit, place: usize) -> Self {
         let (inputs, count) = (
             fit.model.specification().inputs.len(),
@@ -74,7 +75,7 @@ impl Along {
         }
     }
 
-    /// The orders whose waves explain most.
+    /// Returns the orders whose waves explain most of the residuals.
     fn find_best_orders(&self, problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<u32> {
         let step = typical_step(&problem.dataset.train[0].times);
         let is_seen = |order: &u32| {
@@ -91,7 +92,7 @@ impl Along {
         explained.into_iter().map(|(_, order)| order).collect()
     }
 
-    /// Returns the reduction of the sum of squares of the residuals of all channels by a wave.
+    /// Returns the decrease of the sum of squared residuals of all channels due to a wave.
     fn explained_by_order(&self, problem: &EstimationProblem<'_>, fit: &Fit, order: u32) -> f64 {
         let channels = problem.noise.len();
         let of_channel = |channel: usize| {

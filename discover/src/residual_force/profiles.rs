@@ -12,11 +12,11 @@ use crate::residual_force::regression::{Coefficients, WindowCoefficient, WindowC
 use crate::residual_force::types::{Profile, ResidualForce};
 use crate::thresholds;
 
-/// Data from which profiles are computed.
+/// Inputs for the computation of profiles.
 pub(crate) struct ProfileInputs<'b> {
     /// Linearised fit.
     pub linearisation: Linearisation<'b>,
-    /// Operating points of each window, sample and equation.
+    /// Operating points, indexed by window, sample and equation.
     pub operating_points: &'b [Vec<Vec<OperatingPoint>>],
     /// Equation of the profiles.
     pub equation: EquationId,
@@ -84,7 +84,7 @@ impl ProfileInputs<'_> {
         }
     }
 
-    /// The force over the time of the first record.
+    /// Returns the profile over the time of the first record.
     fn over_time(&self, regressed: &FamilyRegression, level: f64) -> Profile {
         let mut profile = Profile::default();
         let Some(family) = regressed.find_family(|over| over == ForceArgument::Time) else {
@@ -105,7 +105,7 @@ impl ProfileInputs<'_> {
                 .extend(bends.iter().map(|bend| window.times[0] + bend));
             profile.values.extend(sizes.values.iter());
             profile.sd.extend(deviations(sizes, level));
-            // Windows are apart from each other.
+            // A NaN separates the curves of two windows.
             profile
                 .arguments
                 .push(window.times[0] + bends[bends.len() - 1]);
@@ -115,9 +115,9 @@ impl ProfileInputs<'_> {
         profile
     }
 
-    /// Returns the usual size over frequency of waves that differ between windows, fitted together:
-    /// a fast wave fitted by itself would also absorb slow ones. The fraction that each wave
-    /// explains is computed one by one.
+    /// Returns the usual amplitude over frequency, for waves that differ between windows. They are
+    /// fitted together, because a fast wave fitted by itself would also absorb slow waves. The
+    /// explained fraction is computed for each wave separately.
     fn over_frequency(&self, regressed: &FamilyRegression, level: f64) -> Profile {
         let mut profile = Profile::default();
         let frequency = |family: &BasisFamily| match family.argument {
@@ -184,7 +184,7 @@ impl ProfileInputs<'_> {
             points.push((largest.min(2.0 * range.largest_rate), value * usual, sd));
         }
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // A window that hardly shows the force says nothing of it.
+        // A window with a large standard deviation is left out: it hardly shows the force.
         let mut sds: Vec<f64> = points.iter().map(|point| point.2).collect();
         sds.sort_by(f64::total_cmp);
         let most = 3.0 * sds.get(sds.len() / 2).copied().unwrap_or(0.0);
@@ -197,7 +197,7 @@ impl ProfileInputs<'_> {
     }
 }
 
-/// One standard deviation of each size.
+/// Returns the standard deviation of each coefficient.
 fn deviations(sizes: &Coefficients, inflation: f64) -> Vec<f64> {
     let variances = sizes.covariance.diagonal();
     let pairs = variances.iter().zip(&sizes.values);
@@ -210,7 +210,7 @@ fn deviations(sizes: &Coefficients, inflation: f64) -> Vec<f64> {
         .collect()
 }
 
-/// The usual size of some waves that differ from window to window, and one standard deviation.
+/// Returns the RMS over the windows of the amplitude of some waves, and its standard deviation.
 fn usual(found: &WindowCoefficients, own: std::ops::Range<usize>, level: f64) -> (f64, f64) {
     let there = || found.windows.iter().flatten();
     let count = there().count().max(1) as f64;

@@ -15,9 +15,9 @@ pub(crate) struct EquationRanking {
     equations: Vec<RankedEquation>,
     /// Best equation.
     pub best: EquationId,
-    /// Best family of the best equation.
+    /// Best family in the best equation.
     pub family: FamilyId,
-    /// True if that family is a function of rate or position.
+    /// True if the best family is a function of rate or position.
     pub is_state: bool,
     /// Explained fraction of the squares.
     pub explained_fraction: f64,
@@ -60,8 +60,8 @@ impl EquationRanking {
             .collect();
         let by_time = (0..count).max_by(|a, b| times[*a].total_cmp(&times[*b]))?;
         let is_state = states[by_state].0 > thresholds::MIN_STATE_FRACTION * times[by_time];
-        // If rate and position explain the same fraction, the fraction over time distinguishes
-        // them.
+        // If the forces over rate or position of several equations explain nearly the same
+        // fraction, the force over time selects the equation.
         let most = states[by_state].0;
         let as_well = |a: &usize| states[*a].0 >= most.min(thresholds::MIN_FRACTION_OF_BEST * most);
         let by_state = (0..count)

@@ -10,26 +10,28 @@ use crate::fit::linearised_fit::LinearisedFit;
 use crate::fit::variable_projection::{PriorTerm, StateProjection, add_prior};
 use crate::thresholds;
 
-/// Nuisances that initial states do as well are distinguished by one of these parts of their
-/// squares.
+/// Fractions of a nuisance's squares that are tried as a ridge. A ridge is needed if initial states
+/// have nearly the same response as a nuisance.
 const RIDGES: [f64; 3] = [thresholds::MIN_COLUMN_REMAINDER, 1e-8, 1e-5];
 
 /// Products of force columns with each other and with the residual.
 pub struct Regression {
-    /// Products of the shapes' columns, nuisances taken out.
+    /// Products of the force columns after elimination of the nuisances.
     gram: DMatrix<f64>,
-    /// Their products with the residual, negative.
+    /// Negative products of the force columns with the residual.
     right: DVector<f64>,
     /// Sum of squares after elimination of initial states and nuisances, in squared standard
     /// deviations.
     pub remaining_squares: f64,
-    /// Number of measured numbers.
+    /// Number of measured values.
     pub number_count: f64,
-    /// The nuisances' products: with themselves, factored, and with columns and residual.
+    /// Products of the nuisances: Cholesky factor of their Gram matrix, and products with force
+    /// columns and residual.
     nuisances: Option<(Cholesky<f64, Dyn>, DMatrix<f64>)>,
-    /// The sum of squares that initial states leave, nuisances held, in standard deviations.
+    /// Sum of squares after elimination of initial states with fixed nuisances, in squared standard
+    /// deviations.
     held: f64,
-    /// For each window products of the columns, the residual last, nuisances held.
+    /// Products of the force columns of each window with fixed nuisances; the residual is last.
     windows: Vec<DMatrix<f64>>,
 }
 
@@ -46,9 +48,9 @@ pub struct Coefficients {
 
 /// Coefficients that differ between windows.
 pub struct WindowCoefficients {
-    /// Coefficients of each window; `None` without a motion.
+    /// Coefficients of each window; `None` if its simulation failed.
     pub windows: Vec<Option<Coefficients>>,
-    /// Explained fraction of the squares, less the fraction expected by chance.
+    /// Explained fraction of the squares, minus the fraction expected by chance.
     pub explained_fraction: f64,
 }
 
@@ -62,12 +64,13 @@ pub struct WindowCoefficient {
 }
 
 impl Regression {
-    /// Creates the regression from the columns of each window, whose number is equal; `None` if no
-    /// window has columns.
+    /// Creates the regression from the columns of each window. All windows have the same number of
+    /// columns. `None` if no window has columns.
     pub fn new(at: &LinearisedFit, fit: &Fit, columns: &[Option<DMatrix<f64>>]) -> Option<Self> {
         let count = columns.iter().flatten().map(DMatrix::ncols).next()?;
         let theta = &at.estimate.theta;
-        // One that a bound holds is free as well: a force may be what drove it there.
+        // A nuisance at its bound is free as well, because the missing force may have moved it
+        // there.
         let n = fit.unknowns.len();
         let mut products = DMatrix::zeros(n + count + 1, n + count + 1);
         let mut windows = Vec::with_capacity(columns.len());
@@ -123,8 +126,8 @@ impl Regression {
         })
     }
 
-    /// Fits linear combinations of columns, equal in all windows. `of`: a row per column and a
-    /// column per combination.
+    /// Fits linear combinations of columns with coefficients that are equal in all windows. `of`:
+    /// one row per column and one column per combination.
     pub fn fit_combinations(
         &self,
         places: std::ops::Range<usize>,
@@ -150,8 +153,8 @@ impl Regression {
         sizes(&gram, &right, 0.0)
     }
 
-    /// Fits coefficients that differ between windows, with fixed nuisances and a common variance,
-    /// so that unobservable coefficients remain small. `noise`: mean square of the noise.
+    /// Fits coefficients that differ between windows, with fixed nuisances and a common prior
+    /// variance, so that unobservable coefficients remain small. `noise`: mean square of the noise.
     pub fn fit_per_window(&self, places: std::ops::Range<usize>, noise: f64) -> WindowCoefficients {
         let (first, count) = (places.start, places.len());
         let systems = self.windows.iter().map(|window| {
@@ -212,8 +215,8 @@ impl Regression {
     }
 
     /// Returns the residual of each window after subtraction of all columns, in standard
-    /// deviations. `shared`: whether coefficients are equal in all windows and nuisances are fitted
-    /// again.
+    /// deviations. `shared`: true if the coefficients are equal in all windows and the nuisances
+    /// are fitted again.
     pub fn compute_remaining(
         &self,
         at: &LinearisedFit,
@@ -241,7 +244,7 @@ impl Regression {
     }
 }
 
-/// Least squares from products; what does nothing stays 0 and is not known.
+/// Solves the normal equations. A coefficient whose column is negligible is 0 and has no variance.
 fn sizes(gram: &DMatrix<f64>, right: &DVector<f64>, ridge: f64) -> Coefficients {
     let count = right.len();
     let largest = gram.diagonal().iter().copied().fold(0.0, f64::max);

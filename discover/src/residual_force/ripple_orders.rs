@@ -1,4 +1,4 @@
-//! Spectrum of the residual force over angles: its strongest orders, per turn.
+//! Orders of the residual force over angles, in periods per turn.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -15,9 +15,9 @@ use crate::residual_force::orders_of_given_motion;
 use crate::thresholds;
 use eomgen_records::samples::typical_step;
 
-/// Returns for each angle, by its expression, the orders whose waves explain most of the residual,
-/// the best first. Only orders that the motion covers and its samples resolve are tried. Empty if
-/// the responses cannot be computed.
+/// Returns for each angle, by its expression, the orders whose waves explain most of the residual.
+/// The best order is first. Only orders that the motion covers and its samples resolve are tried.
+/// Empty if the responses cannot be computed.
 pub fn find_ripple_orders(
     problem: &EstimationProblem<'_>,
     fit: &Fit,

@@ -12,16 +12,16 @@ pub struct Profile {
     pub values: Vec<f64>,
     /// Standard deviation.
     pub sd: Vec<f64>,
-    /// Explained fraction of the squares; for several waves, of the best one.
+    /// Explained fraction of the squares; for a spectrum, the fraction of its best wave.
     pub explained_fraction: f64,
-    /// Index of the best wave.
+    /// Index of the best wave of a spectrum.
     pub peak: Option<usize>,
 }
 
 /// Explained fractions of an equation.
 #[derive(Clone, Debug)]
 pub struct RankedEquation {
-    /// The equation.
+    /// Equation.
     pub equation: EquationId,
     /// Fraction explained by a force over rate or over position.
     pub fraction_by_state: f64,
@@ -29,18 +29,18 @@ pub struct RankedEquation {
     pub fraction_by_time: f64,
 }
 
-/// Argument of a force.
+/// Argument on which a force depends.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ForceKind {
-    /// The rate, with simple functions of it.
+    /// Rate, with simple functions that describe the force.
     Rate(Vec<SimpleTerm>),
-    /// The position, with simple functions of it.
+    /// Position, with simple functions that describe the force.
     Position(Vec<SimpleTerm>),
-    /// Neither.
+    /// Neither rate nor position.
     Time,
 }
 
-/// A simple function with its coefficient, SI.
+/// Simple function with its coefficient, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SimpleTerm {
     /// The function.
@@ -66,11 +66,11 @@ pub enum SimpleFunction {
     SignedSquare,
 }
 
-/// The residual force of a fit.
+/// Residual force of a fit.
 pub struct ResidualForce {
     /// All equations.
     pub equations: Vec<Equation>,
-    /// Equations in which a force explains a part of the residual, the best first.
+    /// Equations in which a force explains a part of the residual; the best is first.
     pub ranking: Vec<RankedEquation>,
     /// Best equation.
     pub best_equation: EquationId,
@@ -90,7 +90,7 @@ pub struct ResidualForce {
     pub order: Profile,
     /// Amplitude over the frequency, Hz.
     pub frequency: Profile,
-    /// Force along the rate over the largest rate of each window.
+    /// Rate-proportional force in each window over the largest rate of the window.
     pub amplitude: Profile,
 }
 

@@ -1,5 +1,4 @@
-//! Description of the residual force: equation, form and explained fraction, within the accuracy of
-//! its numbers.
+//! Description of the residual force in words: equation, form and explained fraction.
 
 use crate::residual_force::equations::Equation;
 use crate::residual_force::types::{ForceKind, Profile, ResidualForce, SimpleFunction, SimpleTerm};
@@ -85,21 +84,22 @@ fn describe_shape(force: &ResidualForce, kind: &ForceKind) -> String {
     }
 }
 
-/// Formats a frequency with the digits that a resolution shows. The amplitude of the force at a frequency does not
-/// follow from the profile, because initial states of windows imitate a part of the motion.
+/// Formats a frequency with the digits that a resolution justifies. The amplitude at the frequency
+/// is not reported: the initial states of windows imitate a part of the motion, so that the profile
+/// does not contain it.
 fn in_resolution(frequency: f64, resolution: f64) -> String {
     let decimals = (-resolution.log10()).ceil().max(0.0) as usize;
     format!("{frequency:.decimals$}")
 }
 
-/// Returns true if a wave of a profile over the frequency has enough periods in a window to be
-/// distinguished from a drift. The first wave of the profile has one.
+/// Returns true if a wave of a frequency profile has enough periods in a window to be distinguished
+/// from a drift. The first wave of the profile has one period per window.
 fn is_resolved(frequencies: &Profile, peak: usize) -> bool {
     let least = thresholds::FIRST_SPECTRAL_LINE as f64 * frequencies.arguments[0];
     frequencies.arguments[peak] > (1.0 - RELATIVE_ROUNDING) * least
 }
 
-/// Returns the words for rate and position.
+/// Returns the words for rate and position of an equation.
 fn words(equation: &Equation) -> (&'static str, &'static str) {
     match equation.unit {
         "rad" => ("rate", "angle"),
@@ -117,7 +117,7 @@ fn simple(parts: &[SimpleTerm], equation: &Equation, is_rate: bool) -> String {
         (false, "rad") => "1/rad",
         (false, _) => "1/m",
     };
-    // N m/rad, not N m 1/rad; N/m.
+    // `N m` per `1/rad` would be printed as `N m 1/rad`.
     let unit = match by.strip_prefix("1/") {
         Some(below) => format!("{force}/{below}"),
         None => format!("{force} {by}"),
@@ -161,7 +161,8 @@ fn simple(parts: &[SimpleTerm], equation: &Equation, is_rate: bool) -> String {
     texts.collect::<Vec<String>>().join(" and ")
 }
 
-/// The lowest and the highest of a profile whose numbers are known.
+/// Describes the lowest and the highest value of a profile among those with a small standard
+/// deviation.
 fn over(force: &ResidualForce, profile: &Profile, is_rate: bool) -> String {
     let equation = &force.equations[force.best_equation];
     let (rate, position) = words(equation);
@@ -175,7 +176,7 @@ fn over(force: &ResidualForce, profile: &Profile, is_rate: bool) -> String {
     let order = |a: &&usize, b: &&usize| profile.values[**a].total_cmp(&profile.values[**b]);
     let (low, high) = (known.iter().min_by(order), known.iter().max_by(order));
     match (low, high) {
-        // Bins at rest have the same argument.
+        // The two knots at zero rate have the same argument.
         (Some(low), Some(high))
             if profile.arguments[*low] != profile.arguments[*high]
                 && force.best_equation == force.equation =>
@@ -196,7 +197,7 @@ fn in_unit(value: f64, unit: &str) -> String {
     format!("{} {unit}", plain(value))
 }
 
-/// Two significant digits.
+/// Formats a number with two significant digits.
 fn plain(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return "0".to_owned();
