@@ -1,11 +1,9 @@
-//! The method of Adams: predict, evaluate, correct, evaluate, with steps and orders that
-//! follow from the error (Shampine and Gordon, "Computer Solution of Ordinary
-//! Differential Equations", 1975).
+//! The Adams method: predict, evaluate, correct, evaluate (PECE), with variable step size and order (Shampine
+//! and Gordon, "Computer Solution of Ordinary Differential Equations", 1975).
 //!
-//! A step costs two evaluations of the right-hand side whatever its order, a trial step
-//! one, a state inside a step none. The price is the start: with nothing to remember the
-//! order is 1 and the step short, and both grow step by step. Behind every switching
-//! surface and every breakpoint of the inputs that begins anew.
+//! A step of any order takes two evaluations of the right-hand side, a trial step one, and a state inside a
+//! step none. Without history the method starts at order 1 with short steps, and both grow step by step. It
+//! restarts after every switching surface and every breakpoint of the inputs.
 //!
 //! The formulas of a step are in `history`.
 
@@ -18,10 +16,10 @@ use super::stepper::{Outcome, Point, Stepper, rejection_error};
 use super::system::System;
 use super::watch::WatchedSystem;
 
-/// Error aimed at, relative to the allowed error.
+/// Target error of the next step, as a fraction of the allowed error.
 const AIM: f64 = 0.5;
 
-/// After so many refusals at one point the memory is of no use.
+/// Number of rejections at one point after which the method discards its history.
 const REFUSALS: u32 = 3;
 
 /// Current state and history of the method.
@@ -29,11 +27,11 @@ const REFUSALS: u32 = 3;
 struct Stand {
     point: Point,
     history: History,
-    /// The order of the next predictor; the corrector's is one higher.
+    /// Order of the predictor; the order of the corrector is higher by one.
     order: usize,
-    /// Step and order still grow from the start.
+    /// True while step size and order grow after a start.
     is_starting: bool,
-    /// The number of steps of the same length that led here.
+    /// Number of preceding steps of the same length.
     even: usize,
 }
 
@@ -48,7 +46,7 @@ impl Stand {
         }
     }
 
-    /// A step of `length` s from here.
+    /// Makes a step of `length` s from the current state.
     fn attempt<S: System + ?Sized>(&self, watched: &WatchedSystem<'_, S>, length: f64) -> Attempt {
         Attempt::new(watched, &self.point, &self.history, self.order, length)
     }
@@ -58,14 +56,14 @@ impl Stand {
 pub struct Adams {
     now: Stand,
     before: Stand,
-    /// The step from `before` to `now`, if this method made it.
+    /// Step from `before` to `now`; `None` if another method or a jump led to `now`.
     last: Option<Attempt>,
-    /// The last trial.
+    /// Last trial step.
     tried: Option<Attempt>,
-    /// The length of the next step, s.
+    /// Length of the next step, s.
     step: f64,
     magnitudes: Magnitudes,
-    /// Rejected steps at the current point.
+    /// Number of rejected steps at the current point.
     refusals: u32,
 }
 
@@ -143,8 +141,8 @@ impl Stepper for Adams {
         let step = self.step;
         self.accept(watched, attempt, errors);
         if is_cut {
-            // A step that is cut short does not contradict the longer one, and the rates before
-            // `until` do not predict those after it.
+            // A step that `until` cut short does not shorten the next one, and the rates before `until` do not
+            // predict those after it.
             let point = Point {
                 t: until,
                 y: self.now.point.y.clone(),
@@ -208,14 +206,14 @@ impl Stepper for Adams {
         if let Some(state) = self.interpolated(watched, t) {
             return Some(state);
         }
-        // The driver stepped over a surface; what is remembered says nothing of that.
+        // The driver stepped over a surface: the history does not apply beyond it.
         let start = &self.before.point;
         Some(make_steps_within(watched, start, t - start.t, &self.magnitudes)?.y)
     }
 }
 
 impl Adams {
-    /// Evaluates the rates at a start and limits the first step by them.
+    /// Evaluates the rates at a start and limits the first step by these rates.
     fn begin<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
@@ -231,18 +229,18 @@ impl Adams {
         if !norm.is_finite() {
             return Err(rejection_error(watched, here, self.step));
         }
-        // Shampine and Gordon's guess; a refusal at order 1 corrects it at once.
+        // Initial step of Shampine and Gordon; if it is rejected at order 1, it is corrected at once.
         self.step = self.step.min(0.25 / norm.sqrt());
         self.now.history.begin(&rates);
         Ok(())
     }
 
-    /// A shorter step, of a lower order if that does as well.
+    /// Shortens the step after a rejection, and lowers the order if a lower order has a similar error.
     fn refuse(&mut self, errors: Errors, length: f64) {
         self.refusals += 1;
         self.now.even = 0;
         if self.now.order == 1 {
-            // The error of order 1 is known well: go there at once.
+            // The error of order 1 is known well enough to compute the step size from it.
             let factor = (AIM / errors.same_order).sqrt();
             let factor = if factor.is_finite() { factor } else { 0.0 };
             self.step = length * factor.clamp(1e-3, 0.5);
@@ -258,7 +256,7 @@ impl Adams {
         }
     }
 
-    /// Moves to the end of a step and decides about the next one.
+    /// Moves to the end of an accepted step and selects the next step.
     fn accept<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
@@ -283,7 +281,7 @@ impl Adams {
         self.last = Some(attempt);
     }
 
-    /// The order and the length of the next step, after one that was accepted.
+    /// Selects order and length of the next step after an accepted step.
     fn choose(&mut self, attempt: &Attempt, errors: Errors) {
         let length = attempt.weights.length;
         let stand = &mut self.now;
@@ -299,7 +297,7 @@ impl Adams {
             stand.order -= 1;
             error = errors.lower_order;
         } else if order < MAX_ORDER && stand.even > order {
-            // The new difference of the next order, known only after even steps.
+            // Difference of the next higher order, which is known only after steps of equal length.
             let higher = stand.history.difference(order + 1);
             let higher = attempt.error_norm(order + 1, higher, &self.magnitudes);
             if order > 1 && errors.lower_order <= errors.same_order.min(higher) {

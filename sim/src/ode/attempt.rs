@@ -1,5 +1,5 @@
-//! One step of Adams' method with a given length and order: prediction, evaluation, correction, and
-//! the errors of this and lower orders. `adams` decides from the errors.
+//! One step of the Adams method with a given length and order: prediction, evaluation, correction, and the
+//! error estimates of this order and of lower orders. `adams` selects the next step by these errors.
 
 use super::history::{History, Weights};
 use super::magnitudes::Magnitudes;
@@ -7,26 +7,26 @@ use super::stepper::Point;
 use super::system::System;
 use super::watch::WatchedSystem;
 
-/// A step of one length, as far as it goes without the final rates.
+/// Adams step of one length, before the evaluation of the rates at its corrected end.
 pub struct Attempt {
-    /// The coefficients of the step.
+    /// Coefficients of the step.
     pub weights: Weights,
-    /// The order of the predictor; the corrector's is one higher.
+    /// Order of the predictor; the order of the corrector is higher by one.
     pub order: usize,
-    /// The new difference of the predicted rates.
+    /// Difference between the rates at the predicted state and their prediction.
     pub difference: Vec<f64>,
     /// End of the step.
     pub end: Point,
 }
 
-/// Errors of a step relative to the allowed error, by the order of the predictor.
+/// Estimated errors of a step relative to the allowed error, for several orders of the predictor.
 #[derive(Clone, Copy)]
 pub struct Errors {
-    /// Of the order used.
+    /// Error of the order used.
     pub same_order: f64,
-    /// Of one less; infinite if there is none.
+    /// Error of the next lower order; infinite if there is none.
     pub lower_order: f64,
-    /// One less would have done as well.
+    /// True if a lower order would be as accurate.
     pub is_lower_enough: bool,
 }
 
@@ -58,7 +58,7 @@ impl Attempt {
         }
     }
 
-    /// The errors that predictors of this order and of lower ones make.
+    /// Returns the estimated errors of predictors of this order and of lower orders.
     pub fn estimate_errors(&self, history: &History, magnitudes: &Magnitudes) -> Errors {
         let same = self.error_norm(self.order, self.difference.iter().copied(), magnitudes);
         let mut difference = self.difference.clone();
@@ -87,7 +87,7 @@ impl Attempt {
         }
     }
 
-    /// The error of an order, given the new differences of that order.
+    /// Returns the estimated error of an order, from the difference of this order.
     pub fn error_norm(
         &self,
         order: usize,

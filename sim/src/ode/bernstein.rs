@@ -1,10 +1,10 @@
-//! The interior of a step as polynomials in Bernstein form. The control points of a polynomial bound
-//! it, and those of its halves bound it ever more closely (G. Farin, *Curves and Surfaces for CAGD*).
+//! Dense output of a step in Bernstein form. The control points of a polynomial bound it. Subdivision makes the
+//! bounds tighter (G. Farin, *Curves and Surfaces for CAGD*).
 
 use eomgen_codegen::program::evaluator::{DEGREE, Enclosure};
 use nalgebra::{SMatrix, SVector};
 
-/// Parts of a step at which its interior is interpolated: the Chebyshev points of the interval.
+/// Fractions of a step at which the dense output is evaluated for the conversion: Chebyshev points.
 const PARTS: [f64; 6] = [
     0.017_037_086_855_465_856,
     0.146_446_609_406_726_24,
@@ -14,38 +14,38 @@ const PARTS: [f64; 6] = [
     0.982_962_913_144_534_1,
 ];
 
-/// Control points of a state; the interior has the degree of that of `dormand_prince`.
+/// Number of control points of a state. The degree is that of the dense output in `dormand_prince`.
 const POINTS: usize = DEGREE + 1;
 
-/// Inner control points.
+/// Number of inner control points.
 const INNER: usize = PARTS.len();
 
 type Controls = [f64; POINTS];
 
-/// Conversion from values to control points.
+/// Conversion of dense output to Bernstein form.
 pub struct BernsteinBasis {
-    /// From the values at [`PARTS`], relative to the chord, to the inner control points.
+    /// Matrix from the values at [`PARTS`], relative to the chord, to the inner control points.
     inner: SMatrix<f64, INNER, INNER>,
     /// Control points of the factors in the nested form of `slopes`.
     nested: [Controls; DEGREE],
 }
 
-/// Part of a step: control points of each state between two parts of the step.
+/// Dense output over a part of a step: control points of each state.
 #[derive(Clone)]
 pub struct Piece {
-    /// Start, as a part of the step, 0 to 1.
+    /// Start of the piece, as a fraction of the step, 0 to 1.
     pub from: f64,
-    /// End, as a part of the step.
+    /// End of the piece, as a fraction of the step.
     pub to: f64,
     controls: Vec<Controls>,
 }
 
 impl BernsteinBasis {
-    /// Prepares the conversion.
+    /// Computes the matrices of the conversion.
     pub fn new() -> Self {
         let basis =
             SMatrix::<f64, INNER, INNER>::from_fn(|row, column| bernstein(column + 1, PARTS[row]));
-        // Different points determine the polynomial: there is an inverse.
+        // Interpolation at distinct points is unique, so the matrix has an inverse.
         let inner = basis.try_inverse();
         Self {
             inner: inner.unwrap_or_else(SMatrix::zeros),
@@ -53,8 +53,8 @@ impl BernsteinBasis {
         }
     }
 
-    /// Returns the interior of a step from `start` to `end` as one piece, from the coefficients of its nested form
-    /// start + s (c_0 + (1 - s) (c_1 + s (c_2 + ...))).
+    /// Returns the dense output of a step from `start` to `end` as one piece, from the coefficients of its
+    /// nested form start + s (c_0 + (1 - s) (c_1 + s (c_2 + ...))).
     pub fn convert(&self, (start, end): (&[f64], &[f64]), nested: &[Vec<f64>; DEGREE]) -> Piece {
         let controls = start.iter().zip(end).enumerate().map(|(entry, (a, b))| {
             let mut points = [0.0; POINTS];
@@ -74,8 +74,8 @@ impl BernsteinBasis {
         }
     }
 
-    /// Returns the interior of a step from `start` to `end`, as one piece. `interpolate` returns the
-    /// state at a part of the step.
+    /// Returns the dense output of a step from `start` to `end` as one piece. `interpolate` returns the state
+    /// at a fraction of the step.
     pub fn fit(
         &self,
         (start, end): (&[f64], &[f64]),
@@ -95,7 +95,7 @@ impl BernsteinBasis {
             std::array::from_fn(|place| match place {
                 0 => *a,
                 DEGREE => *b,
-                // The chord has equally spaced control points.
+                // The control points of the chord are equally spaced.
                 _ => a + (b - a) * place as f64 / DEGREE as f64 + inner[place - 1],
             })
         });
@@ -119,7 +119,7 @@ impl Piece {
         self.controls.iter().map(|points| points[DEGREE]).collect()
     }
 
-    /// Returns the start of the piece, as a piece in which nothing moves.
+    /// Returns the start of the piece as a piece with constant state.
     pub fn start(&self) -> Self {
         let at_start = |points: &Controls| [points[0]; POINTS];
         Self {
@@ -154,7 +154,7 @@ impl Piece {
         [first, second]
     }
 
-    /// Writes the bounds of the state over the piece, of a step of `length` s, to `out`.
+    /// Writes bounds of the state over the piece to `out`. The step has `length` s.
     pub fn bound(&self, length: f64, out: &mut Vec<Enclosure>) {
         let duration = (self.to - self.from) * length;
         out.clear();
@@ -177,7 +177,7 @@ fn binomial(n: usize, k: usize) -> f64 {
     (0..k).fold(1.0, |choices, j| choices * (n - j) as f64 / (j + 1) as f64)
 }
 
-/// Returns the value of a Bernstein polynomial of [`DEGREE`].
+/// Returns the Bernstein basis polynomial number `place` of degree [`DEGREE`] at the fraction `part`.
 fn bernstein(place: usize, part: f64) -> f64 {
     binomial(DEGREE, place) * part.powi(place as i32) * (1.0 - part).powi((DEGREE - place) as i32)
 }

@@ -1,11 +1,11 @@
-//! One step of Radau's method: its three stages by Newton's method, the error estimate and the
-//! collocation polynomial (Hairer and Wanner, "Solving Ordinary Differential Equations II", section
-//! IV.8). `radau` selects the length of steps and accepts them.
+//! One step of the Radau IIA method: its three stages by Newton's method, the error estimate and the
+//! collocation polynomial (Hairer and Wanner, "Solving Ordinary Differential Equations II", section IV.8).
+//! `radau` selects the step sizes and accepts the steps.
 //!
-//! With Z the differences of the stages from the start, A the coefficients of the method and h the
-//! step, the stages solve A^-1 Z / h = F(Z). In the variables W = T^-1 Z, which make A^-1 a real
-//! number and a complex pair, Newton's method takes one real and one complex linear system of the
-//! size of the state instead of one three times as large.
+//! Z are the differences of the stages from the start, A the coefficients of the method and h the step size.
+//! The stages solve A^-1 Z / h = F(Z). The transformation W = T^-1 Z turns A^-1 into one real eigenvalue and a
+//! complex pair. Newton's method then solves one real and one complex linear system of the size of the state,
+//! instead of one system of three times this size.
 
 use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
 
@@ -14,28 +14,28 @@ use super::stepper::Point;
 use super::system::System;
 use super::watch::WatchedSystem;
 
-/// Iterations of Newton's method in a step.
+/// Maximum number of Newton iterations in a step.
 pub const MAX_ITERATIONS: u32 = 7;
 
-/// The stages are solved for to this part of the tolerance at most.
+/// Tolerance of the stages, as a fraction of the tolerance of the step.
 const STAGES: f64 = 0.03;
 
-/// And no closer than rounding lets them, in units of the last place.
+/// Smallest tolerance of the stages, in units of the last place.
 const ROUNDING: f64 = 10.0;
 
-/// Iterations end at a change below this fraction of the stages' tolerance.
+/// Iterations end at a change below this fraction of the tolerance of the stages.
 const SMALL: f64 = 0.3;
 
-/// Changes that become no smaller lead nowhere.
+/// Ratio of successive changes above which the iteration counts as divergent.
 const DIVERGES: f64 = 0.99;
 
-/// The real eigenvalue of A^-1.
+/// Real eigenvalue of A^-1.
 const REAL: f64 = 3.637_834_252_744_496;
 
-/// The complex pair: its real and imaginary part.
+/// Real and imaginary part of the complex pair of eigenvalues of A^-1.
 const PAIR: (f64, f64) = (2.681_082_873_627_752_3, 3.050_430_199_247_410_5);
 
-/// The eigenvectors of A, columns; those of the pair as real and imaginary part.
+/// Eigenvectors of A in columns; real and imaginary part for the complex pair.
 const T: [[f64; 3]; 3] = [
     [
         0.091_232_394_870_892_94,
@@ -50,7 +50,7 @@ const T: [[f64; 3]; 3] = [
     [0.966_048_182_615_093, 1.0, 0.0],
 ];
 
-/// The inverse of T.
+/// Inverse of T.
 const T_INVERSE: [[f64; 3]; 3] = [
     [
         4.325_579_890_063_155,
@@ -69,13 +69,13 @@ const T_INVERSE: [[f64; 3]; 3] = [
     ],
 ];
 
-/// At which parts of the step the stages are.
+/// Returns the times of the stages, as fractions of the step.
 fn nodes() -> [f64; 3] {
     let root = 6.0_f64.sqrt();
     [(4.0 - root) / 10.0, (4.0 + root) / 10.0, 1.0]
 }
 
-/// Weights of the stages in the error estimate.
+/// Returns the weights of the stages in the error estimate.
 fn weights_of_error() -> [f64; 3] {
     let root = 6.0_f64.sqrt();
     [
@@ -85,16 +85,16 @@ fn weights_of_error() -> [f64; 3] {
     ]
 }
 
-/// The linear systems of steps of one length, with one Jacobian.
+/// LU factors of the linear systems for one step size and one Jacobian.
 pub struct Factors {
-    /// The length, s.
+    /// Step size, s.
     pub length: f64,
     real: LU<f64, Dyn, Dyn>,
     pair: LU<Complex<f64>, Dyn, Dyn>,
 }
 
 impl Factors {
-    /// For a Jacobian and steps of `length` s.
+    /// Factorises the linear systems for a Jacobian and steps of `length` s.
     pub fn new(jacobian: &DMatrix<f64>, length: f64) -> Self {
         let states = jacobian.nrows();
         let mut real = -jacobian;
@@ -111,21 +111,21 @@ impl Factors {
     }
 }
 
-/// The stages of a step, as differences from its start.
+/// Stages of a step, as differences from its start.
 #[derive(Clone)]
 pub struct Stages {
     z: [DVector<f64>; 3],
-    /// The length of the step, s.
+    /// Length of the step, s.
     length: f64,
-    /// Iterations made.
+    /// Number of Newton iterations.
     pub iterations: u32,
-    /// By how much an iteration reduced the last change: how good the Jacobian is.
+    /// Ratio of the last two changes. It measures the accuracy of the Jacobian.
     pub contraction: f64,
 }
 
 impl Stages {
-    /// Solves the stages of a step from `start` with these `factors`, beginning with the polynomial of the
-    /// step `before`; `None` if Newton's method does not converge.
+    /// Solves the stages of a step from `start` with these `factors`. The initial guess extrapolates the
+    /// collocation polynomial of the step `before`. Returns `None` if Newton's method does not converge.
     pub fn solve<S: System + ?Sized>(
         watched: &WatchedSystem<'_, S>,
         start: &Point,
@@ -164,12 +164,12 @@ impl Stages {
             if !is_first {
                 contraction = size / last_change;
             }
-            // So small a change leaves nothing that counts, whatever the next ones are.
+            // After such a small change, further changes are negligible, whatever their ratio.
             let is_small = size <= SMALL * enough;
             if !is_small && contraction >= DIVERGES {
                 break;
             }
-            // The remaining error is unknown after the first change.
+            // After one change, the remaining error is unknown.
             let left = contraction / (1.0 - contraction) * size;
             if is_small || (!is_first && left <= enough) {
                 return Some(Self {
@@ -188,7 +188,7 @@ impl Stages {
         None
     }
 
-    /// The state at the end of the step.
+    /// Returns the state at the end of the step.
     pub fn end_state(&self, start: &[f64]) -> Vec<f64> {
         start.iter().zip(&self.z[2]).map(|(y, z)| y + z).collect()
     }
@@ -200,12 +200,12 @@ impl Stages {
         start.iter().zip(&difference).map(|(y, z)| y + z).collect()
     }
 
-    /// The difference from the end of the step so long after it, s.
+    /// Returns the difference from the end of the step, extrapolated to `after` s beyond it.
     fn beyond(&self, after: f64) -> DVector<f64> {
         self.difference(1.0 + after / self.length) - &self.z[2]
     }
 
-    /// The difference from the start at a part of the step: Lagrange's polynomial, zero at 0.
+    /// Returns the difference from the start at a fraction of the step: a Lagrange polynomial, zero at 0.
     fn difference(&self, part: f64) -> DVector<f64> {
         let nodes = nodes();
         let mut sum = DVector::zeros(self.z[0].len());
@@ -221,10 +221,9 @@ impl Stages {
         sum
     }
 
-    /// Returns the estimated error of states inside the step relative to the allowed error, from
-    /// the change of the third derivative since the step `before`. The error estimate of the step
-    /// ignores fast decaying components, whose values at the ends of steps are correct for any
-    /// length.
+    /// Returns the estimated error of interpolated states relative to the allowed error, from the change of the
+    /// third derivative since the step `before`. The error estimate of the step ignores fast decaying
+    /// components, which are correct at the ends of steps of any length.
     pub fn estimate_interior_error(
         &self,
         before: &Self,
@@ -237,7 +236,7 @@ impl Stages {
         magnitudes.norm(error.iter().copied(), &start.y)
     }
 
-    /// Of the polynomial through the start and the stages.
+    /// Returns the third derivative of the polynomial through the start and the stages.
     fn third_derivative(&self) -> DVector<f64> {
         let nodes = nodes();
         let mut sum = DVector::zeros(self.z[0].len());
@@ -249,9 +248,9 @@ impl Stages {
         sum
     }
 
-    /// Returns the estimated error of the step relative to the allowed error. `rates` are those at
-    /// the start. `is_doubted` filters it once more by the rates next to the start, as a first step
-    /// or one after a rejection needs.
+    /// Returns the estimated error of the step relative to the allowed error. `rates` are the rates at the
+    /// start. If `is_doubted`, as for a first step or a step after a rejection, the estimate is filtered a
+    /// second time with rates beside the start.
     pub fn estimate_error<S: System + ?Sized>(
         &self,
         watched: &WatchedSystem<'_, S>,
@@ -283,11 +282,11 @@ impl Stages {
     }
 }
 
-/// The polynomial on the nodes of the method, s (s - c_1) (s - c_2) (s - 1), at its largest between 0
-/// and 1: what the error of interpolation is a multiple of.
+/// Maximum of |s (s - c_1) (s - c_2) (s - 1)| for 0 < s < 1, where c_1, c_2 and 1 are the nodes. The
+/// interpolation error is proportional to it.
 const LARGEST_BETWEEN_NODES: f64 = 0.01826;
 
-/// The rates at the stages.
+/// Returns the rates at the stages.
 fn rates_of<S: System + ?Sized>(
     watched: &WatchedSystem<'_, S>,
     start: &Point,
@@ -303,7 +302,7 @@ fn rates_of<S: System + ?Sized>(
     })
 }
 
-/// Newton's change of W, given W and T^-1 F; nothing where the linear systems are singular.
+/// Returns the Newton change of W, given W and T^-1 F; `None` if a linear system is singular.
 fn change(
     factors: &Factors,
     w: &[DVector<f64>; 3],
@@ -324,7 +323,7 @@ fn change(
     ])
 }
 
-/// A matrix times three vectors.
+/// Returns the product of a matrix with three vectors.
 fn transformed(matrix: &[[f64; 3]; 3], vectors: &[DVector<f64>; 3]) -> [DVector<f64>; 3] {
     matrix.map(|row| {
         let mut sum = DVector::zeros(vectors[0].len());
@@ -341,8 +340,7 @@ mod tests {
 
     use super::*;
 
-    /// Returns the coefficients of the method from its nodes: the integrals of the Lagrange
-    /// polynomials.
+    /// Computes the coefficients of the method from its nodes: integrals of the Lagrange polynomials.
     fn coefficients() -> Matrix3<f64> {
         let nodes = nodes();
         let powers = Matrix3::from_fn(|row, column| nodes[row].powi(column as i32));
@@ -379,8 +377,8 @@ mod tests {
 
     #[test]
     fn error_estimate_vanishes_for_cubic_polynomials() {
-        // With y = s^p and h = 1, rates at the start are 0 for p > 1. The estimate compares the
-        // step with a formula of order 3.
+        // For y = s^p and h = 1, the rates at the start are 0 if p > 1. The estimate compares the step with a
+        // formula of order 3.
         let weights = Vector3::from(weights_of_error());
         for power in 2..=3 {
             let stages = Vector3::from(nodes()).map(|node| node.powi(power));

@@ -1,5 +1,5 @@
-//! The Dormand-Prince method of order 8 (Hairer, Norsett and Wanner, "Solving Ordinary
-//! Differential Equations I", section II.5), with and without control of the error.
+//! Dormand-Prince method of order 8 (Hairer, Norsett and Wanner, "Solving Ordinary Differential Equations I",
+//! section II.5), with and without error control.
 
 use super::bernstein::{BernsteinBasis, Piece};
 use super::error::SolveError;
@@ -9,21 +9,23 @@ use super::stepper::{Outcome, Point, Stepper, split_step};
 use super::system::System;
 use super::watch::WatchedSystem;
 
-/// The step that the error estimate proposes is shortened by this.
+/// Safety factor of the step size that the error estimate proposes.
 const SAFETY: f64 = 0.9;
 
-/// Smallest and largest factor from a step to the next.
+/// Smallest and largest ratio of successive step sizes.
 const FACTORS: (f64, f64) = (0.333, 6.0);
 
-/// Largest last term of the interior, in tolerances, without a test in its middle. In 41 693 steps of random smooth
-/// machines, 0.12 % had an error above ten tolerances inside; the last term exceeded this in 94 % of them, and in 4 % of all.
+/// Largest last term of the dense output, in tolerances, below which it is used without a test in the middle of
+/// the step. In 41 693 steps of random smooth machines, 0.12 % had an interpolation error above ten tolerances.
+/// The last term exceeded this limit in 94 % of those steps, and in 4 % of all steps.
 const MAX_LAST_TERM: f64 = 40.0;
 
-/// Largest error in the middle, in tolerances, with which samples of a smooth motion are interpolated. Elsewhere in the
-/// step it is up to 2.1 times as large; more than 3 tolerances occur in 1.6 % of those steps.
+/// Largest error in the middle of a step, in tolerances, at which samples of a smooth motion are interpolated.
+/// The error elsewhere in the step is up to 2.1 times as large. In 1.6 % of these steps it exceeds 3
+/// tolerances.
 const MAX_INTERIOR_ERROR: f64 = 4.0;
 
-/// Order of the error of a step.
+/// Order of the local error.
 const ORDER: f64 = 8.0;
 
 /// Steps of the method.
@@ -37,30 +39,31 @@ pub struct DormandPrince853 {
     step: f64,
     magnitudes: Magnitudes,
     known: Known,
-    /// True if the last trial was rejected; the next step does not grow.
+    /// True if the last trial was rejected; the next step then does not grow.
     is_rejected: bool,
-    /// True if the interior of the last step is known.
+    /// True if the dense output of the last step has been computed.
     has_interior: bool,
-    /// The last step as two of half its length, if its own interior is not accurate enough.
+    /// Two steps of half the length that replace the last step for dense output, if its own dense output is not
+    /// accurate enough.
     halves: Vec<Half>,
 }
 
-/// Half of a step with its interior.
+/// Half of a step with its dense output.
 struct Half {
     start: Point,
     length: f64,
     interior: Interior,
 }
 
-/// Slopes that are known.
+/// Slopes that have been computed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Known {
     Nothing,
-    /// The slope at `here`, as that of a start.
+    /// Slope at `here`, which is the start of a step.
     Start,
-    /// The slopes of the step from `last` to `here`.
+    /// Slopes of the step from `last` to `here`.
     Step,
-    /// The same, but the rates may jump at `here`.
+    /// Slopes of the step from `last` to `here`, at which the rates may jump.
     StepBeforeJump,
 }
 
@@ -143,7 +146,7 @@ impl Stepper for DormandPrince853 {
         };
         let factor = SAFETY * error.powf(-1.0 / ORDER);
         if error.is_nan() || error > 1.0 {
-            // The largest reduction also if the error is not a number.
+            // The step shrinks by the largest factor if the error is NaN.
             self.step = length * factor.max(FACTORS.0).min(SAFETY);
             self.is_rejected = true;
             self.last.y = end.y;
@@ -155,7 +158,7 @@ impl Stepper for DormandPrince853 {
             FACTORS.1
         };
         let next = length * factor.clamp(FACTORS.0, most);
-        // A step cut short says nothing against the longer one.
+        // A step that was cut short does not shorten the next one.
         self.step = if is_cut { next.max(self.step) } else { next };
         self.slopes.end(watched, &end);
         self.last = std::mem::replace(&mut self.here, end);
@@ -257,13 +260,13 @@ impl Stepper for DormandPrince853 {
         watched: &WatchedSystem<'_, S>,
         t: f64,
     ) -> Option<Vec<f64>> {
-        // The extension is of order 7; a step from the same start is of order 8.
+        // The dense output has order 7. A new step from the same start has order 8.
         Some(make_steps_within(watched, &self.last, t - self.last.t, &self.magnitudes)?.y)
     }
 }
 
 impl DormandPrince853 {
-    /// Computes the interior of the last step unless it is known.
+    /// Computes the dense output of the last step unless it is known.
     fn find_interior<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) {
         if !self.has_interior {
             let length = self.here.t - self.last.t;
@@ -273,8 +276,8 @@ impl DormandPrince853 {
         }
     }
 
-    /// Divides the last step, with this state in its middle, into two with interiors. Returns false if one of them does
-    /// not meet the tolerance.
+    /// Replaces the last step by two halves with dense output, given the state in its middle. Returns false if
+    /// one of the halves does not meet the tolerance.
     fn divide<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
@@ -311,8 +314,8 @@ impl DormandPrince853 {
         self.halves.clear();
     }
 
-    /// Returns the error of the interior in the middle of the last step, and the state there by a step of half the
-    /// length.
+    /// Returns the error of the dense output in the middle of the last step, and the state there by a step of
+    /// half the length.
     fn middle_error<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
@@ -324,7 +327,7 @@ impl DormandPrince853 {
         Some((errors.collect(), middle))
     }
 
-    /// Prepares the slope at the start of a step.
+    /// Computes the slope at the start of a step.
     fn begin<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) {
         match self.known {
             Known::Start => {}
@@ -336,8 +339,8 @@ impl DormandPrince853 {
     }
 }
 
-/// Returns the state after one step of exactly `length` s from `start`, whatever its error; `None` if a stage is not
-/// finite.
+/// Returns the state after one step of exactly `length` s from `start`, without error control; `None` if a
+/// stage is not finite.
 fn make_step<S: System + ?Sized>(
     watched: &WatchedSystem<'_, S>,
     start: &Point,
@@ -348,8 +351,8 @@ fn make_step<S: System + ?Sized>(
     Some(Point { t, y })
 }
 
-/// Returns the state `length` s after `start` by steps that meet the tolerance, one if that does; `None` if
-/// none are short enough.
+/// Returns the state `length` s after `start` by steps that meet the tolerance, one step if possible; `None` if
+/// the tolerance needs too short steps.
 pub fn make_steps_within<S: System + ?Sized>(
     watched: &WatchedSystem<'_, S>,
     start: &Point,
@@ -368,7 +371,8 @@ pub fn make_steps_within<S: System + ?Sized>(
 mod tests {
     use super::*;
 
-    /// y' = y cos t depends on the nodes of the method: y = exp(sin t).
+    /// y' = y cos t, with the solution y = exp(sin t). The right-hand side depends on time, so the test covers
+    /// the nodes of the method.
     struct Growth;
 
     impl System for Growth {
@@ -422,7 +426,7 @@ mod tests {
             });
             errors.fold(0.0, f64::max)
         };
-        // Within one step the error has one order more.
+        // The error of a single step has one order more.
         let order = (error(1.0) / error(0.5)).log2();
         assert!((7.5..9.0).contains(&order), "order {order}");
     }

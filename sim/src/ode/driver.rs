@@ -1,4 +1,4 @@
-//! The loop: steps, samples, switches and limits.
+//! The loop of the solver: steps, samples, switches and limits.
 
 use std::collections::VecDeque;
 
@@ -15,27 +15,28 @@ use super::system::{Interior, System};
 use super::trajectory::Trajectory;
 use super::watch::WatchedSystem;
 
-/// Number of times that a step is shortened because it does not resolve the switching functions. Finer
-/// changes of these count as rounding.
+/// Maximum number of times that a step is shortened to resolve the switching functions. Finer changes of these
+/// functions count as rounding.
 const MOST_SHORTENED: u32 = 12;
 
-/// Factor by which a step is shortened at most, and if it leaves the domain of the rates.
+/// Smallest factor by which a step is shortened; also the factor after a step that leaves the domain of the
+/// rates.
 pub(super) const SHORTENED: f64 = 0.2;
 
-/// More samples than this in a step are many.
+/// Number of samples in a step above which the dense output is tested.
 const MANY: usize = 2;
 
-/// Length of the first step after a jump of inputs or of the state, relative to the time to the next output. States inside
-/// a much longer step have the rounding of its end.
+/// Length of the first step after a jump of inputs or of the state, relative to the time to the next output. In
+/// a much longer step, interpolated states would have the rounding error of its end.
 const MAX_STEP_OVER_OUTPUT: f64 = 10.0;
 
 /// Action after a step with an acceptable error.
 pub(super) enum Accepted {
-    /// The motion continues from its end.
+    /// The motion continues from the end of the step.
     Continues,
-    /// It was taken back and is to be made shorter.
+    /// The step was undone and is repeated with a shorter length.
     Shortened,
-    /// It crosses surfaces.
+    /// The step crosses surfaces.
     Crossed(Crossing),
 }
 
@@ -43,31 +44,31 @@ pub(super) enum Accepted {
 pub(super) struct Run<M> {
     pub(super) stepper: M,
     pub(super) resolution: Resolution,
-    /// The last switches: time, s, and function.
+    /// Last switches: time, s, and index of the switching function.
     pub(super) recent: VecDeque<(f64, usize)>,
-    /// The present state after projection onto constraints, if that changes it.
+    /// Current state after projection onto constraints, if the projection changes it.
     projected: Option<Vec<f64>>,
-    /// Modes of the surfaces at the present point, and those before the last event.
+    /// Modes of the surfaces at the current point, and those before the last event.
     pub(super) modes: Vec<SurfaceMode>,
     earlier_modes: Vec<SurfaceMode>,
-    /// True if the scales of the errors have roundings of a motion at rest.
+    /// True if the error scales include roundings of a motion at rest.
     has_roundings: bool,
-    /// Surfaces that returned the motion with a jump in the last step over them.
+    /// Surfaces whose event in the last step reversed the motion with a jump, as impacts do.
     pub(super) rebounds: Vec<usize>,
-    /// A step that leads beyond the end of a call.
+    /// Step that extends beyond the end of a call.
     pending: Option<PendingStep>,
     /// True if the next step is the first after a jump of inputs or of the state.
     follows_jump: bool,
 }
 
-/// An accurate step that leads beyond the end of a call. Its surfaces and constraints were examined; its end
-/// is not part of the motion yet.
+/// Accepted step that extends beyond the end of a call. It was searched for crossings and projected onto
+/// constraints; its end is not part of the motion yet.
 #[derive(Clone, Copy)]
 struct PendingStep {
     begin: f64,
-    /// True if states inside it are interpolated.
+    /// True if states inside the step are interpolated.
     is_interior_told: bool,
-    /// Time up to which an observer has seen it, s.
+    /// Time up to which an observer has seen the step, s.
     observed: f64,
 }
 
@@ -95,7 +96,7 @@ impl<M: Stepper> Run<M> {
         }
     }
 
-    /// Discards a pending step and continues from a point.
+    /// Discards a pending step and continues from another point.
     pub fn restart(&mut self, point: Point) {
         let step = self.stepper.step();
         if self.pending.take().is_some() {
@@ -107,26 +108,26 @@ impl<M: Stepper> Run<M> {
     }
 }
 
-/// Limits of a call.
+/// End of a call, and whether a step may pass it.
 #[derive(Clone, Copy)]
 pub(super) struct Span {
-    /// End, s.
+    /// End of the call, s.
     pub end: f64,
-    /// True if a step may lead beyond the end.
+    /// True if a step may extend beyond the end.
     pub may_pass: bool,
 }
 
-/// A simulation under way.
+/// Simulation in progress.
 pub(super) struct Driver<'a, S: System + ?Sized, M: Stepper> {
     pub(super) watched: &'a WatchedSystem<'a, S>,
     pub(super) run: &'a mut Run<M>,
     pub(super) settings: &'a Settings,
     samples: &'a [f64],
-    /// Number of samples taken.
+    /// Number of samples stored.
     taken: usize,
     pub(super) end: f64,
     may_pass: bool,
-    /// Time at which the present step ends at the latest, s.
+    /// Latest end of the current step, s.
     pub(super) until: f64,
     pub(super) pace: Pace,
     /// The last approaches to switching surfaces.
@@ -168,7 +169,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         self.take_samples_here();
     }
 
-    /// Continues the motion to the end of the call.
+    /// Simulates to the end of the call.
     ///
     /// # Errors
     /// See [`SolveError`]; the run keeps its last point.
@@ -186,7 +187,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         Ok(())
     }
 
-    /// Takes the samples inside a pending step, and accepts it if it ends before the end of the call.
+    /// Stores the samples inside a pending step, and accepts it if it ends before the end of the call.
     fn continue_pending_step(&mut self) -> Result<(), SolveError> {
         let Some(pending) = self.run.pending else {
             return Ok(());
@@ -213,7 +214,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         Ok(end)
     }
 
-    /// Follows a jump of the inputs at the present point.
+    /// Applies a jump of the inputs at the current point.
     pub fn follow_input_jump(&mut self) -> Result<(), SolveError> {
         let mut point = self.run.stepper.current_point().clone();
         if self.watched.apply_breakpoint(point.t, &mut point.y) {
@@ -222,7 +223,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         self.enter_regime()
     }
 
-    /// One accepted step, or the way to and over a switching surface.
+    /// Makes one accepted step, or steps to and over a switching surface.
     fn advance(&mut self, system: &S) -> Result<(), SolveError> {
         let begin = self.run.stepper.current_point().t;
         let next = system.next_breakpoint(begin).filter(|next| *next > begin);
@@ -253,13 +254,13 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
                 }
             }
             if self.watched.non_finite_state().is_some() {
-                // Rates beyond the end of the call may not exist.
+                // The rates beyond the end of the call may be undefined.
                 self.until = until;
             }
         }
     }
 
-    /// Returns the time (s) at which a step from `begin` ends at the latest, if it follows a jump.
+    /// Returns the latest end (s) of a step from `begin` that follows a jump.
     fn jump_limit(&self, begin: f64) -> f64 {
         let output = self.next_sample().map_or(self.end, |t| t.min(self.end));
         match self.run.follows_jump && output > begin {
@@ -268,14 +269,14 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         }
     }
 
-    /// Makes the next step no longer than the settings allow.
+    /// Limits the next step to the maximum length of the settings.
     fn limit_step(&mut self) {
         if self.run.stepper.step() > self.settings.max_step {
             self.run.stepper.set_step(self.settings.max_step);
         }
     }
 
-    /// Sets the rounding of the next step at rest, and resets it if the motion is not at rest any more.
+    /// Sets the rounding of the next step at rest, or resets it if the motion is no longer at rest.
     fn set_roundings(&mut self) {
         let is_at_rest =
             |mode: &SurfaceMode| matches!(mode, SurfaceMode::Held | SurfaceMode::Closed);
@@ -295,7 +296,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
             .set_rate_roundings(&rates, length);
     }
 
-    /// Shows the rest of the last step up to `end` to a system that observes steps.
+    /// Passes the part of the last step up to `end` that was not observed yet to an observing system.
     fn observe_step(&mut self, step: PendingStep, end: &Point) -> Result<(), SolveError> {
         if !self.watched.is_observing() || end.t <= step.observed {
             return Ok(());
@@ -329,13 +330,13 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         self.watched.forget_trials();
         let mut outcome = self.run.stepper.advance(self.watched, until)?;
         if !outcome.is_accepted && self.watched.release_sides() {
-            // Beyond a surface the rates of the near side may have no value.
+            // The rates of the near side may be undefined beyond a surface.
             self.watched.forget_trials();
             self.run.stepper.set_step(outcome.length);
             outcome = self.run.stepper.advance(self.watched, until)?;
         }
         if outcome.is_accepted && self.watched.non_finite_state().is_some() {
-            // It ends where the rates have no value: no motion gets there.
+            // The step ends where the rates are undefined, which the motion cannot reach.
             self.refuse(outcome.length);
             outcome.is_accepted = false;
         } else if !outcome.is_accepted {
@@ -344,15 +345,15 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         Ok(outcome)
     }
 
-    /// Takes an accepted step of `length` s back for a shorter one.
+    /// Undoes an accepted step of `length` s, to repeat it with a shorter one.
     pub(super) fn refuse(&mut self, length: f64) {
         self.run.stepper.take_back();
         self.run.stepper.set_step(SHORTENED * length);
         self.trajectory.statistics.rejected_steps += 1;
     }
 
-    /// Finds the state here that the motion keeps. Returns whether it is as near as the tolerance
-    /// promises: a step that strayed farther than its error estimate says did not meet the tolerance.
+    /// Projects the current state onto the constraints. Returns false if the correction exceeds the error
+    /// estimate by so much that the step did not meet the tolerance.
     pub(super) fn project(&mut self) -> bool {
         let here = self.run.stepper.current_point();
         let mut y = here.y.clone();
@@ -371,8 +372,8 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         is_near
     }
 
-    /// Returns the state at `t` (s) inside the last step. It is interpolated if the interior
-    /// `is_told` and the step crossed no surface.
+    /// Returns the state at `t` (s) inside the last step. It is interpolated if `is_told` is true and the step
+    /// crossed no surface.
     fn inside(&mut self, t: f64, is_told: bool) -> Result<Vec<f64>, SolveError> {
         if is_told && let Some(state) = self.run.stepper.interpolated(self.watched, t) {
             return Ok(state);
@@ -387,14 +388,15 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         })
     }
 
-    /// Takes an accepted step of `length` s that leads beyond the end of the call back.
+    /// Undoes an accepted step of `length` s that extends beyond the end of the call.
     fn refuse_passage(&mut self, length: f64) {
         self.run.stepper.take_back();
         self.run.stepper.set_step(length);
         self.trajectory.statistics.rejected_steps += 1;
     }
 
-    /// Takes the samples inside a step from `begin` (s) that leads beyond the end of the call, and suspends it there.
+    /// Stores the samples inside a step from `begin` (s) that extends beyond the end of the call, and makes the
+    /// step pending.
     fn suspend_step(&mut self, begin: f64) -> Result<(), SolveError> {
         check_finite(begin, &self.run.stepper.current_point().y)?;
         let pending = PendingStep {
@@ -406,7 +408,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         self.take_inner_samples(pending, self.end.next_up())
     }
 
-    /// Accepts the last step, from `begin` (s).
+    /// Accepts the last step, which starts at `begin` (s).
     pub(super) fn accept(&mut self, begin: f64) -> Result<(), SolveError> {
         check_finite(begin, &self.run.stepper.current_point().y)?;
         let t = self.run.stepper.current_point().t;
@@ -418,7 +420,8 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         })
     }
 
-    /// Takes the samples inside a step, replaces its end by the projected state, and enters the regime there.
+    /// Stores the samples inside a step, replaces its end by the projected state, and enters the regime at the
+    /// end.
     fn accept_with(&mut self, step: PendingStep) -> Result<(), SolveError> {
         self.run.stepper.settle(self.run.projected.is_some());
         self.run.follows_jump = false;
@@ -438,7 +441,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         self.enter_regime()
     }
 
-    /// Takes the samples before `end` (s) inside the last step.
+    /// Stores the samples before `end` (s) inside the last step.
     fn take_inner_samples(&mut self, step: PendingStep, end: f64) -> Result<(), SolveError> {
         while let Some(sample) = self.next_sample().filter(|sample| *sample < end) {
             let state = self.state_inside(step, sample)?;
@@ -455,7 +458,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         Ok(state)
     }
 
-    /// Takes the samples up to the present point.
+    /// Stores the samples up to the current point.
     fn take_samples_here(&mut self) {
         let t = self.run.stepper.current_point().t;
         while let Some(sample) = self.next_sample().filter(|sample| *sample <= t) {
@@ -470,7 +473,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         self.trajectory.states.push(state);
     }
 
-    /// Changes the state where it jumps with inputs.
+    /// Applies jumps of the state at a breakpoint of the inputs.
     fn pass_breakpoint(&mut self) {
         let here = self.run.stepper.current_point();
         if !self.watched.has_breakpoint_at(here.t) {
@@ -492,9 +495,9 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         self.run.stepper.restart(point, step);
     }
 
-    /// Returns true if samples inside the last step, which ends at `t` (s), are interpolated. Beside switching surfaces
-    /// states are to be right to the last digit: the interior is tested if there are many samples, because a test takes as
-    /// long as a sample that is not interpolated.
+    /// Returns true if samples inside the last step, which ends at `t` (s), are interpolated. Near switching
+    /// surfaces states must be accurate to rounding. The dense output is tested only if there are many samples,
+    /// because a test takes as long as a sample without interpolation.
     fn is_interior_told(&mut self, t: f64) -> bool {
         let least = if self.watched.has_guards() { MANY } else { 0 };
         let last = self.samples.get(self.taken + least);
@@ -513,7 +516,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         self.samples.get(self.taken).copied()
     }
 
-    /// Records the jump of the state at an event, unless it is below the tolerance. Returns true if it did.
+    /// Records the jump of the state at an event if it exceeds the tolerance. Returns true if it does.
     pub(super) fn record_jump(&mut self, t: f64, before: &[f64], after: &[f64]) -> bool {
         let magnitudes = self.run.stepper.magnitudes();
         let changes = before.iter().zip(after).map(|(a, b)| b - a);
@@ -525,7 +528,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         is_jump
     }
 
-    /// Finds the surfaces here near which the rates grow as a root.
+    /// Finds the surfaces near the current point at which the rates grow as a root.
     fn update_root_bands(&mut self) {
         if self.watched.has_guards() {
             let stepper = &self.run.stepper;
@@ -535,8 +538,8 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         }
     }
 
-    /// Enters the regime of the point here, and records the surfaces whose mode changed and those that returned the motion
-    /// with a jump.
+    /// Enters the regime at the current point. Records the surfaces whose mode changed and those whose event
+    /// reversed the motion with a jump.
     fn enter_regime(&mut self) -> Result<(), SolveError> {
         let here = self.run.stepper.current_point();
         let t = here.t;
@@ -557,13 +560,13 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
                 self.check_switch_rate(t, guard)?;
             }
         }
-        // Rates that lead back from beyond a surface must not keep trials from getting there.
+        // With sides that lead back to a surface, trial steps could not reach the other side of it.
         self.watched.fix_sides(true);
         Ok(())
     }
 }
 
-/// Returns true if a state is made of numbers, after a step from `begin` (s).
+/// Returns an error if a state after a step from `begin` (s) is not finite.
 fn check_finite(begin: f64, state: &[f64]) -> Result<(), SolveError> {
     match state.iter().position(|entry| !entry.is_finite()) {
         Some(state) => Err(SolveError::NotFinite { t: begin, state }),

@@ -12,25 +12,25 @@ pub const NOT_POSITIVE_DEFINITE_MESSAGE: &str = "the mass matrix is not positive
 pub enum SolveError {
     /// The request is invalid.
     Request {
-        /// Cause and cure.
+        /// Fault of the request and its correction.
         problem: String,
     },
-    /// A rate is not finite at this time, or after the shortest step from it.
+    /// A rate is not finite at this time, or after the shortest step from this time.
     NotFinite {
         /// Time, s.
         t: f64,
         /// Index of the state.
         state: usize,
     },
-    /// The mass matrix is not positive definite on the motion.
+    /// The mass matrix is not positive definite at a state of the motion.
     NotPositiveDefinite {
         /// Time, s.
         t: f64,
-        /// Index of the coordinate whose pivot, after elimination of those before it, is not
-        /// positive.
+        /// Index of the coordinate whose pivot is not positive after the elimination of the preceding
+        /// coordinates.
         coordinate: usize,
     },
-    /// The shortest step exceeds the tolerance.
+    /// The shortest step does not meet the tolerance.
     StepTooSmall {
         /// Time reached, s.
         t: f64,
@@ -39,26 +39,26 @@ pub enum SolveError {
         /// Index of the state that changes fastest relative to its size.
         state: usize,
     },
-    /// The system is stiff: stability keeps the steps so short that the limit on steps would be
+    /// The system is stiff: stability limits the step size, and the limit on the number of steps would be
     /// exceeded.
     Stiff {
         /// Time reached, s.
         t: f64,
         /// Index of the state that decays fastest.
         state: usize,
-        /// Time of that decay, s.
+        /// Decay time of this state, s.
         within: f64,
         /// Estimated number of further steps.
         steps: f64,
     },
-    /// The system is stiff at a switching surface: trial states of an explicit method overshoot it
-    /// unless the steps are so short that they exceed the limit on steps.
+    /// The system is stiff at a switching surface: an explicit method overshoots it unless the steps are very
+    /// short. They would exceed the limit on the number of steps.
     StiffAtSurface {
         /// Time, s.
         t: f64,
         /// Index of the switching function.
         guard: usize,
-        /// Average step between two approaches to the surface, s.
+        /// Average time between two approaches to the surface, s.
         within: f64,
         /// Estimated number of further steps.
         steps: f64,
@@ -106,7 +106,7 @@ impl SolveError {
         }
     }
 
-    /// Returns the message with cause, time, place and cure.
+    /// Returns the message: cause, time, state or surface, and remedy.
     pub fn format_named(&self, names: &Names<'_>) -> String {
         match self {
             Self::Request { problem } => problem.clone(),

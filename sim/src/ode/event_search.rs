@@ -1,29 +1,29 @@
-//! The search for surfaces that a motion crosses inside a step.
+//! Search for surfaces that a motion crosses inside a step.
 //!
-//! The interior of a step is a polynomial. Interval arithmetic bounds each switching function and its
-//! rate over a piece of the step; with its values at both ends this bounds the function from below
-//! (mean-value form). Pieces in which a function may be negative are halved, so that no crossing of
-//! the interpolated motion is missed, however short. It does not depend on samples.
+//! The dense output of a step is a polynomial. Interval arithmetic bounds each switching function and its rate
+//! over a piece of the step. Together with the values at both ends, this gives a lower bound of the function
+//! (mean-value form). Pieces in which a function may be negative are halved. Therefore no crossing of the
+//! interpolated motion is missed, however short, and the result does not depend on samples.
 
 use eomgen_codegen::program::evaluator::Enclosure;
 use eomgen_model_spec::interval::Interval;
 
 use super::bernstein::Piece;
 
-/// Negative values up to this part of the largest one in a step may be rounding.
+/// Negative values up to this fraction of the largest value in a step count as rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// The same in widths of the bounds at one state. Rounding of a state grows by this in the control
-/// points of the interior.
+/// Negative values up to this multiple of the width of the bounds at a single state count as rounding. The
+/// rounding of a state grows by this factor in the control points of the dense output.
 const MAX_ROUNDING_GROWTH: f64 = 100.0;
 
-/// Halvings of a step; a shorter stay beyond a surface is not resolved.
+/// Maximum number of halvings of a step; a shorter excursion beyond a surface is not resolved.
 const MAX_HALVINGS: i32 = 40;
 
-/// Pieces that are examined in one step. Throws at a disc need 30.
+/// Maximum number of examined pieces of one step. Throws at a disc need 30.
 const MAX_PIECES: usize = 500;
 
-/// Evaluations that the search needs.
+/// Switching functions of a step, as the search evaluates and bounds them.
 pub trait Functions {
     /// Returns the switching functions at state `y`, at a fraction `part` of the step.
     fn evaluate(&mut self, part: f64, y: &[f64]) -> Vec<f64>;
@@ -35,11 +35,11 @@ pub trait Functions {
 /// Crossing of surfaces inside a step.
 #[derive(Debug, PartialEq)]
 pub struct Crossing {
-    /// Part of the step at which the motion is on the near side.
+    /// Fraction of the step at which the motion is on the near side.
     pub near: f64,
-    /// Part of the step at which it is beyond.
+    /// Fraction of the step at which the motion is beyond the surfaces.
     pub beyond: f64,
-    /// Functions of these surfaces.
+    /// Indices of the switching functions.
     pub guards: Vec<usize>,
 }
 
@@ -51,9 +51,9 @@ struct Task {
     guards: Vec<usize>,
 }
 
-/// Searches for the first crossing in a step of `length` s whose interior is `piece`, given the
-/// `sides` of the guards to examine (-1 or 1; others are 0), the bounds of the functions over the step,
-/// and the functions at both ends. Guards are added to `undecided` if their bounds are too wide.
+/// Searches for the first crossing in a step of `length` s whose dense output is `piece`. `sides` are -1 or 1
+/// for the guards to examine and 0 for the others. Further arguments are the bounds of the functions over the
+/// step and the functions at both ends. Guards whose bounds are too wide are added to `undecided`.
 pub fn find_crossing(
     (piece, length): (Piece, f64),
     (sides, mut bounds): (&[f64], Vec<Enclosure>),
@@ -138,8 +138,8 @@ pub fn find_crossing(
     None
 }
 
-/// Returns a lower bound of a function with these bounds over a `duration` in s and these values at
-/// its ends.
+/// Returns a lower bound of a function with these bounds over a `duration` in s and with these values at its
+/// ends.
 fn lower_bound(bounds: Enclosure, (start, end): (f64, f64), duration: f64) -> f64 {
     let Interval {
         low: falling,
@@ -149,7 +149,7 @@ fn lower_bound(bounds: Enclosure, (start, end): (f64, f64), duration: f64) -> f6
         () if falling >= 0.0 => start,
         () if rising <= 0.0 => end,
         () if falling.is_infinite() || rising.is_infinite() => f64::NEG_INFINITY,
-        // The least value is where the steepest fall from the start meets that to the end.
+        // The lower bound is the intersection of the steepest descents from both ends.
         () => {
             let fall = start * rising - end * falling + falling * rising * duration;
             (fall / (rising - falling)).min(start).min(end)

@@ -9,7 +9,7 @@ pub enum SurfaceMode {
     Negative,
     /// The motion is on the side where the switching function is positive.
     Positive,
-    /// The surface holds the motion, as friction at rest does.
+    /// The surface holds the motion, like friction at rest.
     Held,
     /// The bodies of a contact touch and press against each other.
     Closed,
@@ -40,8 +40,8 @@ impl SurfaceMode {
     }
 }
 
-/// An event at a switching surface. Its mode is the same before and after if the surface returned the motion, as an
-/// impact does.
+/// An event at a switching surface. The modes before and after are equal if the surface reverses the motion, as
+/// an impact does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event {
     /// Time, s.

@@ -1,4 +1,4 @@
-//! The examination of an accepted step: surfaces that the motion crossed inside it.
+//! Examination of an accepted step for surfaces that the motion crossed inside it.
 
 use eomgen_codegen::program::evaluator::Enclosure;
 
@@ -11,11 +11,12 @@ use super::stepper::Stepper;
 use super::system::System;
 use super::watch::WatchedSystem;
 
-/// Shortest step, relative to the time, in which times can be told apart.
+/// Length of the shortest step that is examined, relative to the time. In shorter steps, rounding makes times
+/// equal.
 const SHORTEST_SEEN: f64 = 1e-12;
 
 impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
-    /// Examines an accepted step of `length` s, which may be taken back and shortened first.
+    /// Examines an accepted step of `length` s. If `may_shorten`, the step may be undone and shortened first.
     pub(super) fn look_at(&mut self, length: f64, may_shorten: bool) -> Accepted {
         let found = self.find_crossing_inside(length, may_shorten);
         match found {
@@ -29,8 +30,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         Accepted::Continues
     }
 
-    /// Searches the last step, of `length` s, for crossings. Functions with bounds are searched by
-    /// these, others by samples.
+    /// Searches the last step, of `length` s, for crossings. Functions with bounds are searched by interval
+    /// arithmetic, the others by samples.
     fn find_crossing_inside(&mut self, length: f64, may_shorten: bool) -> Accepted {
         let (start, end) = (
             self.run.stepper.step_start().clone(),
@@ -86,12 +87,12 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             }
             (Some(crossing), Accepted::Continues) => Accepted::Crossed(crossing),
             (None, Accepted::Crossed(crossing)) => Accepted::Crossed(crossing),
-            // The end may be beyond a surface by rounding.
+            // The end of the step may be beyond a surface by rounding.
             (None, Accepted::Continues) => self.find_change_over_step(),
         }
     }
 
-    /// Finds the surfaces between the ends of the last step.
+    /// Finds the surfaces that separate the ends of the last step.
     fn find_change_over_step(&self) -> Accepted {
         let end = self.run.stepper.current_point();
         let values = self.watched.evaluate_guards_before(end.t, &end.y);
@@ -132,8 +133,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         Accepted::Continues
     }
 
-    /// Evaluates the switching functions at [`PARTS`] of the last step. Returns `None` if the method
-    /// does not interpolate it.
+    /// Evaluates the switching functions at [`PARTS`] of the last step. Returns `None` if the method provides
+    /// no interpolation.
     fn sample_guards(&mut self) -> Option<[Vec<f64>; 5]> {
         let (start, end) = (
             self.run.stepper.step_start().clone(),
@@ -152,9 +153,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         Some(values)
     }
 
-    /// Takes back an accepted step of `length` s that does not resolve the switching functions, and
-    /// shortens it; else limits the next step so that it resolves them. Returns true if it was taken
-    /// back.
+    /// Undoes an accepted step of `length` s and shortens it if it does not resolve the switching functions;
+    /// otherwise limits the next step so that it resolves them. Returns true if the step was undone.
     fn shorten_unresolved(&mut self, values: &[Vec<f64>; 5], sides: &[f64], length: f64) -> bool {
         let side = |guard: usize| sides[guard];
         let mut longest = self.run.resolution.longest(values, side, &[]);
@@ -191,10 +191,10 @@ fn find_sign_change(values: &[Vec<f64>; 5], sides: &[f64]) -> Option<Crossing> {
     })
 }
 
-/// The last step, whose interior is searched.
+/// Last step, whose dense output is searched.
 struct Step<'a, S: System + ?Sized> {
     watched: &'a WatchedSystem<'a, S>,
-    /// Begin and end, s.
+    /// Start and end, s.
     times: (f64, f64),
     state: Vec<Enclosure>,
 }

@@ -1,41 +1,42 @@
-//! A motion whose steps a solver of the caller makes, as in model exchange.
+//! A motion with steps made by an external solver, as in FMI model exchange.
 
 use super::events::SurfaceMode;
 use super::point::Point;
 use super::system::System;
 use super::watch::{Record, WatchedSystem};
 
-/// Value of a switching function beyond its surface at which its event function changes its sign, relative to the largest
-/// value so far. Event functions are not 0 after their event.
+/// Value of a switching function beyond its surface at which its event function changes sign, relative to the
+/// largest value so far. Therefore event functions are not 0 after their event.
 const HYSTERESIS_FRACTION: f64 = 1e-10;
 
-/// The same, absolute, before the first value is known and for distances of impacts.
+/// Smallest absolute hysteresis: used before the first value is known, and for distances of impacts.
 const MIN_HYSTERESIS: f64 = 1e-20;
 
-/// Growth of the time back from a surface until a point is on its near side.
+/// Growth factor of the time back from a surface in the search for a point on its near side.
 const GROWTH: f64 = 4.0;
 
-/// Drift of a completed step from constraints and surfaces that hold, relative to the largest value of a state and in
-/// tolerances, beyond which an event corrects the state.
+/// Drift from constraints and holding surfaces at the end of a step, relative to the largest value of a state
+/// and in tolerances. A larger drift causes an event that corrects the state.
 const MAX_DRIFT_TOLERANCES: f64 = 100.0;
 
-/// A motion whose steps a solver of the caller makes. Between events its rates are smooth, also beyond a surface; at an
-/// event one of the event functions changes its sign, and the caller calls [`ExternalMotion::apply_event`].
+/// A motion with steps made by an external solver. Its rates are smooth between events, also beyond a surface.
+/// At an event one of the event functions changes sign, and the caller calls [`ExternalMotion::apply_event`].
 pub struct ExternalMotion<S> {
     system: S,
     record: Record,
-    /// Last point at which no surface was passed.
+    /// Last point at which no surface had been crossed without its event.
     near: Point,
-    /// Largest value of each switching function.
+    /// Largest magnitude of each switching function.
     reaches: Vec<f64>,
-    /// Largest value of each state.
+    /// Largest magnitude of each state.
     sizes: Vec<f64>,
     tolerance: f64,
 }
 
 impl<S: System> ExternalMotion<S> {
-    /// Starts at a time (s) and a state. Surfaces on which the motion is hold it if they can; those of `modes`, one per
-    /// switching function, also if the state is beside them by rounding. The tolerance is relative.
+    /// Starts at a time (s) and a state. A surface on which the state lies holds the motion if it can. Surfaces
+    /// that hold in `modes`, one per switching function, hold it also if the state is beside them by rounding.
+    /// The tolerance is relative.
     pub fn start(system: S, (t, y): (f64, &[f64]), modes: &[SurfaceMode], tolerance: f64) -> Self {
         system.assume_modes(modes);
         let record = {
@@ -65,12 +66,12 @@ impl<S: System> ExternalMotion<S> {
         &mut self.system
     }
 
-    /// Calls `act` with the system, whose surfaces keep the sides of the motion.
+    /// Calls `act` with the system while the surfaces keep the sides of the motion.
     pub fn with_fixed_sides<T>(&mut self, act: impl FnOnce(&S) -> T) -> T {
         self.with_watched(|watched| act(watched.system()))
     }
 
-    /// Writes the rates at a time (s) and a state, in the present modes of the surfaces.
+    /// Writes the rates at a time (s) and a state, in the current modes of the surfaces.
     pub fn rates(&mut self, t: f64, y: &[f64], out: &mut [f64]) {
         self.with_watched(|watched| watched.rates(t, y, out));
     }
@@ -107,8 +108,8 @@ impl<S: System> ExternalMotion<S> {
         modes
     }
 
-    /// Accepts a step that ends at a time (s) and a state. Returns true if an event must follow: a mode changed, or the
-    /// state drifted from constraints or surfaces that hold it.
+    /// Accepts a step that ends at a time (s) and a state. Returns true if an event must follow, because a mode
+    /// changed or the state drifted from constraints or holding surfaces.
     pub fn complete_step(&mut self, t: f64, y: &[f64]) -> bool {
         let before = self.modes();
         let mut projected = y.to_vec();
@@ -132,8 +133,8 @@ impl<S: System> ExternalMotion<S> {
         has_drifted(y, &projected, &self.sizes, most) || self.modes() != before
     }
 
-    /// Applies the events at a time (s) and a state, which may be beyond surfaces or have new inputs. Returns true if the
-    /// state changed; it is NaN if the motion cannot continue.
+    /// Applies the events at a time (s) and a state, which may be beyond surfaces or have new inputs. Returns
+    /// true if the state changed. The state is set to NaN if the motion cannot continue.
     pub fn apply_event(&mut self, t: f64, y: &mut [f64]) -> bool {
         let arrived = y.to_vec();
         let last = self.near.clone();
@@ -183,7 +184,7 @@ impl<S: System> ExternalMotion<S> {
         let guards = self.with_watched(|watched| watched.evaluate_guards(t, y));
         let functions = self.reaches.iter_mut().zip(&guards);
         for (size, value) in functions.chain(self.sizes.iter_mut().zip(y)) {
-            // A comparison with NaN is false.
+            // NaN is not stored: a comparison with NaN is false.
             if value.abs() > *size && value.is_finite() {
                 *size = value.abs();
             }
@@ -191,8 +192,8 @@ impl<S: System> ExternalMotion<S> {
     }
 }
 
-/// Updates modes and sides until both agree: a surface that gets another side, such as friction that reverses at an
-/// impact, changes the forces of closed contacts.
+/// Updates modes and sides until both agree. A change of side, such as a reversal of friction at an impact,
+/// changes the forces of closed contacts.
 fn settle_modes<S: System>(watched: &WatchedSystem<'_, S>, t: f64, y: &[f64]) {
     let (mut before, mut after) = (Vec::new(), Vec::new());
     for _ in 0..=watched.sides().len() {
@@ -216,8 +217,8 @@ fn has_drifted(y: &[f64], projected: &[f64], sizes: &[f64], fraction: f64) -> bo
     })
 }
 
-/// Returns a point on the near side of the surfaces `passed`, along the rates back from a point beyond them; the `last`
-/// point of the motion if there is none in between.
+/// Returns a point on the near side of the surfaces `passed`, along the rates back from a point beyond them;
+/// the `last` point of the motion if no point in between is on the near side.
 fn find_near_point<S: System>(
     watched: &WatchedSystem<'_, S>,
     (t, y): (f64, &[f64]),

@@ -1,13 +1,12 @@
-//! Searches accepted steps for missed crossings: a switching function that changes sign and changes
-//! back between the times at which the step evaluated it.
+//! Search of accepted steps for missed crossings: a switching function that changes sign and changes back
+//! between the times at which the step evaluated it.
 //!
-//! For each switching function, a parabola through the lowest of five samples and its two
-//! neighbours predicts the minimum. If the predicted minimum is near or below zero, the search
-//! evaluates the function there on the motion and refines the parabola until no lower value is to
-//! be expected. This is the search for turning points of the event functions that Shampine and
-//! Thompson recommend ("Event location for ordinary differential equations", Computers and
-//! Mathematics with Applications 39, 2000), with a parabola instead of the interpolant's
-//! polynomial. The search misses functions with more than one turning point in a step.
+//! For each switching function, a parabola through the lowest of five samples and its two neighbours predicts
+//! the minimum. If the predicted minimum is near or below zero, the search evaluates the function there on the
+//! motion and refines the parabola until no lower value is expected. Shampine and Thompson recommend this
+//! search for turning points of event functions ("Event location for ordinary differential equations",
+//! Computers and Mathematics with Applications 39, 2000), with the polynomial of the interpolant instead of a
+//! parabola. The search misses functions with more than one turning point in a step.
 
 use super::resolution::PARTS;
 use super::stepper::{Point, Stepper};
@@ -17,32 +16,30 @@ use super::watch::WatchedSystem;
 /// The search evaluates a predicted minimum if it is below this fraction of the lowest known value.
 const WORTH_A_LOOK: f64 = 0.5;
 
-/// Bound on the error of a parabola through three equally spaced values, as a fraction of the third
-/// difference.
+/// Bound on the error of a parabola through three equally spaced values, as a fraction of the third difference.
 const DOUBT: f64 = 0.1;
 
 /// Rounding of a switching function, as a fraction of its highest value in the step. Smaller
 /// negative values count as positive.
 const ROUNDING: f64 = 1e-12;
 
-/// Maximum evaluations for one switching function in one step. The search converges in two or
-/// three.
+/// Maximum number of evaluations of one switching function in one step. The search converges in two or three.
 const MOST_LOOKS: u32 = 8;
 
-/// A time in a step, as a fraction of its length, and the switching function there, positive on the
-/// side of the start.
+/// A time in a step, as a fraction of its length, and the switching function at this time, positive on the side
+/// of the start.
 #[derive(Clone, Copy)]
 struct Sample {
     at: f64,
     value: f64,
 }
 
-/// Returns the first switching function found beyond its surface inside the last accepted step, and
-/// the time since the start of the step, s.
+/// Returns the first switching function found beyond its surface inside the last accepted step, and the time of
+/// this crossing since the start of the step, s.
 ///
-/// `sides` are 0 for functions to ignore, and `values` are the functions at [`PARTS`] of the step.
-/// `trials` counts the states that the stepper computes. A state that overflows or leaves the
-/// domain of the rates counts as beyond the surface.
+/// `sides` are 0 for ignored functions, and `values` are the functions at [`PARTS`] of the step. `trials`
+/// counts the states that the stepper computes. A state that overflows or leaves the domain of the rates counts
+/// as beyond the surface.
 pub fn find_passed_surface<S: System + ?Sized, M: Stepper>(
     (watched, stepper): (&WatchedSystem<'_, S>, &mut M),
     sides: &[f64],
@@ -75,9 +72,9 @@ pub fn find_passed_surface<S: System + ?Sized, M: Stepper>(
     search(watched, end - begin, sides, samples, &mut after)
 }
 
-/// Returns the first switching function found beyond its surface in a step of `length` s, and the
-/// time since its start, s. `samples` returns the samples of a function on its side and the error
-/// of their parabola. `after` computes the point at a time since the start, s.
+/// Returns the first switching function found beyond its surface in a step of `length` s, and the time since
+/// its start, s. `samples` returns the samples of a function on its side and the error of their parabola.
+/// `after` computes the point at a time since the start, s.
 fn search<S: System + ?Sized>(
     watched: &WatchedSystem<'_, S>,
     length: f64,
@@ -131,7 +128,7 @@ fn next_look(samples: &[Sample; 3], doubt: f64) -> Option<f64> {
     let [a, b, c] = *samples;
     let lowest = a.value.min(b.value).min(c.value);
     if lowest < 0.0 {
-        // Only the middle sample, which is interpolated, can be negative: evaluate the motion.
+        // Only the middle sample can be negative. It is interpolated, so the motion itself is evaluated.
         return Some(b.at);
     }
     let before = (b.value - a.value) / (b.at - a.at);
@@ -146,7 +143,7 @@ fn next_look(samples: &[Sample; 3], doubt: f64) -> Option<f64> {
     (is_inside && value < (WORTH_A_LOOK * lowest).max(doubt)).then_some(at)
 }
 
-/// Returns the lowest of the four samples with its neighbours.
+/// Returns the lowest of the four samples and its two neighbours.
 fn around(samples: [Sample; 3], new: Sample) -> [Sample; 3] {
     let [a, b, c] = samples;
     if new.at == b.at {

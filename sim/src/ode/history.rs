@@ -1,5 +1,5 @@
-//! History of Adams' method: the rates at its last points as modified divided differences, and the
-//! resulting weights for a step of any length.
+//! History of the Adams method: modified divided differences of the rates at its last points, and the weights
+//! for a step of any length.
 //!
 //! The formulas are those of Krogh in the notation of Hairer, Norsett and Wanner, "Solving Ordinary
 //! Differential Equations I", section III.5, with the last point x_n, the new one x, and tau = x -
@@ -14,38 +14,37 @@
 //! Here g_j is the integral of the j-th Newton polynomial over the step. `adams` selects length and
 //! order.
 
-/// The highest order of the predictor.
+/// Highest order of the predictor.
 pub const MAX_ORDER: usize = 12;
 
-/// The differences kept: two more than the highest order, to judge whether a higher one
-/// would do better.
+/// Number of stored differences: two more than the highest order, for the decision about a higher order.
 const DIFFERENCES: usize = MAX_ORDER + 2;
 
-/// The rates at the last points.
+/// Rates at the last points.
 #[derive(Clone)]
 pub struct History {
     /// x_n - x_(n-j), s.
     ages: Vec<f64>,
-    /// Phi_j, per point; as many as there are ages.
+    /// Phi_j for each point; as many points as ages.
     differences: Vec<Vec<f64>>,
 }
 
-/// The coefficients of a step.
+/// Coefficients of a step.
 pub struct Weights {
-    /// The length of the step, s.
+    /// Length of the step, s.
     pub length: f64,
     beta: [f64; DIFFERENCES],
     g: [f64; DIFFERENCES],
 }
 
 impl Weights {
-    /// g_j.
+    /// Returns g_j.
     pub fn g(&self, j: usize) -> f64 {
         self.g.get(j).copied().unwrap_or(0.0)
     }
 
-    /// The error, in s, that a unit of the q-th new difference means for order q: what
-    /// the q-th corrector adds to the one before it.
+    /// Returns the error (s) of order q per unit of the q-th new difference: the contribution that the q-th
+    /// corrector adds to the preceding one.
     pub fn error(&self, q: usize) -> f64 {
         q.checked_sub(1).map_or(0.0, |before| {
             self.length * (self.g(q) - self.g(before)).abs()
@@ -54,7 +53,7 @@ impl Weights {
 }
 
 impl History {
-    /// No points.
+    /// Creates an empty history.
     pub fn new() -> Self {
         Self {
             ages: Vec::with_capacity(DIFFERENCES),
@@ -62,7 +61,7 @@ impl History {
         }
     }
 
-    /// The number of points known.
+    /// Returns the number of stored points.
     pub fn points(&self) -> usize {
         self.ages.len()
     }
@@ -73,18 +72,18 @@ impl History {
         self.differences.clear();
     }
 
-    /// Begins with one point and its rates.
+    /// Starts with one point and its rates.
     pub fn begin(&mut self, rates: &[f64]) {
         self.clear();
         self.ages.push(0.0);
         self.differences.push(rates.to_vec());
     }
 
-    /// The coefficients of a step of `length` s.
+    /// Returns the coefficients of a step of `length` s.
     pub fn weights(&self, length: f64) -> Weights {
         let mut beta = [0.0; DIFFERENCES];
         let mut g = [0.0; DIFFERENCES];
-        // Row j of the scheme: entry q is c_(j,q+1), so that g_j = c_(j,1).
+        // Row j of the scheme: entry q is c_(j,q+1), so g_j = c_(j,1).
         let mut row: [f64; DIFFERENCES + 1] = std::array::from_fn(|q| 1.0 / (q + 1) as f64);
         let mut product = 1.0;
         for (j, (beta, g)) in beta.iter_mut().zip(&mut g).enumerate() {
@@ -103,7 +102,7 @@ impl History {
         Weights { length, beta, g }
     }
 
-    /// y(x) - y_n of the predictor of this order, added to `y`.
+    /// Adds the predictor of this order, y(x) - y_n, to `y`.
     pub fn predict(&self, weights: &Weights, order: usize, y: &mut [f64]) {
         for (j, difference) in self.differences.iter().enumerate().take(order) {
             let factor = weights.length * weights.g[j] * weights.beta[j];
@@ -111,37 +110,37 @@ impl History {
         }
     }
 
-    /// Turns the rates at the new point into its `order`-th modified difference: how far
-    /// they are from the continuation of the rates before.
+    /// Replaces the rates at the new point by their modified difference of this `order`: the deviation from the
+    /// extrapolation of the earlier rates.
     pub fn write_prediction_difference(&self, weights: &Weights, order: usize, rates: &mut [f64]) {
         for (j, difference) in self.differences.iter().enumerate().take(order) {
             add(-weights.beta[j], difference, rates);
         }
     }
 
-    /// beta_j Phi_j, entry by entry; zeros where it is not known.
+    /// Returns the entries of beta_j Phi_j; zeros if unknown.
     pub fn continued_difference(&self, weights: &Weights, j: usize) -> impl Iterator<Item = f64> {
         let beta = weights.beta.get(j).copied().unwrap_or(0.0);
         self.difference(j).map(move |difference| beta * difference)
     }
 
-    /// Phi_j, entry by entry; zeros where it is not known.
+    /// Returns the entries of Phi_j; zeros if unknown.
     pub fn difference(&self, j: usize) -> impl Iterator<Item = f64> {
         let known = self.differences.get(j).map_or(&[][..], Vec::as_slice);
         known.iter().copied().chain(std::iter::repeat(0.0))
     }
 
-    /// The part of the `order`-th Newton polynomial's integral that belongs to `inside`,
-    /// which shares its start with the step of `length` s: what the new difference adds
-    /// to y there, in s.
+    /// Returns the contribution of a unit of the new difference to y at the end of `inside`, s. This is a part
+    /// of the integral of the Newton polynomial of this `order`. `inside` starts with the step of `length` s
+    /// and ends within it.
     pub fn correction_inside(&self, inside: &Weights, order: usize, length: f64) -> f64 {
         let ratios = self.ages.iter().take(order);
         let ratios = ratios.map(|age| (inside.length + age) / (length + age));
         inside.length * inside.g(order) * ratios.product::<f64>()
     }
 
-    /// Becomes what `before` is after a step with these weights to a point with these
-    /// rates; keeps the differences that a step of the next higher order needs.
+    /// Sets this history to `before` extended by a step with these weights to a point with these rates. Keeps
+    /// the differences for a step of the next higher order.
     pub fn follow(&mut self, before: &Self, weights: &Weights, order: usize, rates: &[f64]) {
         let points = (before.points() + 1).min(order + 2).min(DIFFERENCES);
         self.ages.clear();
@@ -160,7 +159,7 @@ impl History {
     }
 }
 
-/// y += factor x.
+/// Adds factor x to y.
 fn add(factor: f64, x: &[f64], y: &mut [f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y += factor * x;
@@ -171,7 +170,7 @@ fn add(factor: f64, x: &[f64], y: &mut [f64]) {
 mod tests {
     use super::*;
 
-    /// Integrates y' = f(t) from 0 with uneven steps and a fixed `order`, from exact initial
+    /// Integrates y' = f(t) from 0 with steps of different lengths and a fixed `order`, from exact initial
     /// values.
     fn integral(f: impl Fn(f64) -> f64, exact: impl Fn(f64) -> f64, order: usize) -> (f64, f64) {
         let mut history = History::new();
@@ -203,9 +202,9 @@ mod tests {
             let power = order as i32;
             let exact = |t: f64| t.powi(power + 1) / f64::from(power + 1);
             let (t, y) = integral(|t| t.powi(power), exact, order);
-            // Rounding in differences of `order` neighbours, a few digits for the highest.
+            // Rounding in differences of `order` neighbouring values: a few digits for the highest order.
             assert!((y / exact(t) - 1.0).abs() < 1e-11, "order {order}: {y}");
-            // One degree higher is not exact, so the test depends on the order.
+            // The method is not exact for the next degree, so the test detects a wrong order.
             let exact = |t: f64| t.powi(power + 2) / f64::from(power + 2);
             let (t, y) = integral(|t| t.powi(power + 1), exact, order);
             assert!((y / exact(t) - 1.0).abs() > 1e-13, "order {order}: {y}");

@@ -10,15 +10,15 @@ use super::system::System;
 /// Number of switches over which their rate is averaged.
 const SWITCHES_AVERAGED: usize = 256;
 
-/// Number of approaches to surfaces over which steps of an explicit method are judged.
+/// Number of approaches to a surface after which the steps of an explicit method are checked for stiffness.
 const APPROACHES: usize = 64;
 
-/// Largest number of crossings among [`APPROACHES`] if stiffness makes steps overshoot. In 120
-/// machines of the study `grazing`, 56 or more approaches crossed in every window. In flows through
-/// orifices that settle, 16 or fewer crossed in 222 of 230 windows.
+/// Largest number of crossings among [`APPROACHES`] that counts as overshoot due to stiffness. In 120 machines
+/// of the study `grazing`, 56 or more approaches crossed the surface in every window. In flows through orifices
+/// that settle, 16 or fewer crossed it in 222 of 230 windows.
 const MOST_CROSSED: usize = 32;
 
-/// Smallest time for [`Driver::shortest_step`], as a fraction of the span.
+/// Lower bound of the time in [`Driver::shortest_step`], as a fraction of the span.
 const SMALLEST_TIME: f64 = 1e-6;
 
 impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
@@ -50,8 +50,9 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         Ok(())
     }
 
-    /// Returns the error of a motion that stayed on a surface over a time span (s). Steps of an explicit method
-    /// overshoot a surface at which rates are continuous; forces lead back to one at which they jump.
+    /// Returns the error for a motion that stayed near a surface over a time span (s). If the rates are
+    /// continuous at the surface, steps of an explicit method overshot it. If they jump, the rates on both
+    /// sides point towards it.
     fn staying_error(&self, (first, t): (f64, f64), guard: usize) -> SolveError {
         let sticking = SolveError::Sticking { t: first, guard };
         if !M::IS_EXPLICIT {
@@ -73,9 +74,9 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         }
     }
 
-    /// Returns the least frequent of the switching functions with at least a quarter of the recent
-    /// switches, or the most frequent one. A surface that sticks and releases between the switches of another one does not
-    /// chatter.
+    /// Returns the least frequent switching function among those with at least a quarter of the recent
+    /// switches, or the most frequent one if there are none. A surface that sticks and releases between the
+    /// switches of another surface does not chatter.
     fn rarest(&self) -> usize {
         let mut counts = vec![0; self.run.modes.len()];
         for (_, guard) in &self.run.recent {
@@ -103,16 +104,15 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         })
     }
 
-    /// Records an approach to the surface `guard`. Returns an error if steps of an explicit method overshoot
-    /// a surface that the motion does not cross, and the projected number of steps exceeds `max_steps_if_stiff`.
+    /// Records an approach to the surface `guard`. Returns an error if steps of an explicit method overshoot a
+    /// surface that the motion does not cross, and the projected number of steps exceeds `max_steps_if_stiff`.
     pub(super) fn check_approaches(
         &mut self,
         guard: Option<usize>,
         has_crossed: bool,
     ) -> Result<(), SolveError> {
-        // At a surface where the motion reverses, steps are short for some approaches and then
-        // grow. The projection is therefore only used by a caller that can change to an implicit
-        // method.
+        // At a surface where the motion reverses, steps are short for some approaches and then grow. The
+        // projected number is therefore only used if the caller can change to an implicit method.
         let can_change = self.settings.max_steps_if_stiff < self.settings.max_steps;
         if !M::IS_EXPLICIT || !can_change {
             return Ok(());
@@ -146,7 +146,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         })
     }
 
-    /// Number of steps tried so far.
+    /// Returns the number of steps tried so far.
     fn steps(&self) -> u64 {
         let work = &self.trajectory.statistics;
         work.steps + work.rejected_steps + work.trial_steps

@@ -1,5 +1,5 @@
-//! The location of an event: the root of a switching function on the interior of a step, then steps from its
-//! start that end at the surface.
+//! Event location: finds the root of a switching function on the dense output of a step, then makes steps from
+//! the start of this step that end at the surface.
 
 use super::driver::Driver;
 use super::error::SolveError;
@@ -7,46 +7,48 @@ use super::event_search::Crossing;
 use super::stepper::{Point, Stepper};
 use super::system::System;
 
-/// Maximum number of iterations of the search on the interior. Bisection needs 52.
+/// Maximum number of iterations of the search on the dense output. Bisection needs 52.
 const MAX_ITERATIONS: u32 = 60;
 
 /// Maximum number of steps to a surface. Newton's method needs one or two.
 const MAX_STEPS: u32 = 60;
 
-/// Longest extrapolation along the rates to a surface, as a part of a step. Its error is of second order.
+/// Longest linear extrapolation to a surface, as a fraction of a step. Its error is of second order.
 const MAX_EXTRAPOLATION: f64 = 1e-8;
 
-/// Shortest distance in time of the points on both sides of a surface, as a part of a step.
+/// Shortest time between the points on both sides of a surface, as a fraction of a step.
 const MIN_DISTANCE: f64 = 1e-13;
 
-/// The same in shortest steps.
+/// Shortest time between the points on both sides of a surface, in shortest steps.
 const MIN_SHORTEST_STEPS: f64 = 2.0;
 
-/// Distance, in shortest steps, at which a surface is crossed without a step that meets the tolerance.
+/// Largest distance from a surface, in shortest steps, at which the motion crosses it without a step that meets
+/// the tolerance.
 const MAX_ROUNDINGS: f64 = 64.0;
 
-/// Growth of this distance until a point is beyond the surface.
+/// Growth factor of this distance until a point is beyond the surface.
 const GROWTH: f64 = 4.0;
 
-/// Part of the way that a step goes to a surface at which the rates are singular.
+/// Fraction of the distance to a surface with singular rates that a step covers.
 const APPROACH: f64 = 0.999;
 
-/// Part of a step for the slope of a switching function.
+/// Fraction of a step used to compute the slope of a switching function.
 const SLOPE_PART: f64 = 1e-5;
 
 /// Result of a location.
 pub(super) enum Located {
-    /// Points on the near side of a surface, if it is not the start of the step, and just beyond it.
+    /// Points on the near side of a surface and just beyond it. The first one is `None` if it is the start of
+    /// the step.
     Crossed(Option<Point>, Point),
-    /// The step ends here, before the surface or on it.
+    /// The step ends at this point, before the surface or on it.
     Touched(Point),
     /// No step leads to the surface.
     Failed,
 }
 
 impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
-    /// Returns the time (s) after the start of the last step at which a function of `crossing` is zero on the
-    /// interior of the step.
+    /// Returns the time (s) since the start of the last step at which a function of `crossing` is zero on the
+    /// dense output.
     pub(super) fn find_interior_root(&mut self, crossing: &Crossing) -> f64 {
         let (begin, end) = (
             self.run.stepper.step_start().t,
@@ -67,7 +69,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         near.1 = value(near.0).unwrap_or(0.0);
         beyond.1 = value(beyond.0).unwrap_or(-1.0);
         if near.1 < 0.0 {
-            // It may be beyond the surface by less than rounding in the step.
+            // The motion may be beyond the surface by less than the rounding in the step.
             beyond = near;
             near = (0.0, value(0.0).unwrap_or(0.0));
         }
@@ -100,8 +102,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         near.0
     }
 
-    /// Locates the surfaces of `crossing` in a step of `length` s that begins here, from a first `guess` (s after the
-    /// start).
+    /// Locates the surfaces of `crossing` in a step of `length` s from the current point. `guess` is the
+    /// estimated time since the start, s.
     pub(super) fn locate(
         &mut self,
         crossing: &Crossing,
@@ -164,7 +166,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         Line { point, rates }
     }
 
-    /// Returns the first point along the rates here that is beyond a surface, at most [`MAX_ROUNDINGS`] shortest
+    /// Returns the first point beyond a surface along the current rates, at most [`MAX_ROUNDINGS`] shortest
     /// steps ahead.
     pub(super) fn find_point_beyond(&self) -> Option<Point> {
         let line = self.line_here();
@@ -181,16 +183,16 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         None
     }
 
-    /// Evaluates the rates just ahead, so that a state without a rate there is known. If the last step ended at the end of
-    /// their domain, no trial evaluated them beyond it.
+    /// Evaluates the rates just ahead, to record a state without a finite rate there. If the last step ended at
+    /// the end of the domain of the rates, no trial evaluated them beyond it.
     pub(super) fn evaluate_ahead(&self) {
         let mut line = self.line_here();
         let Point { t, y } = line.at(MIN_SHORTEST_STEPS * self.shortest_step());
         self.watched.rates(t, &y, &mut line.rates);
     }
 
-    /// Finds points on both sides of the surfaces of `guards` on a line, around an `offset` (s) from its point, in a step
-    /// of `length` s. The lowest of the guards has the `slope` (per s) there.
+    /// Finds points on both sides of the surfaces of `guards` on a line, around an `offset` (s) from its point,
+    /// in a step of `length` s. `slope` (per s) is the rate of the lowest guard there.
     fn cross_on(
         &mut self,
         line: Line,
@@ -212,7 +214,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             };
             let (near, beyond) = (at(offset - distance), at(offset + distance));
             if lowest(&beyond) < 0.0 && beyond.t > begin {
-                // Rounding may move the near side by more than the distance.
+                // Rounding may move the point on the near side by more than the distance.
                 let is_near = near.t <= begin || lowest(&near) >= 0.0;
                 found = Some((Some(near).filter(|near| near.t > begin), beyond));
                 if is_near {
@@ -240,9 +242,9 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         self.cross_slowly((first, length), &slow, line.point)
     }
 
-    /// Goes beyond surfaces at whose rounding a step of `length` s begins, first in a step of `first` s at least. A slow
-    /// motion leads beyond the rounding of a surface in a long time. The step ends at `touched` if it passes other
-    /// surfaces first.
+    /// Crosses surfaces if a step of `length` s starts within their rounding error. The first trial step has at
+    /// least `first` s; a slow motion needs a long step to leave the rounding error. The step ends at `touched`
+    /// if it reaches other surfaces first.
     fn cross_slowly(
         &mut self,
         (first, length): (f64, f64),
@@ -264,14 +266,14 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         }
         let back = touched.t - self.run.stepper.current_point().t;
         if back > 0.0 {
-            // The interior of the step is that of the last trial.
+            // The dense output must belong to this step, so the trial is repeated.
             self.run.stepper.trial(self.watched, back);
         }
         Located::Touched(touched)
     }
 
-    /// Returns the first point beyond surfaces that steps of `near` s do not reach and steps of `after` s pass: the rates
-    /// of this side do not apply beyond it.
+    /// Returns the first point beyond surfaces that steps of `near` s do not reach and steps of `after` s
+    /// cross. The rates of the near side do not apply beyond this point.
     fn end_beyond(
         &mut self,
         (mut near, mut after): (f64, f64),
@@ -294,13 +296,14 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             };
         }
         if !is_last {
-            // The interior of the step is that of the last trial.
+            // The dense output must belong to this step, so the trial is repeated.
             self.run.stepper.trial(self.watched, after);
         }
         Located::Crossed(None, beyond)
     }
 
-    /// Tries a step of `after` s and returns its end, and its side of the surfaces of `guards`.
+    /// Tries a step of `after` s and returns its end, and the side of the surfaces of `guards` on which it
+    /// ends.
     fn try_step(&mut self, after: f64, guards: &[usize]) -> Option<(TrialSide, Point)> {
         self.trajectory.statistics.trial_steps += 1;
         let (point, _) = self.run.stepper.trial(self.watched, after)?;
@@ -313,7 +316,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         Some((side, point))
     }
 
-    /// Goes to a point before a surface, `after` (s) from here, at which the rates are singular.
+    /// Steps to a point before a surface with singular rates, which is `after` s from the current point.
     fn approach(&mut self, guards: &[usize], after: f64) -> Located {
         self.trajectory.statistics.trial_steps += 1;
         let trial = self.run.stepper.trial(self.watched, APPROACH * after);
@@ -327,7 +330,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 /// Side of surfaces on which a trial step ends.
 enum TrialSide {
     Near,
-    /// Beyond these surfaces only.
+    /// Beyond these surfaces, and beyond no others.
     Beyond,
     BeyondOthers,
 }
@@ -348,7 +351,7 @@ impl Line {
         }
     }
 
-    /// Returns the lowest of `guards` at an `offset` in s, each positive on its near side.
+    /// Returns the value of the lowest of `guards` at an `offset` in s; each is positive on its near side.
     fn lowest<S: System + ?Sized, M: Stepper>(
         &self,
         driver: &Driver<'_, S, M>,

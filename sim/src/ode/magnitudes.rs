@@ -1,34 +1,37 @@
-//! The scale on which the errors of a step are measured; see the solver's page.
+//! Scales of the error estimates, which define the allowed error of each component; see the module
+//! documentation of `ode`.
 
 use super::settings::UNMOVED_SIZE_FRACTION;
 
 /// Rounding error of a state, in units of the last place.
 pub const ROUNDING_FACTOR: f64 = 10.0;
 
-/// A step leaves an invariant by at most this number of its allowed errors.
+/// Largest change by a projection onto invariants, in allowed errors of a step, that is consistent with the
+/// error estimate.
 const MOST_STRAYED: f64 = 100.0;
 
-/// The same in units of the last place of the largest corrected state, relative to typical sizes.
+/// Rounding of a projection, in units of the last place of the largest corrected state, relative to typical
+/// sizes.
 const ROUNDING_OF_OTHERS: f64 = 1000.0;
 
-/// The largest magnitude of each component so far, and the tolerance relative to it.
+/// Largest magnitude of each component so far, and the relative tolerance.
 pub struct Magnitudes {
     largest: Vec<f64>,
     /// Smallest magnitude of each component.
     smallest: Vec<f64>,
     /// Typical size of each component.
     typical_sizes: Vec<f64>,
-    /// True for components that corrections onto constraints change, also by less than their rounding.
+    /// True for components that projections onto constraints correct, also by less than their rounding.
     is_corrected: Vec<bool>,
     /// Largest magnitude of a corrected component so far, relative to its typical size.
     most: f64,
     tolerance: f64,
-    /// Rounding of each component in a step, which is no error.
+    /// Rounding error of each component in a step, which the error control ignores.
     roundings: Vec<f64>,
 }
 
 impl Magnitudes {
-    /// Magnitudes of a state where a motion begins, with the typical sizes of its components.
+    /// Initial scales, from the state at the start and the typical sizes of its components.
     pub fn new(y: &[f64], typical_sizes: &[f64], tolerance: f64) -> Self {
         let smallest: Vec<f64> = typical_sizes
             .iter()
@@ -49,9 +52,8 @@ impl Magnitudes {
         }
     }
 
-    /// Returns a copy with no past motion. The scale of each component is at least the rounding
-    /// error of its largest value so far: a component at rest is small, but its rounding error is
-    /// not.
+    /// Returns a copy without history. The scale of each component is at least the rounding error of its
+    /// largest value so far: a component at rest is small, but its rounding error is not.
     pub fn reset_copy(&self) -> Self {
         let roundings = ROUNDING_FACTOR * f64::EPSILON / self.tolerance;
         let largest = self.largest.iter().zip(&self.smallest);
@@ -67,19 +69,19 @@ impl Magnitudes {
         }
     }
 
-    /// The relative tolerance.
+    /// Returns the relative tolerance.
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }
 
-    /// Sets the rounding of each component in a step of `length` s, given those of the rates.
+    /// Sets the rounding error of each component in a step of `length` s from the rounding errors of the rates.
     pub fn set_rate_roundings(&mut self, rates: &[f64], length: f64) {
         for (slot, rate) in self.roundings.iter_mut().zip(rates) {
             *slot = ROUNDING_FACTOR * length * rate;
         }
     }
 
-    /// Takes note of a state reached.
+    /// Updates the largest magnitudes from a state of the trajectory.
     pub fn raise(&mut self, y: &[f64]) {
         for (largest, y) in self.largest.iter_mut().zip(y) {
             *largest = largest.max(y.abs());
@@ -94,7 +96,7 @@ impl Magnitudes {
         self.most = relative.fold(self.most, f64::max);
     }
 
-    /// Takes note of the components of a state `y` that a correction onto constraints changes.
+    /// Marks the components of a state `y` that a projection onto constraints changes.
     pub fn note_correction(&mut self, changed: &[bool], y: &[f64]) {
         for (is_corrected, is_changed) in self.is_corrected.iter_mut().zip(changed) {
             *is_corrected |= is_changed;
@@ -102,10 +104,10 @@ impl Magnitudes {
         self.raise_most(y);
     }
 
-    /// Takes note that states are corrected onto constraints: each that changes then has the rounding of the others that
-    /// change, which is no error of a step.
+    /// Adds the rounding of projections onto constraints: each corrected component has the rounding error of
+    /// the largest one. The error control ignores this rounding.
     pub fn include_rounding_of_others(&mut self) {
-        // Not of `largest`: below a tolerance of 2e-13 that would grow with every call.
+        // `largest` is not raised: below a tolerance of 2e-13 it would grow with every call.
         let rounding = ROUNDING_OF_OTHERS * f64::EPSILON / self.tolerance * self.most;
         let sizes = self.typical_sizes.iter().zip(&self.is_corrected);
         let entries = self.largest.iter_mut().zip(sizes);
@@ -114,7 +116,7 @@ impl Magnitudes {
         }
     }
 
-    /// Returns true if all changes of a state `y` are below some multiple of the allowed error.
+    /// Returns true if all changes of a state `y` by a projection are consistent with the error estimate.
     /// Rounding of other components is ignored for a state that has not moved.
     pub fn allow(&self, changes: impl Iterator<Item = f64>, y: &[f64]) -> bool {
         let rounding = ROUNDING_OF_OTHERS * f64::EPSILON * self.most;
@@ -124,7 +126,7 @@ impl Magnitudes {
         })
     }
 
-    /// Returns changes of a state `y`, those within the tolerance as 0.
+    /// Returns changes of a state `y` with those within the tolerance set to 0.
     pub fn round_to_tolerance(&self, changes: impl Iterator<Item = f64>, y: &[f64]) -> Vec<f64> {
         let changes = changes.zip(self.allowed(y));
         let rounded = changes.map(|(change, allowed)| match change.abs() > allowed {

@@ -5,9 +5,9 @@ use eomgen_model_spec::argument::Argument;
 /// Name of a switching function.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Surface {
-    /// Formula that changes its sign.
+    /// Formula whose sign changes at the surface.
     pub formula: String,
-    /// Quantity that the formula is.
+    /// Kind of quantity that the formula computes.
     pub kind: SurfaceKind,
 }
 
@@ -16,9 +16,10 @@ pub struct Surface {
 pub enum SurfaceKind {
     /// A function of the state.
     Function,
-    /// A speed at which the system does not rest, as under dry friction with a solver that does not support it.
+    /// A speed at which the system does not stick, as under dry friction with a solver that does not support
+    /// it.
     Speed,
-    /// A speed at which the system can rest.
+    /// A speed at which the system can stick.
     HeldSpeed,
     /// The distance of a contact.
     Distance,
@@ -27,7 +28,7 @@ pub enum SurfaceKind {
 /// Reason why a solver does not support sticking.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum UnsupportedSticking {
-    /// The model does not determine the force that holds.
+    /// The model does not determine the holding force.
     #[default]
     Formula,
     /// The Adams method needs the preceding steps.
@@ -64,8 +65,7 @@ impl Names<'_> {
         }
     }
 
-    /// Returns reason and cure if a motion does not leave a surface, as far as the surface is
-    /// known.
+    /// Returns cause and remedy if a motion does not leave a surface, as far as the surface is known.
     pub(crate) fn sticking_reason(&self, index: usize) -> String {
         match self.surfaces.get(index).map(|surface| surface.kind) {
             Some(SurfaceKind::Speed) => {
@@ -94,16 +94,16 @@ impl Names<'_> {
     }
 }
 
-/// Sticking under dry friction.
+/// Cause: sticking under dry friction.
 const STICKING: &str = "it sticks, as a body at rest under dry friction, which is not supported";
 
-/// Rest that begins and ends too often.
+/// Cause: sticking that begins and ends too often.
 const RESTARTING: &str = "it comes to rest and starts again without end";
 
-/// Alternative to dry friction.
+/// Remedy: a smooth friction law.
 const SMOOTH_LAW: &str =
     "write a smooth law, such as tanh(v/v_0) with a small speed v_0 instead of sign(v)";
 
-/// Chattering at a jump of the force over a position.
+/// Cause: chattering at a force that jumps at a position.
 const CHATTERING: &str = "it chatters, because the forces on both sides lead back to it. Replace the \
     jump by a continuous force over a small distance, such as a stiff spring";

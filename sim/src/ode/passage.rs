@@ -1,4 +1,4 @@
-//! The passage over a switching surface.
+//! Passage through a switching surface.
 
 use super::driver::Driver;
 use super::error::SolveError;
@@ -7,11 +7,12 @@ use super::location::Located;
 use super::stepper::{Point, Stepper, rejection_error};
 use super::system::System;
 
-/// A step that does not lead to its surface is shortened by this.
+/// Factor by which a step is shortened that does not reach its surface.
 const SHORTENED: f64 = 0.25;
 
 impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
-    /// Takes the last step, of `length` s, back to the first surface that it crosses, and applies the event.
+    /// Shortens the last step, of `length` s, to end at the first surface that it crosses, and applies the
+    /// event.
     pub(super) fn cross(&mut self, crossing: &Crossing, length: f64) -> Result<(), SolveError> {
         let guess = self.find_interior_root(crossing);
         self.run.stepper.take_back();
@@ -40,7 +41,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 self.run.stepper.restart(start, SHORTENED * length);
             }
         }
-        // Ways to a surface without an event must lead on, too.
+        // Approaches to a surface without an event must make progress, too.
         let is_unrecorded = self.trajectory.events.len() == recorded;
         if let Some(guard) = guard.filter(|_| is_unrecorded) {
             self.check_switch_rate(self.run.stepper.current_point().t, guard)?;
@@ -48,7 +49,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         self.check_approaches(guard, has_crossed)
     }
 
-    /// Crosses a surface that is so near that no step to it meets the tolerance, as where rates are singular beyond it.
+    /// Crosses a surface so close that no step to it meets the tolerance, for example if the rates beyond it
+    /// are singular.
     ///
     /// # Errors
     /// The reason why steps are too short, if there is no surface.
@@ -74,8 +76,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         self.accept(begin)
     }
 
-    /// Locates the surfaces of `crossing` like [`Driver::locate`]. If other surfaces are passed before these, locates those.
-    /// Returns the located surfaces as well.
+    /// Locates the surfaces of `crossing` like [`Driver::locate`]. If the motion crosses other surfaces first,
+    /// locates these. Returns the located surfaces as well.
     fn locate_first(
         &mut self,
         crossing: &Crossing,
@@ -114,8 +116,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         self.run.stepper.magnitudes().allowed(y).collect()
     }
 
-    /// Applies the event at the crossed surfaces between `start` and `point`, and records those that returned the motion to
-    /// its side with a jump.
+    /// Applies the event at the crossed surfaces between `start` and `point`, and records the surfaces that
+    /// reversed the motion with a jump.
     fn apply_event(&mut self, crossed: &[usize], start: &Point, point: &mut Point) {
         let allowed = self.allowed(&point.y);
         let surfaces = (crossed, &allowed[..]);
@@ -131,7 +133,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         (self.run.rebounds).retain(|guard| jumps && !beyond.contains(guard));
     }
 
-    /// Returns the surfaces of the present regime that a point is beyond.
+    /// Returns the surfaces of the current regime that a point is beyond.
     pub(super) fn crossed_guards(&self, point: &Point) -> Vec<usize> {
         let guards = self.watched.evaluate_guards(point.t, &point.y);
         let values = guards.into_iter().enumerate();

@@ -1,7 +1,7 @@
 //! A point of a motion.
 
-/// Changes of the length of a step by rounding of its end, relative to the length, that count: smaller ones are below the
-/// errors of a step, and with larger ones a refused step would not shrink to 0.9 of its length.
+/// Relative changes of a step size, by rounding of its end time, that are corrected. Smaller changes are below
+/// the error of a step. With larger ones, a rejected step would not shrink to 0.9 of its length.
 const COUNTED_ROUNDINGS: std::ops::Range<f64> = 1e-11..0.1;
 
 /// A state and its time.
@@ -14,7 +14,8 @@ pub struct Point {
 }
 
 impl Point {
-    /// Returns the length (s) of the next step, `step` s or up to the time `until` (s), and whether `until` cuts it short.
+    /// Returns the length (s) of the next step and whether `until` cuts it short. The length is `step` s, or
+    /// less if `until` (s) is nearer.
     pub fn choose_length(&self, step: f64, until: f64) -> (f64, bool) {
         let (limit, step) = (until - self.t, self.exact_length(step));
         match limit <= step {
@@ -23,9 +24,9 @@ impl Point {
         }
     }
 
-    /// Returns the length (s) of a step from here that is nearest to `length` and ends at a time without rounding, if the
-    /// rounding counts. If the state advanced by another length than the time, their difference would grow with the
-    /// magnitude of the time.
+    /// Returns the length (s) of a step from this point that is nearest to `length` and ends at a representable
+    /// time, if the rounding matters. Otherwise rounding of the time would make the state and the time advance
+    /// differently, by more for larger times.
     pub fn exact_length(&self, length: f64) -> f64 {
         let exact = (self.t + length) - self.t;
         match COUNTED_ROUNDINGS.contains(&((exact - length) / length).abs()) {

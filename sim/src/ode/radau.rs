@@ -1,9 +1,9 @@
-//! Radau IIA of order 5, an implicit Runge-Kutta method for stiff systems: what decays fast does
-//! not keep its steps short. The control of steps follows Hairer and Wanner, "Solving Ordinary
-//! Differential Equations II", section IV.8; what a single step does is in `collocation`.
+//! Radau IIA method of order 5, an implicit Runge-Kutta method for stiff systems: fast decaying components do
+//! not limit its steps. The step size control follows Hairer and Wanner, "Solving Ordinary Differential
+//! Equations II", section IV.8; `collocation` makes a single step.
 //!
-//! The error estimate is of order 3, and so is the polynomial that gives states inside a step. Both
-//! are held to the tolerance, so that the end of a step is more accurate than was asked.
+//! The error estimate and the polynomial for states inside a step are of order 3. Both must meet the tolerance,
+//! so the end of a step is more accurate than requested.
 
 use nalgebra::DMatrix;
 
@@ -14,19 +14,20 @@ use super::stepper::{Outcome, Point, Stepper, split_step};
 use super::system::System;
 use super::watch::WatchedSystem;
 
-/// The step that the error estimate proposes is shortened by this.
+/// Safety factor of the step size that the error estimate proposes.
 const SAFETY: f64 = 0.9;
 
-/// From step to step the length grows by this at most, and shrinks by this at most.
+/// Largest and smallest ratio of successive step sizes.
 const GROWTH: (f64, f64) = (8.0, 0.2);
 
-/// A step is left as it is where it would grow by no more: that saves the factors.
+/// Smallest growth of the step size that is worth a new LU factorisation; for less growth the step size stays
+/// the same.
 const WORTH_NEW_FACTORS: f64 = 1.2;
 
-/// A Jacobian that lets Newton's method contract as fast serves the next step as well.
+/// Contraction of Newton's method below which the next step uses the same Jacobian.
 const GOOD_JACOBIAN: f64 = 1e-3;
 
-/// The step and its error before the last one, for the prediction of the next.
+/// Size and error of the step before the last one, for the prediction of the next step size.
 #[derive(Clone, Copy)]
 struct Accepted {
     length: f64,
@@ -39,21 +40,21 @@ pub struct Radau {
     last: Point,
     /// Start of the next step.
     here: Point,
-    /// The rates there, if they are known.
+    /// Rates at `here`, if known.
     rates: Option<Vec<f64>>,
-    /// The length of the next step, s.
+    /// Length of the next step, s.
     step: f64,
     magnitudes: Magnitudes,
     jacobian: Option<DMatrix<f64>>,
     factors: Option<Factors>,
-    /// Those of the last step, if it led here.
+    /// Stages of the last step, if it ends at `here`.
     stages: Option<Stages>,
     /// Stages of the last trial.
     tried: Option<Stages>,
     accepted: Option<Accepted>,
-    /// The last try was refused.
+    /// True if the last trial was rejected.
     is_refused: bool,
-    /// The next step begins where the right-hand side may have jumped.
+    /// True if the right-hand side may have jumped at the start of the next step.
     is_starting: bool,
 }
 
@@ -99,7 +100,7 @@ impl Stepper for Radau {
         self.step = step;
     }
 
-    /// The stages of the last step still predict those of the next one, and its error the length.
+    /// The stages and the error of the last step still predict the next step.
     fn correct(&mut self, y: Vec<f64>) {
         self.here.y = y;
         self.rates = None;
@@ -167,7 +168,7 @@ impl Stepper for Radau {
             y: stages.end_state(&self.here.y),
         };
         let next = length * self.growth(length, error, stages.iterations);
-        // A step cut short says nothing against the longer one.
+        // A step that was cut short does not shorten the next one.
         self.step = if is_cut { next.max(self.step) } else { next };
         self.last = std::mem::replace(&mut self.here, end);
         if stages.contraction > GOOD_JACOBIAN {
@@ -239,8 +240,8 @@ impl Stepper for Radau {
 }
 
 impl Radau {
-    /// Returns the point after a step of exactly `length` s from `start`, whatever its error, in parts if Newton's
-    /// method does not converge; `None` if parts get too short.
+    /// Returns the point after a step of exactly `length` s from `start`, without error control. The step is
+    /// split if Newton's method does not converge. Returns `None` if the parts get too short.
     fn step_from<S: System + ?Sized>(
         &self,
         watched: &WatchedSystem<'_, S>,
@@ -258,7 +259,7 @@ impl Radau {
         split_step(start, length, step)
     }
 
-    /// Forgets all that holds only where the last step led.
+    /// Discards stages and step sizes that apply only at the end of the last step.
     fn forget(&mut self) {
         self.rates = None;
         self.jacobian = None;
@@ -268,10 +269,9 @@ impl Radau {
         self.is_starting = true;
     }
 
-    /// Limits the first step by the rates and their change. The error estimate fails there: it
-    /// accepts a step so long that the method damps a fast vibration. The rule is that of Hairer,
-    /// Norsett and Wanner, "Solving Ordinary Differential Equations I", section II.4, for an error
-    /// of order 3.
+    /// Limits the first step by the rates and their change. The error estimate fails there: it accepts a step
+    /// so long that the method damps a fast vibration. The rule is taken from Hairer, Norsett and Wanner,
+    /// "Solving Ordinary Differential Equations I", section II.4, for an error of order 3.
     fn begin<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) {
         let here = &self.here;
         let norm = |values: &[f64]| self.magnitudes.norm(values.iter().copied(), &here.y);
@@ -301,19 +301,19 @@ impl Radau {
         self.rates = Some(rates);
     }
 
-    /// After a step was refused: a shorter one, with a Jacobian of its start.
+    /// Prepares a shorter step after a rejection, with a Jacobian at its start.
     fn refuse(&mut self, step: f64) {
         self.step = step;
         self.is_refused = true;
         self.factors = None;
         if self.stages.is_some() {
-            // It may be one of an earlier point.
+            // The Jacobian may belong to an earlier point.
             self.jacobian = None;
         }
     }
 
-    /// By how much the next step is longer than this one, which had this error: the prediction of
-    /// Gustafsson looks at the step before as well.
+    /// Returns the growth factor of the step size after a step with this length and error. The prediction of
+    /// Gustafsson also uses the preceding step.
     fn growth(&self, length: f64, error: f64, iterations: u32) -> f64 {
         let growth = proposed(error, iterations);
         let growth = if self.is_refused {
@@ -330,7 +330,7 @@ impl Radau {
     }
 }
 
-/// By how much a next step may be longer, from the error of this one and the work it was to solve it.
+/// Returns the growth factor of the step size from the error of this step and its number of Newton iterations.
 fn proposed(error: f64, iterations: u32) -> f64 {
     let most = f64::from(2 * MAX_ITERATIONS);
     let safety = SAFETY * (most + 1.0) / (most + f64::from(iterations));
@@ -347,8 +347,8 @@ fn rates_at<S: System + ?Sized>(watched: &WatchedSystem<'_, S>, point: &Point) -
     rates
 }
 
-/// The Jacobian at a point. A derivative without a value, as that of a root at zero, is replaced by 0:
-/// Newton's method then contracts less, and the step is shortened if it does not.
+/// Returns the Jacobian at a point. An infinite or undefined derivative, such as that of a root at zero, is
+/// replaced by 0. Newton's method then contracts less, and the step is shortened if it does not converge.
 fn jacobian<S: System + ?Sized>(watched: &WatchedSystem<'_, S>, point: &Point) -> DMatrix<f64> {
     let states = point.y.len();
     let mut entries = vec![0.0; states * states];

@@ -39,7 +39,7 @@ pub fn check<S: System + ?Sized>(
 /// Rejects an end before the start (s), and samples outside or not in order.
 pub fn check_span((begin, end): (f64, f64), samples: &[f64]) -> Result<(), SolveError> {
     let refuse = |problem: String| Err(SolveError::Request { problem });
-    // The steps of a shorter span have no accuracy.
+    // In a shorter span, steps would be subnormal numbers with reduced precision.
     let shortest = f64::MIN_POSITIVE / f64::EPSILON;
     if !(begin.is_finite() && end.is_finite() && end - begin >= shortest) {
         return refuse(format!(

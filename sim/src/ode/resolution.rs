@@ -1,30 +1,30 @@
-//! Step lengths that resolve the switching functions.
+//! Step sizes that resolve the switching functions.
 //!
-//! The error of a step is zero if no state changes, whatever the length of the step. Within such a
-//! step a static friction force, or a function of time that switches a force, may cross its bound
-//! and return unseen. The switching functions limit the step as well: a parabola through the values
-//! at both ends and in the middle must predict the values at the quarters. Larger deviations are
-//! allowed only if they cannot hide a change of sign.
+//! The error of a step is zero if no state changes, whatever the length of the step. Within such a step a
+//! static friction force, or a function of time that switches a force, may cross its bound and return
+//! undetected. Therefore the switching functions limit the step as well: a parabola through the values at both
+//! ends and in the middle must predict the values at the quarters. Larger deviations are allowed only if they
+//! cannot hide a sign change.
 
 /// Largest deviation from the parabola, as a fraction of the function's range in the step.
 const TOLD: f64 = 0.1;
 
-/// A change of sign is possible if the lowest value is at most this multiple of the deviation.
+/// A sign change is possible if the lowest value is at most this multiple of the deviation.
 const HIDDEN: f64 = 2.0;
 
-/// A function can reach its surface in the next step if it is within this multiple of its range.
+/// A function can reach its surface in the next step if its lowest value is at most this multiple of its range.
 const WITHIN_REACH: f64 = 20.0;
 
-/// Factor for a step that may hide a change of sign: the deviation becomes an eighth.
+/// Factor for a step that may hide a sign change: the deviation becomes an eighth.
 const HALF: f64 = 0.5;
 
 /// Error of a function's values inside a step, in units of the tolerance.
 const ERRORS: f64 = 10.0;
 
-/// A function is constant if it changes by less than this number of roundings.
+/// Largest change of a function, in roundings, that counts as none.
 pub const ROUNDINGS: f64 = 8.0;
 
-/// Sample times, as fractions of the step.
+/// Sample times as fractions of the step.
 pub const PARTS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// Limit on the step length from the switching functions.
@@ -44,9 +44,9 @@ impl Resolution {
         }
     }
 
-    /// Returns the factor by which the next step may grow, or a factor below 1 if this step was too
-    /// long. `values` are the functions at [`PARTS`], `sides` the sides at the start. Changes
-    /// within `roundings` do not count.
+    /// Returns the factor by which the next step may grow, or a factor below 1 if this step was too long.
+    /// `values` are the functions at [`PARTS`], `sides` the sides at the start. Changes within `roundings` are
+    /// ignored.
     pub fn longest(
         &self,
         values: &[Vec<f64>; 5],
@@ -94,7 +94,7 @@ fn factor(samples: [f64; 5], error: f64) -> f64 {
         return f64::INFINITY;
     }
     if lowest > WITHIN_REACH * moved {
-        // A change that grows by the third power of the length stays above the surface.
+        // Even a change that grows with the third power of the length would not reach the surface.
         return (lowest / moved).cbrt();
     }
     // The deviation is of third order in the step length.
@@ -102,7 +102,7 @@ fn factor(samples: [f64; 5], error: f64) -> f64 {
     if lowest > HIDDEN * off {
         return factor.max(1.0);
     }
-    // A change of sign between samples may be hidden. One at a sample is located.
+    // A sign change between samples may be hidden. A sign change at a sample is located.
     match lowest >= 0.0 {
         true => factor.min(HALF),
         false => factor,
@@ -130,8 +130,8 @@ mod tests {
         }
     }
 
-    /// Quarter points of many waves may coincide; steps that grow from short ones do not reach
-    /// that length.
+    /// The quarter points of several periods may coincide. Steps that grow from short ones do not reach this
+    /// length.
     #[test]
     fn growing_steps_stay_within_one_wave() {
         for offset in [1.0001, 1.01, 1.2, 0.9] {
@@ -150,7 +150,8 @@ mod tests {
         }
     }
 
-    /// The parabola of a stuck friction is flat between its limits: the next step may not be much longer.
+    /// The switching function of sticking friction is flat between its limits: the parabola fits, but the next
+    /// step must not be much longer.
     #[test]
     fn flat_function_limits_growth() {
         let limit = |t: f64| 1.0 - (0.2 + 0.15 * (3.0 * t).sin()).powi(2);

@@ -1,6 +1,6 @@
 //! The band near a switching surface in which rates that grow as a root are interpolated; see `roots`.
 
-/// Fraction to which a switching function falls until its gradient is computed again.
+/// Fraction to which a switching function falls before its gradient is computed again.
 const APPROACHED: f64 = 0.25;
 
 /// Band around a switching surface near which rates grow as a root.
@@ -15,25 +15,26 @@ pub(super) struct RootBand {
     pub(super) gradient: Vec<f64>,
 }
 
-/// The past of a switching function on the way to its surface.
+/// History of a switching function on the way to its surface.
 pub(super) struct GuardHistory {
-    /// Magnitude of the switching function when its gradient was last computed, or a larger one since.
+    /// Magnitude of the switching function when its gradient was last computed, or its largest magnitude since
+    /// then.
     reference: f64,
-    /// Decision near the surface; `None` until the motion is near it.
+    /// Decision about the rates near the surface; `None` until the motion is near it.
     pub(super) decision: Option<Decision>,
 }
 
 /// Decision about the rates near a surface.
 #[derive(Clone, Copy)]
 pub(super) struct Decision {
-    /// True if they grow as a root.
+    /// True if the rates grow as a root of the switching function.
     pub(super) is_root: bool,
     /// Value of the switching function at the edge of the band.
     pub(super) width: f64,
 }
 
 impl GuardHistory {
-    /// Before the first point.
+    /// History before the first point.
     pub(super) const fn new() -> Self {
         Self {
             reference: f64::INFINITY,
@@ -41,8 +42,8 @@ impl GuardHistory {
         }
     }
 
-    /// Takes note of the magnitude of the switching function. Returns true if its gradient is needed: in the band of a
-    /// root, and if the magnitude has fallen to a part.
+    /// Records the magnitude of the switching function. Returns true if its gradient is needed: in the band of
+    /// a root, and when the magnitude has fallen to [`APPROACHED`] of its reference.
     pub(super) fn follow(&mut self, magnitude: f64) -> bool {
         if let Some(Decision { is_root, width }) = self.decision {
             if APPROACHED * magnitude <= width {
@@ -81,13 +82,13 @@ impl RootBand {
         })
     }
 
-    /// Returns the position in the band of a point with this value of the switching function: -1 and 1 at its edges, and
-    /// beyond it.
+    /// Returns the position of a point in the band from the value of the switching function: -1 and 1 at the
+    /// edges, larger magnitudes outside.
     pub(super) fn position(&self, value: f64) -> f64 {
         (value / self.width).clamp(-1.0, 1.0)
     }
 
-    /// Returns the state on the surface next to `y`, at which the switching function has this value.
+    /// Returns the state on the surface next to `y`, given the value of the switching function at `y`.
     pub(super) fn state_on_surface(&self, y: &[f64], value: f64) -> Vec<f64> {
         let steps = y.iter().zip(&self.to_edge);
         steps
@@ -95,7 +96,7 @@ impl RootBand {
             .collect()
     }
 
-    /// Returns the states at the two edges of the band, from the position of `y`.
+    /// Returns the states at the two edges of the band next to `y`, given the position of `y`.
     pub(super) fn edges(&self, y: &[f64], position: f64) -> [Vec<f64>; 2] {
         [-1.0, 1.0].map(|edge| {
             let moved = y.iter().zip(&self.to_edge);

@@ -1,37 +1,39 @@
 //! Rates that grow as a root of a switching function near its surface, such as sign(v)*sqrt(abs(v)).
 //!
-//! Their derivative has no bound at the surface. With a huge derivative the first change of Newton's method is small for
-//! any residual, and an implicit method accepts a wrong state. If the tolerance of the states can change the sign of the
-//! switching function, the rates are therefore interpolated between the two edges of that band. This changes no state by
-//! more than the tolerance.
+//! Their derivative is unbounded at the surface. With a huge derivative the first change of Newton's method is
+//! small for any residual, and an implicit method would accept a wrong state. If a change of the states within
+//! the tolerance can change the sign of the switching function, the rates are therefore interpolated between
+//! the two edges of this band. This changes no state by more than the tolerance.
 
 use super::root_band::{Decision, GuardHistory, RootBand};
 use super::system::System;
 use super::watch::WatchedSystem;
 
-/// Largest number of surfaces at one point whose rates are interpolated. Each doubles the number of evaluations.
+/// Largest number of surfaces at one point whose rates are interpolated. Each surface doubles the number of
+/// evaluations.
 const MAX_BANDS: usize = 4;
 
-/// Largest growth of a difference of rates, between the two distances of [`WatchedSystem::rate_differences`], that counts
-/// as a root: that of the distance to the power 0.9.
+/// Largest ratio of the rate differences at the two distances of [`WatchedSystem::rate_differences`] that
+/// counts as a root. It corresponds to the distance to the power 0.9.
 const MAX_ROOT_GROWTH: f64 = 12.0;
 
 /// Ratio of the two distances at which rates on both sides are compared.
 const DISTANCE_RATIO: f64 = 16.0;
 
-/// Least growth of a difference of rates that vanishes at the surface; that of a root grows fourfold.
+/// Smallest ratio of the rate differences at the two distances for a difference that vanishes at the surface.
+/// For a square root the ratio is 4.
 const MIN_GROWTH: f64 = 1.5;
 
-/// Differences below this part of the rates are rounding.
+/// Differences below this fraction of the rates are rounding.
 const RATE_ROUNDING: f64 = 1e-12;
 
-/// Difference of one rate on both sides of a surface.
+/// Difference of one rate between both sides of a surface.
 struct RateDifference {
-    /// At the part 1/[`DISTANCE_RATIO`] of the distance.
+    /// Difference at the distance divided by [`DISTANCE_RATIO`].
     near: f64,
-    /// At the whole distance.
+    /// Difference at the whole distance.
     far: f64,
-    /// Size of the rate.
+    /// Magnitude of the rate.
     size: f64,
 }
 
@@ -47,8 +49,8 @@ impl RateDifference {
 }
 
 impl<S: System + ?Sized> WatchedSystem<'_, S> {
-    /// Finds the surfaces within the errors `allowed` to the states at `t` and `y` near which rates grow as a root.
-    /// `histories` has an entry per switching function and knows the earlier points.
+    /// Finds the surfaces near which rates grow as a root and which are within the errors `allowed` to the
+    /// states at `t` and `y`. `histories` has an entry per switching function with its earlier points.
     pub(super) fn find_root_bands(
         &self,
         histories: &mut [GuardHistory],
@@ -59,7 +61,8 @@ impl<S: System + ?Sized> WatchedSystem<'_, S> {
         let near = histories.iter_mut().zip(&here).enumerate();
         let near: Vec<usize> = near
             .filter_map(|(guard, (history, value))| history.follow(value.abs()).then_some(guard))
-            // Bodies do not pass each other, and a surface with a band has no events.
+            // Distances of impacts have no bands: bodies do not penetrate each other, and a surface with a band
+            // has no events.
             .filter(|guard| !self.system().is_distance(*guard))
             .collect();
         if near.is_empty() {
@@ -103,7 +106,8 @@ impl<S: System + ?Sized> WatchedSystem<'_, S> {
         })
     }
 
-    /// Returns the derivatives of the switching functions by the states, from differences of the size `allowed`.
+    /// Returns the derivatives of the switching functions by the states, as differences with the steps
+    /// `allowed`.
     fn guard_gradients(
         &self,
         (t, y): (f64, &[f64]),
@@ -126,9 +130,9 @@ impl<S: System + ?Sized> WatchedSystem<'_, S> {
         gradients
     }
 
-    /// Returns true if the rates are continuous at the surface at `y` and their differences, relative to the errors
-    /// `allowed` to the states, grow as a root from it to the distance `to_edge`. A root does so on every scale, in
-    /// contrast to rates that are steep near the surface.
+    /// Returns true if the rates at `y` are continuous at the surface and their differences grow as a root up
+    /// to the distance `to_edge`. Differences are relative to the errors `allowed` to the states. A root grows
+    /// in this way on every scale, in contrast to rates that are steep near the surface.
     fn grow_as_root(&self, at: (f64, &[f64]), to_edge: &[f64], allowed: &[f64]) -> bool {
         let nearer: Vec<f64> = to_edge.iter().map(|step| step / DISTANCE_RATIO).collect();
         [to_edge, &nearer].iter().all(|to_edge| {
@@ -147,8 +151,8 @@ impl<S: System + ?Sized> WatchedSystem<'_, S> {
         })
     }
 
-    /// Returns the differences of the rates on both sides of a surface at `y`, one per state: at the distance
-    /// `to_edge` and at the part 1/[`DISTANCE_RATIO`] of it.
+    /// Returns the differences of the rates between both sides of a surface at `y`, one per state: at the
+    /// distance `to_edge`, and at this distance divided by [`DISTANCE_RATIO`].
     fn rate_differences(&self, (t, y): (f64, &[f64]), to_edge: &[f64]) -> Vec<RateDifference> {
         self.fix_sides(false);
         let rates = |distance: f64| {
@@ -227,7 +231,7 @@ impl<S: System + ?Sized> WatchedSystem<'_, S> {
             let first = row * states;
             let mean =
                 |state: usize| shares[0] * below[first + state] + shares[1] * above[first + state];
-            // An edge keeps its distance from the surface wherever the state is.
+            // An edge has a fixed distance from the surface for all states.
             let along: f64 = (0..states)
                 .map(|state| mean(state) * band.to_edge[state])
                 .sum();

@@ -10,7 +10,7 @@ pub struct RungeKutta {
 }
 
 impl RungeKutta {
-    /// Allocates memory for a number of states.
+    /// Allocates memory for this number of states.
     pub fn new(states: usize) -> Self {
         Self {
             slopes: [(); 4].map(|()| vec![0.0; states]),

@@ -2,7 +2,7 @@
 
 use super::error::SolveError;
 
-/// Size that a component has until it moves, as a fraction of its typical size.
+/// Size of a component before it moves, as a fraction of its typical size.
 pub const UNMOVED_SIZE_FRACTION: f64 = 1e-9;
 
 /// Smallest size of a component for finite differences, as a fraction of its typical size.
@@ -14,7 +14,7 @@ pub fn difference_step(value: f64, typical_size: f64) -> f64 {
     f64::EPSILON.sqrt() * value.abs().max(MIN_DIFFERENCE_SIZE_FRACTION * typical_size)
 }
 
-/// Smallest tolerance; below it, rounding dominates the error estimate.
+/// Smallest tolerance; rounding dominates the error estimate at smaller ones.
 const MIN_TOLERANCE: f64 = 1e-14;
 
 /// Largest tolerance.
@@ -41,7 +41,7 @@ pub struct Settings {
     pub tolerance: f64,
     /// Longest step, s. Longer steps may miss a shorter effect, such as a pulse of an input.
     pub max_step: f64,
-    /// Maximum number of steps, including rejected steps and those towards a switching surface.
+    /// Maximum number of steps, including rejected steps and steps to a switching surface.
     pub max_steps: u64,
     /// Maximum number of steps of an explicit method on a stiff system. The simulation stops as
     /// soon as stability would require more.

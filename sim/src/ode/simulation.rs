@@ -1,4 +1,5 @@
-//! Simulations with the general solvers: whole ones, and those that are continued.
+//! Simulations with the general solvers: whole simulations, and simulations that are continued from call to
+//! call.
 
 use super::adams::Adams;
 use super::dormand_prince::DormandPrince853;
@@ -14,7 +15,7 @@ use super::system::System;
 use super::trajectory::Trajectory;
 use super::watch::{Record, WatchedSystem};
 
-/// The first step, relative to the span; the error estimate corrects it at once.
+/// Length of the first step relative to the span; the error estimate corrects it at once.
 const FIRST_STEP: f64 = 1e-6;
 
 /// Simulates `system` from `initial` over `span` (begin, end; s) and returns the states at
@@ -57,8 +58,8 @@ pub fn simulate_into(
     simulation.go_on(system, (span, samples), trajectory, progress)
 }
 
-/// A simulation that continues from call to call. Each call gets the same system, whose inputs may have
-/// changed in between; see [`Simulation::follow_input_jump`].
+/// A simulation that is continued from call to call. Each call must pass the same system, whose inputs may have
+/// changed since the last call; see [`Simulation::follow_input_jump`].
 pub struct Simulation {
     run: Box<dyn Continue>,
     record: Record,
@@ -70,8 +71,7 @@ pub struct Simulation {
 impl Simulation {
     /// Starts at a time (s) and a state. The first step is short compared with `length` (s).
     ///
-    /// # Errors
-    /// An invalid state or setting, or rates there that are not finite.
+    /// # Errors An invalid state or setting, or rates at the start that are not finite.
     pub fn new(
         system: &dyn System,
         (t, state): (f64, &[f64]),
@@ -116,7 +116,7 @@ impl Simulation {
         self.point.t
     }
 
-    /// Returns the state at that time.
+    /// Returns the state at the time reached.
     pub fn state(&self) -> &[f64] {
         &self.point.y
     }
@@ -126,13 +126,13 @@ impl Simulation {
         self.run.modes()
     }
 
-    /// Continues to the time `until` (s), and adds the states at `samples` (s, ascending, after the time reached), the
-    /// events and the work to `trajectory`. A step may lead beyond that time; its end becomes part of the
-    /// motion with a later call.
+    /// Continues to the time `until` (s), and adds the states at `samples` (s, ascending, after the time
+    /// reached), the events and the solver statistics to `trajectory`. A step may extend beyond `until`; its
+    /// end becomes part of the motion in a later call.
     ///
     /// # Errors
-    /// An invalid request, a rate that is not finite, or a limit of the settings; the simulation keeps the point that it
-    /// reached.
+    /// An invalid request, a rate that is not finite, or a limit of the settings; the simulation keeps the last
+    /// point that it reached.
     pub fn advance(
         &mut self,
         system: &dyn System,
@@ -178,8 +178,8 @@ impl Simulation {
         ended.map(|_| ())
     }
 
-    /// Continues with inputs that changed at the time reached: the system gives the inputs before that
-    /// time and from it on. Adds jumps of the state and changes of modes to `trajectory`.
+    /// Continues with inputs that changed at the time reached: the system returns the old inputs before that
+    /// time and the new inputs from it on. Adds jumps of the state and changes of modes to `trajectory`.
     ///
     /// # Errors
     /// Modes that change too often.
@@ -214,7 +214,7 @@ struct Call<'c> {
     is_first: bool,
 }
 
-/// A run of the loop with any method.
+/// A run of the solver loop, for any method.
 trait Continue {
     fn go_on(
         &mut self,

@@ -1,4 +1,4 @@
-//! Slopes of a step of the method in `tableau`, its error and its interior.
+//! Slopes of a step of the method in `tableau`, its error estimate and its dense output.
 
 use super::magnitudes::Magnitudes;
 use super::point::Point;
@@ -6,10 +6,10 @@ use super::system::System;
 use super::tableau::{END, ERROR_3, ERROR_5, EXTENSION, INCREMENTS, PARTS, SLOPES, STAGES, Terms};
 use super::watch::WatchedSystem;
 
-/// Weight of the error estimate of order 3 in that of the step.
+/// Weight of the error estimate of order 3 in the error estimate of the step.
 const WEIGHT_OF_ORDER_3: f64 = 0.1;
 
-/// Entries that are summed at once, in registers.
+/// Number of entries that are summed at once in registers.
 const LANES: usize = 4;
 
 /// Rates of [`LANES`] states at the nodes of a step.
@@ -18,7 +18,7 @@ type Group = [[f64; LANES]; SLOPES];
 /// Rates of a step at its nodes, with reused memory.
 pub struct Slopes {
     groups: Vec<Group>,
-    /// The rates evaluated last.
+    /// Last evaluated rates.
     rates: Vec<f64>,
     trial: Vec<f64>,
     sums: [Vec<f64>; 2],
@@ -26,7 +26,7 @@ pub struct Slopes {
 }
 
 impl Slopes {
-    /// Allocates memory for a number of states.
+    /// Allocates memory for this number of states.
     pub fn new(states: usize) -> Self {
         let zeros = || vec![0.0; states];
         Self {
@@ -46,15 +46,15 @@ impl Slopes {
         self.store(0);
     }
 
-    /// Takes the slope at the end of the last step as that at the start of the next.
+    /// Uses the slope at the end of the last step as the slope at the start of the next.
     pub fn follow(&mut self) {
         for group in &mut self.groups {
             group[0] = group[END];
         }
     }
 
-    /// Makes a step of `length` s from `start`, whose slope is known, and writes its end state to `end`. Returns false
-    /// if a state or a rate is not finite.
+    /// Makes a step of `length` s from `start`, where the slope is known, and writes its end state to `end`.
+    /// Returns false if a state or a rate is not finite.
     pub fn make_step<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
@@ -96,7 +96,7 @@ impl Slopes {
         &self.rates
     }
 
-    /// Keeps the rates evaluated last as those of a node.
+    /// Stores the last evaluated rates as the slope at a node.
     fn store(&mut self, slope: usize) {
         let parts = self.rates.chunks(LANES);
         for (group, part) in self.groups.iter_mut().zip(parts) {
@@ -107,7 +107,7 @@ impl Slopes {
         }
     }
 
-    /// Returns the error of a step of `length` s to the state `end`, as a multiple of the tolerance.
+    /// Returns the estimated error of a step of `length` s to the state `end`, as a multiple of the tolerance.
     pub fn error(&mut self, magnitudes: &Magnitudes, length: f64, end: &[f64]) -> f64 {
         let [order_5, order_3] = &mut self.sums;
         combine(&self.groups, ERROR_5, order_5);
@@ -121,7 +121,8 @@ impl Slopes {
         }
     }
 
-    /// Computes the interior of the last step of `length` s from `start` to `end`, whose slope is known.
+    /// Computes the dense output of the last step, of `length` s from `start` to `end`. The slope at the end
+    /// must be known.
     pub fn find_interior<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
@@ -146,7 +147,7 @@ impl Slopes {
         }
     }
 
-    /// Returns the interior of the step for which it was computed last.
+    /// Returns the last computed dense output.
     pub fn interior(&self) -> &Interior {
         &self.interior
     }
@@ -175,7 +176,7 @@ impl Slopes {
     }
 }
 
-/// Interior of a step: coefficients of its polynomial.
+/// Dense output of a step: coefficients of its polynomial.
 #[derive(Clone)]
 pub struct Interior {
     coefficients: [Vec<f64>; 7],
@@ -189,12 +190,12 @@ impl Interior {
 
     /// Returns the largest contribution of the last coefficient to each state.
     pub fn last_term(&self) -> Vec<f64> {
-        // s^4 (1 - s)^3 at s = 4/7.
+        // The maximum of s^4 (1 - s)^3 is at s = 4/7.
         let largest = (4.0_f64 / 7.0).powi(4) * (3.0_f64 / 7.0).powi(3);
         self.coefficients[6].iter().map(|c| largest * c).collect()
     }
 
-    /// Returns the state at a `part` of the step from `start`.
+    /// Returns the state at a fraction `part` of the step from `start`.
     pub fn interpolate(&self, part: f64, start: &[f64]) -> Vec<f64> {
         let rest = 1.0 - part;
         let entry = |(place, start): (usize, &f64)| {
@@ -209,7 +210,7 @@ impl Interior {
     }
 }
 
-/// Writes a combination of slopes to `out`.
+/// Writes a linear combination of slopes to `out`.
 fn combine(groups: &[Group], terms: Terms, out: &mut [f64]) {
     for (slots, group) in out.chunks_mut(LANES).zip(groups) {
         let mut sums = [0.0; LANES];

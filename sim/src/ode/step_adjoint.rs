@@ -1,5 +1,6 @@
-//! A step of the method in `tableau`, computed again from its start, and its adjoint: the derivatives of its end by its
-//! start (E. Hairer, C. Lubich and G. Wanner, "Geometric Numerical Integration", section VI.4).
+//! Recomputation of a step of the method in `tableau` from its start, and its adjoint: the product of
+//! derivatives with respect to the end with the Jacobian of the step (E. Hairer, C. Lubich and G. Wanner,
+//! "Geometric Numerical Integration", section VI.4).
 
 use super::tableau::{END, INCREMENTS, PARTS, STAGES};
 
@@ -9,14 +10,14 @@ pub struct RepeatedStep {
     length: f64,
     /// States at the nodes.
     states: Vec<Vec<f64>>,
-    /// Rates at the nodes, then their weights.
+    /// Rates at the nodes; the adjoint replaces them by their weights.
     slopes: Vec<Vec<f64>>,
     end: Vec<f64>,
     products: Vec<Vec<f64>>,
 }
 
 impl RepeatedStep {
-    /// Allocates memory for a number of states.
+    /// Allocates memory for this number of states.
     pub fn new(states: usize) -> Self {
         let nodes = || vec![vec![0.0; states]; STAGES];
         Self {
@@ -60,8 +61,9 @@ impl RepeatedStep {
         &self.end
     }
 
-    /// Replaces the derivatives of a number by the end of the step by those by its start. `product` writes the product
-    /// of weights with the Jacobian of the rates by the state, at a time, a state and with these weights.
+    /// Replaces the derivatives of a scalar with respect to the end of the step by the derivatives with respect
+    /// to its start. `product` writes the product of weights with the Jacobian of the rates at a time and a
+    /// state.
     ///
     /// # Errors
     /// The error of `product`.

@@ -1,5 +1,5 @@
-//! Interface between the driver and a method: steps of controlled length, steps of a given length,
-//! and states inside a step. The driver decides about switches.
+//! Interface between the driver and a method: steps of controlled length, steps of given length, and states
+//! inside a step. The driver handles switches.
 
 use super::bernstein::{BernsteinBasis, Piece};
 use super::error::SolveError;
@@ -8,24 +8,24 @@ pub use super::point::Point;
 use super::system::System;
 use super::watch::WatchedSystem;
 
-/// Parts of a step that may be refused; see [`split_step`].
+/// Maximum number of parts that may be rejected; see [`split_step`].
 const MOST_REFUSED: u32 = 50;
 
 /// Result of a controlled step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// The error meets the tolerance. If not, the next step will be shorter.
+    /// True if the error meets the tolerance. If false, the next step is shorter.
     pub is_accepted: bool,
-    /// The length of the step tried, s.
+    /// Length of the trial step, s.
     pub length: f64,
 }
 
-/// A method with a current point from which it can step.
+/// A one-step or multistep method with its current point.
 pub trait Stepper: Sized {
-    /// True if stability keeps its steps short where a system is stiff.
+    /// True if stability limits the step size for stiff systems.
     const IS_EXPLICIT: bool;
 
-    /// Steps from `start`, the first one of length `step` (s) at most.
+    /// Creates the method at `start`. The first step is at most `step` (s) long.
     fn new(start: Point, step: f64, magnitudes: Magnitudes) -> Self;
 
     /// Start of the next step.
@@ -34,32 +34,32 @@ pub trait Stepper: Sized {
     /// Start of the last step.
     fn step_start(&self) -> &Point;
 
-    /// The length of the next step, s.
+    /// Returns the length of the next step, s.
     fn step(&self) -> f64;
 
-    /// Makes the next step one of length `step` (s), and forgets nothing else.
+    /// Sets the length of the next step to `step` (s) and keeps the history.
     fn set_step(&mut self, step: f64);
 
-    /// Continues from another point, beyond a switching surface, without history. The first step is
-    /// at most `step` (s) long.
+    /// Continues from another point, beyond a switching surface, without history. The first step is at most
+    /// `step` (s) long.
     fn restart(&mut self, point: Point, step: f64);
 
-    /// Goes on from a state that replaces the one here and differs from it by errors of the last step.
+    /// Replaces the current state by one that differs by errors of the last step, and continues from it.
     fn correct(&mut self, y: Vec<f64>) {
         let t = self.current_point().t;
         self.restart(Point { t, y }, self.step());
     }
 
-    /// Scales of the errors. They follow only the states of the trajectory; see
+    /// Returns the scales of the errors. They depend only on the states of the trajectory; see
     /// [`Stepper::settle`].
     fn magnitudes(&self) -> &Magnitudes;
 
-    /// Scales of the errors, to set the rounding of the next step.
+    /// Returns the scales of the errors, to set the rounding of the next step.
     fn magnitudes_mut(&mut self) -> &mut Magnitudes;
 
-    /// Adds the state here, which enters the trajectory, to the scales of the errors. A step that is
-    /// taken back leaves no trace in them. A state that `is_projected` onto constraints has the rounding of
-    /// all its components.
+    /// Adds the current state, which belongs to the trajectory, to the scales of the errors. Undone steps do
+    /// not affect the scales. A state that `is_projected` onto constraints has the rounding of all its
+    /// components.
     fn settle(&mut self, is_projected: bool);
 
     /// Tries a step that ends at `until` (s) at the latest, as the right-hand side may jump there.
@@ -70,29 +70,31 @@ pub trait Stepper: Sized {
         until: f64,
     ) -> Result<Outcome, SolveError>;
 
-    /// Undoes the last step, which was accepted; the length of the next one is open.
+    /// Undoes the last step, which was accepted. The length of the next step must be set again.
     fn take_back(&mut self);
 
-    /// Makes a step of exactly `length` s from here, whatever its error, and returns its end and the rates there;
-    /// `None` if the step overflows or leaves the domain of the rates. The method stays here.
+    /// Makes a step of exactly `length` s from the current point, without error control, and returns its end
+    /// and the rates there; `None` if the step overflows or leaves the domain of the rates. The current point
+    /// does not change.
     fn trial<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
         length: f64,
     ) -> Option<(Point, Vec<f64>)>;
 
-    /// Goes to a point that differs from the end of the last trial by a small part of its length.
+    /// Moves to a point that differs from the end of the last trial by a small fraction of its length.
     fn end_trial(&mut self, point: Point);
 
-    /// Returns the state at time `t` (s) inside the last step by interpolation; `None` if this method made no step
-    /// to here.
+    /// Returns the state at time `t` (s) inside the last step by interpolation; `None` if the method did not
+    /// make the last step itself.
     fn interpolated<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
         t: f64,
     ) -> Option<Vec<f64>>;
 
-    /// Returns the interpolation inside the last step as a polynomial; `None` if this method made no step to here.
+    /// Returns the dense output of the last step as a polynomial; `None` if the method did not make the last
+    /// step itself.
     fn interior<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
@@ -105,8 +107,8 @@ pub trait Stepper: Sized {
         })
     }
 
-    /// Returns true if interpolation inside the last step is as accurate as the step: one that
-    /// stability keeps short ends where it should, and may swing in between.
+    /// Returns true if interpolation inside the last step is as accurate as the step. If stability limits the
+    /// step size, the end of a step is accurate, but the interpolation may oscillate.
     fn tells_interior<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) -> bool {
         let _ = watched;
         true
@@ -121,8 +123,8 @@ pub trait Stepper: Sized {
         true
     }
 
-    /// The state at time `t` (s) inside the last step, with the accuracy of the step; `None` if no
-    /// step to there meets the tolerance.
+    /// Returns the state at time `t` (s) inside the last step, with the accuracy of the step; `None` if no step
+    /// to this time meets the tolerance.
     fn inside<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
@@ -130,9 +132,9 @@ pub trait Stepper: Sized {
     ) -> Option<Vec<f64>>;
 }
 
-/// A step of `length` s from `start` in parts: `step` makes the part of a length from a point that ends
-/// at a time, and returns `None` if it must be shorter. Parts are halves of halves, so that they
-/// add up exactly. Returns `None` if parts get too short.
+/// Makes a step of `length` s from `start` in parts. `step` makes one part: it takes the start point, the
+/// length and the end time, and returns `None` if the part must be shorter. The parts result from repeated
+/// halving, so their sum is exact. Returns `None` if the parts get too short.
 pub fn split_step(
     start: &Point,
     length: f64,
@@ -162,7 +164,7 @@ pub fn split_step(
     Some(point)
 }
 
-/// Why a method refused to go on from a point with this step (s).
+/// Returns the reason why a method rejected a step (s) from a point.
 pub fn rejection_error<S: System + ?Sized>(
     watched: &WatchedSystem<'_, S>,
     from: &Point,

@@ -1,57 +1,57 @@
 //! Detects stiffness: stability instead of accuracy limits the steps.
 //!
-//! Stability limits a step of an explicit method to a few times the fastest decay time, at any
-//! tolerance. If the projected number of steps exceeds the limit, an iteration with differences of
-//! the rates finds the fastest decay. The system is stiff if the steps are as long as it allows.
-//! Otherwise the motion itself is fast, and the simulation continues to the limit on steps.
+//! Stability limits a step of an explicit method to a few times the fastest decay time, at any tolerance. If
+//! the projected number of steps exceeds the limit, a power iteration with differences of the rates finds the
+//! fastest decay. The system is stiff if the steps are as long as the stability limit for this decay. Otherwise
+//! the motion itself is fast, and the simulation continues to the limit on steps.
 
 use super::error::SolveError;
 use super::system::System;
 
-/// Steps between two looks at the pace: a fraction of a second's work.
+/// Number of steps between two checks: a fraction of a second of computing time.
 const STEPS: u64 = 1 << 13;
 
 /// Number of successive checks that must exceed the limit.
 const LOOKS: u32 = 3;
 
-/// Iterations towards the fastest decay; neighbours in speed need not be told apart.
+/// Number of power iterations for the fastest decay; eigenvalues of similar size need not be separated.
 const ITERATIONS: usize = 12;
 
-/// Stability limits steps at least this long, in units of the fastest decay time: the decaying
-/// component is gone and causes no error.
+/// Shortest step that stability limits, in units of the fastest decay time: the decaying component is gone and
+/// causes no error.
 const LIMITED: f64 = 0.3;
 
-/// The same for a vibration, which causes errors for as long as it lasts.
+/// Shortest step that stability limits for a vibration, which causes errors as long as it lasts.
 const LIMITED_BY_VIBRATION: f64 = 2.0;
 
 /// Relative change of the state for differences of the rates.
 const MOVED: f64 = 1e-7;
 
-/// The pace of a simulation.
+/// Step rate of a simulation, as of the last check.
 pub struct Pace {
-    /// At the last look: the time, s, and the steps so far.
+    /// Time (s) and number of steps at the last check.
     last: (f64, u64),
     hopeless: u32,
 }
 
 /// Progress of a simulation.
 pub struct Progress<'a> {
-    /// The time, s.
+    /// Current time, s.
     pub t: f64,
-    /// The state.
+    /// Current state.
     pub y: &'a [f64],
-    /// The length of a step, s.
+    /// Length of a step, s.
     pub step: f64,
-    /// Steps so far, refused ones included, and the most there may be.
+    /// Number of steps so far, including rejected ones, and the limit on this number.
     pub steps: (u64, u64),
-    /// The most that there may be where stability keeps them short.
+    /// Limit on the number of steps if stability limits their length.
     pub max_steps_if_stiff: u64,
-    /// The end, s.
+    /// End of the simulation, s.
     pub end: f64,
 }
 
 impl Pace {
-    /// At the beginning, s.
+    /// Step rate at the start, whose time is `t` (s).
     pub fn new(t: f64) -> Self {
         Self {
             last: (t, 0),
@@ -59,10 +59,10 @@ impl Pace {
         }
     }
 
-    /// Looks at the pace if it is time to.
+    /// Checks the step rate if a check is due.
     ///
     /// # Errors
-    /// If the system is stiff, and there would be no end within the limit on steps.
+    /// The system is stiff, and the simulation would not end within the limit on steps.
     pub fn check<S: System + ?Sized>(
         &mut self,
         system: &S,
@@ -97,18 +97,18 @@ impl Pace {
     }
 }
 
-/// Fastest divergence or convergence of neighbouring motions.
+/// Mode with the fastest divergence or convergence of neighbouring motions.
 struct Fastest {
-    /// 1/s.
+    /// Magnitude of the eigenvalue, 1/s.
     rate: f64,
-    /// True if they meet, rather than turn around each other.
+    /// True if neighbouring motions converge, instead of oscillating about each other.
     decays: bool,
-    /// The state variable that has most to do with it.
+    /// Index of the state with the largest component.
     state: usize,
 }
 
 impl Fastest {
-    /// Returns true if it limits steps of this length, s.
+    /// Returns true if stability for this mode limits steps of this length, s.
     fn limits(&self, step: f64) -> bool {
         let limit = if self.decays {
             LIMITED
@@ -119,14 +119,14 @@ impl Fastest {
     }
 }
 
-/// Finds the fastest mode at the present state.
+/// Finds the fastest mode at the current state by power iteration.
 fn fastest<S: System + ?Sized>(system: &S, standing: &Progress<'_>) -> Option<Fastest> {
     let (t, y) = (standing.t, standing.y);
     let sizes: Vec<f64> = y.iter().map(|y| y.abs().max(standing.step)).collect();
     let mut base = vec![0.0; y.len()];
     let mut moved = base.clone();
     system.rates(t, y, &mut base);
-    // A direction in parts of the states' sizes, along no axis.
+    // Initial direction, relative to the sizes of the states, with all components nonzero.
     let mut direction: Vec<f64> = (0..y.len()).map(|i| 1.0 + 0.1 * (i as f64).cos()).collect();
     let (mut rate, mut along) = (0.0_f64, 0.0_f64);
     for _ in 0..ITERATIONS {

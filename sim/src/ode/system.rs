@@ -20,7 +20,8 @@ pub struct ObservedStep<'s> {
 pub enum Interior {
     /// Interpolation, without evaluations of the rates.
     Interpolated,
-    /// Interpolation if it is as accurate as samples of a smooth motion, otherwise a shorter step from the same start.
+    /// Interpolation if it is accurate enough for samples of a smooth motion, otherwise a shorter step from the
+    /// same start.
     Accurate,
     /// A shorter step from the same start, if that is more accurate.
     Recomputed,
@@ -56,34 +57,34 @@ pub trait System {
     /// right-hand side may have a kink or jump only on a sign change of one of them.
     fn guards(&self, _t: f64, _y: &[f64], _out: &mut [f64]) {}
 
-    /// Writes the bounds of the switching functions over a stretch of a motion to `out`,
-    /// [`System::guard_count`] entries: the times `t` (begin, end; s) and the bounds of the states.
+    /// Writes the bounds of the switching functions over a segment of a motion to `out`,
+    /// [`System::guard_count`] entries, from the times `t` (begin, end; s) and the bounds of the states.
     /// Functions with [`Enclosure::UNKNOWN`] are searched by samples.
     fn bound_guards(&self, _t: (f64, f64), _state: &[Enclosure], out: &mut [Enclosure]) {
         out.fill(Enclosure::UNKNOWN);
     }
 
-    /// Returns true if the derivatives of the rates grow without bound towards the surface of a switching function, as
-    /// those of v/norm(v). Steps approach such a surface.
+    /// Returns true if the derivatives of the rates grow without bound towards the surface of a switching
+    /// function, as for v/norm(v). Such a surface is approached in several steps.
     fn is_singular(&self, _guard: usize) -> bool {
         false
     }
 
-    /// Returns true if a switching function is the distance of an impact. Bounces may become arbitrarily low, so that
-    /// events are applied on the surface.
+    /// Returns true if a switching function is the distance of an impact. Bounces may become arbitrarily low,
+    /// so the events are applied on the surface itself.
     fn is_distance(&self, _guard: usize) -> bool {
         false
     }
 
-    /// Returns true if the energies jump where a switching function is 0. A motion that starts there is on the side on
-    /// which the function is negative.
+    /// Returns true if the energies jump where a switching function is 0. If a motion starts on such a surface,
+    /// it starts on the side on which the function is negative.
     fn has_energy_jump(&self, _guard: usize) -> bool {
         false
     }
 
-    /// Returns the index of the first coordinate whose pivot in the mass matrix, after elimination
-    /// of those before it, is not positive at time `t` and state `y`; `None` if there is none or
-    /// the system does not check.
+    /// Returns the index of the first coordinate whose pivot in the mass matrix is not positive at time `t` and
+    /// state `y`, after the elimination of the preceding coordinates; `None` if there is none or the system
+    /// does not check.
     fn find_indefinite_coordinate(&self, _t: f64, _y: &[f64]) -> Option<usize> {
         None
     }
@@ -94,11 +95,12 @@ pub trait System {
         0
     }
 
-    /// Marks the states that the last call of [`System::project`] corrects, in addition to those that it changed: a
-    /// correction may be below the rounding of a state.
+    /// Marks the states that the last call of [`System::project`] corrects, in addition to the states that it
+    /// changed: a correction may be below the rounding of a state.
     fn mark_corrected(&self, _is_corrected: &mut [bool]) {}
 
-    /// Discards the notes of the last call of [`System::project`]: the motion does not pass the projected state.
+    /// Discards the data that the last call of [`System::project`] stored: the projected state is not part of
+    /// the motion.
     fn forget_projection(&self) {}
 
     /// Returns the next time after `t` at which the right-hand side is not smooth in time, for
@@ -118,26 +120,28 @@ pub trait System {
         false
     }
 
-    /// Fixes the sides of the surfaces, -1, 1, or 0 (unknown) per switching function, so that the rates continue
-    /// smoothly across them: a step may pass a surface before the crossing is located. `None` restores the
-    /// rates of the side on which the state is. If a system with switching functions ignores it, steps near surfaces are
-    /// short and only as accurate as the tolerance.
+    /// Fixes the sides of the surfaces, -1, 1, or 0 (unknown) per switching function, so that the rates
+    /// continue smoothly across them: a step may pass a surface before the crossing is located. `None` restores
+    /// the rates of the side on which the state is. If a system with switching functions does not implement
+    /// this method, steps near surfaces are short and only as accurate as the tolerance.
     fn fix_sides(&self, _sides: Option<&[f64]>) {}
 
-    /// Sets the modes in which a motion continues, before its first evaluation: surfaces that hold or are closed there do
-    /// so from the start, if the state is on them up to errors of its computation. Empty if no modes are known.
+    /// Sets the modes in which a motion continues, before its first evaluation. Surfaces that hold or are
+    /// closed in `modes` keep this mode from the start, if the state is on them up to errors of its
+    /// computation. Empty if no modes are known.
     fn assume_modes(&self, _modes: &[SurfaceMode]) {}
 
-    /// Updates the modes of the surfaces at `t` and `y`, where inputs may jump: rest ends if a force exceeds its limit.
+    /// Updates the modes of the surfaces at `t` and `y`, where inputs may jump: sticking ends if a force
+    /// exceeds its limit.
     fn update_modes(&self, _t: f64, _y: &[f64]) {}
 
-    /// Replaces the modes of the surfaces, [`System::guard_count`] entries that follow from their sides, by those in which
-    /// the motion is: held or closed.
+    /// Replaces modes that follow from the sides of the surfaces, [`System::guard_count`] entries, by the
+    /// actual modes: held or closed.
     fn write_modes(&self, _modes: &mut [SurfaceMode]) {}
 
-    /// Adds the roundings of the rates by forces that balance others at rest, as those of surfaces that hold, to `out`,
-    /// [`System::state_count`] entries in the units of the rates. Rates that are states gather the roundings of a step of
-    /// this `length` (s).
+    /// Adds the rounding errors of the rates at rest to `out`, [`System::state_count`] entries in the units of
+    /// the rates. They are caused by forces that balance others, such as forces of holding surfaces. A rate
+    /// that is also a state accumulates the rounding errors of a step of this `length` (s).
     fn add_rate_roundings(&self, _length: f64, _out: &mut [f64]) {}
 
     /// Returns true if the solver must call [`System::observe_step`].

@@ -1,7 +1,7 @@
-//! Coefficients of the method of Dormand and Prince of order 8 and of its continuous extension of order 7
-//! (Hairer, Norsett and Wanner, "Solving Ordinary Differential Equations I", sections II.5 and II.6).
+//! Coefficients of the Dormand-Prince method of order 8 and of its dense output of order 7 (Hairer, Norsett and
+//! Wanner, "Solving Ordinary Differential Equations I", sections II.5 and II.6).
 
-/// Terms of a combination of slopes: index of the slope and its coefficient.
+/// Terms of a linear combination of slopes: index of the slope and its coefficient.
 pub type Terms = &'static [(usize, f64)];
 
 /// Number of stages of a step.
@@ -10,10 +10,10 @@ pub const STAGES: usize = 12;
 /// Index of the slope at the end of a step.
 pub const END: usize = STAGES;
 
-/// Number of slopes with those of the extension.
+/// Number of slopes, including those of the dense output.
 pub const SLOPES: usize = 16;
 
-/// Time of each slope as a part of the step.
+/// Time of each slope as a fraction of the step.
 pub const PARTS: [f64; SLOPES] = [
     0.0,
     0.052_600_151_958_767_73,
@@ -33,7 +33,8 @@ pub const PARTS: [f64; SLOPES] = [
     0.777_777_777_777_777_8,
 ];
 
-/// Increment of the state of each slope, divided by the step; that of [`END`] is the increment of the step.
+/// Increment of the state at each slope, divided by the step size; the entry [`END`] is the increment of the
+/// step.
 pub const INCREMENTS: [Terms; SLOPES] = [
     &[],
     &[(0, 0.052_600_151_958_767_73)],
@@ -142,7 +143,7 @@ pub const INCREMENTS: [Terms; SLOPES] = [
     ],
 ];
 
-/// Error estimate of order 5, divided by the step.
+/// Error estimate of order 5, divided by the step size.
 pub const ERROR_5: Terms = &[
     (0, 0.013_120_044_994_194_88),
     (5, -1.225_156_446_376_204_4),
@@ -154,7 +155,7 @@ pub const ERROR_5: Terms = &[
     (11, -0.022_355_307_863_886_294),
 ];
 
-/// Error estimate of order 3, divided by the step.
+/// Error estimate of order 3, divided by the step size.
 pub const ERROR_3: Terms = &[
     (0, -0.189_800_754_072_407_62),
     (5, 4.450_312_892_752_409),
@@ -166,7 +167,7 @@ pub const ERROR_3: Terms = &[
     (11, 0.022_651_792_198_360_82),
 ];
 
-/// Coefficients of the extension from its fourth on, divided by the step.
+/// Coefficients of the dense output from the fourth on, divided by the step size.
 pub const EXTENSION: [Terms; 4] = [
     &[
         (0, -8.428_938_276_109_013),

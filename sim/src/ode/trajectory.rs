@@ -7,9 +7,9 @@ use super::events::{Event, Jump};
 pub struct SolverStatistics {
     /// Number of accepted steps.
     pub steps: u64,
-    /// Number of steps rejected by the error estimate.
+    /// Number of steps that the error estimate rejected.
     pub rejected_steps: u64,
-    /// Number of trial steps for samples and for the approach to switching surfaces.
+    /// Number of trial steps for samples and for approaches to switching surfaces.
     pub trial_steps: u64,
     /// Number of evaluations of the right-hand side.
     pub evaluations: u64,
@@ -26,7 +26,8 @@ pub struct Trajectory {
     pub final_state: Vec<f64>,
     /// Events, in order of time.
     pub events: Vec<Event>,
-    /// Jumps of the state, in order of time. Events at the same time caused them; without any, inputs that jump did.
+    /// Jumps of the state, in order of time. They are caused by events at the same time; without such events,
+    /// by a jump of the inputs.
     pub jumps: Vec<Jump>,
     /// Solver statistics.
     pub statistics: SolverStatistics,

@@ -1,5 +1,5 @@
-//! A system during a simulation: sides of its switching surfaces, number of evaluations, and rates
-//! that are not finite.
+//! A system during a simulation: sides of its switching surfaces, number of evaluations, and rates that are not
+//! finite.
 
 use std::cell::{Cell, RefCell};
 use std::cmp::Ordering;
@@ -12,20 +12,20 @@ use super::root_band::{GuardHistory, RootBand, has_band};
 use super::settings::UNMOVED_SIZE_FRACTION;
 use super::system::{Interior, ObservedStep, System};
 
-/// Smallest distance to a surface, in roundings, of a state whose projection is to stay on one side: later projections move
-/// it by rounding.
+/// Smallest distance to a surface, in roundings, of a state whose projection must stay on one side: later
+/// projections move the state by rounding.
 const MIN_DISTANCE_ROUNDINGS: f64 = 16.0;
 
 /// Side of every switching surface: -1, 1, or 0 if a step begins on it.
 pub type Regime = Vec<f64>;
 
-/// A system with its record.
+/// A system with the bookkeeping of a simulation.
 pub struct WatchedSystem<'a, S: System + ?Sized> {
     system: &'a S,
     record: Record,
 }
 
-/// The regime of the present step, and the errors of its trials.
+/// Regime of the current step, and errors of its trial steps.
 #[derive(Default)]
 pub struct Record {
     regime: RefCell<Regime>,
@@ -33,13 +33,13 @@ pub struct Record {
     not_finite: Cell<Option<usize>>,
     indefinite: Cell<Option<usize>>,
     evaluations: Cell<u64>,
-    /// True while rates are evaluated on the side of each state.
+    /// True while rates are evaluated on the actual side of each state.
     has_released_sides: Cell<bool>,
-    /// The last side of every surface that was not 0.
+    /// Last nonzero side of every surface.
     last_sides: RefCell<Regime>,
-    /// Surfaces near the present point near which the rates grow as a root.
+    /// Bands around surfaces close to the current point near which the rates grow as a root.
     bands: RefCell<Vec<RootBand>>,
-    /// The past of each switching function.
+    /// History of each switching function.
     histories: RefCell<Vec<GuardHistory>>,
 }
 
@@ -86,7 +86,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.system
     }
 
-    /// Sets the sides of the surfaces that have one in `modes`, one per surface.
+    /// Sets the sides of the surfaces whose mode in `modes` (one per surface) has a side.
     pub fn assume_sides(&self, modes: &[SurfaceMode]) {
         for (guard, mode) in modes.iter().enumerate() {
             let side = match mode {
@@ -105,31 +105,31 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.record.not_finite.set(None);
     }
 
-    /// Clips the time of trials to just before `t`. At a breakpoint the right-hand side may jump,
-    /// and a step that ends there belongs to the time before.
+    /// Limits the time of trial evaluations to just before `t`. The right-hand side may jump at a breakpoint,
+    /// and a step that ends there uses the rates before the jump.
     pub fn limit_time(&self, t: f64) {
         self.record.horizon.set(t);
     }
 
-    /// Returns the time of evaluation for a trial at `t`.
+    /// Returns the time at which the system is evaluated for a trial at `t`.
     fn seen(&self, t: f64) -> f64 {
         let horizon = self.record.horizon.get();
         if t < horizon { t } else { horizon.next_down() }
     }
 
-    /// Returns a state variable with a non-finite rate in a trial since
+    /// Returns the index of a state whose rate was not finite in a trial since the last call of
     /// [`WatchedSystem::forget_trials`].
     pub fn non_finite_state(&self) -> Option<usize> {
         self.record.not_finite.get()
     }
 
-    /// Returns a coordinate without positive inertia at a trial since
+    /// Returns the index of a coordinate without positive inertia in a trial since the last call of
     /// [`WatchedSystem::forget_later_trials`].
     pub fn indefinite_coordinate(&self) -> Option<usize> {
         self.record.indefinite.get()
     }
 
-    /// Clears errors of trials beyond the present point, after the motion has reached them.
+    /// Clears errors of trials beyond the current point, after the motion has reached this point.
     pub fn forget_later_trials(&self) {
         self.record.indefinite.set(None);
     }
@@ -139,8 +139,8 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.record.evaluations.get()
     }
 
-    /// Computes the rates at `t` and `y` in the present regime, interpolated within [`RootBand`]s. Returns true if they
-    /// are finite.
+    /// Computes the rates at `t` and `y` in the current regime, interpolated within [`RootBand`]s. Returns true
+    /// if they are finite.
     pub fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) -> bool {
         let t = self.seen(t);
         match &self.record.bands.borrow()[..] {
@@ -188,8 +188,8 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.interpolate_jacobian(&bands, (self.seen(t), y), out);
     }
 
-    /// Finds the surfaces at `t` and `y` near which rates grow as a root, for a method with the errors `allowed` to the
-    /// states: rates are interpolated there, and no side is kept.
+    /// Finds the surfaces at `t` and `y` near which rates grow as a root, for a method with the errors
+    /// `allowed` to the states. The rates are interpolated near these surfaces, and their sides are not fixed.
     pub fn update_root_bands(&self, t: f64, y: &[f64], allowed: &[f64]) {
         let histories = &mut self.record.histories.borrow_mut();
         let bands = self.find_root_bands(histories, (t, y), allowed);
@@ -204,7 +204,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         !self.record.regime.borrow().is_empty()
     }
 
-    /// Returns the side of the surface `guard` in the present regime: -1, 1, or 0 if unknown.
+    /// Returns the side of the surface `guard` in the current regime: -1, 1, or 0 if unknown.
     pub fn side(&self, guard: usize) -> f64 {
         self.record
             .regime
@@ -238,7 +238,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.system.bound_guards(t, state, out);
     }
 
-    /// Returns the change of each switching function for a rounding of `y`.
+    /// Returns the change of each switching function due to rounding of `y`.
     pub fn guard_roundings(&self, t: f64, y: &[f64]) -> Vec<f64> {
         let here = self.evaluate_guards(t, y);
         let mut roundings = vec![0.0; here.len()];
@@ -254,14 +254,14 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         roundings
     }
 
-    /// Returns the switching functions at the end of a step, before the jump of a breakpoint; see
+    /// Returns the switching functions at the end of a step, before the jump at a breakpoint; see
     /// [`WatchedSystem::limit_time`].
     pub fn evaluate_guards_before(&self, t: f64, y: &[f64]) -> Vec<f64> {
         self.evaluate_guards(self.seen(t), y)
     }
 
-    /// Returns the lowest of the switching functions `guards`, each positive on its side in the
-    /// present regime.
+    /// Returns the value of the lowest of the switching functions `guards`; each is positive on its side in the
+    /// current regime.
     pub fn lowest_guard(&self, guards: &[usize], t: f64, y: &[f64]) -> f64 {
         let values = self.evaluate_guards_before(t, y);
         let regime = self.record.regime.borrow();
@@ -279,8 +279,8 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.side(guard) * value < 0.0
     }
 
-    /// Sets the regime to that of `t` and `y`. A function that is exactly 0 keeps its side, unless it is 0 around the
-    /// point too, as max(x, 0) is.
+    /// Sets the regime at `t` and `y`. A function that is exactly 0 keeps its side, unless it is 0 in a
+    /// neighbourhood of the point, as max(x, 0) is.
     pub fn enter_regime(&self, t: f64, y: &[f64]) {
         let guards = self.evaluate_guards(t, y);
         self.release_vanishing((t, y), &guards);
@@ -296,7 +296,8 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         }
     }
 
-    /// Releases the sides of the switching functions with these values that are 0 at a point and next to it.
+    /// Releases the sides of the switching functions that are 0 at a point and also at a neighbouring point.
+    /// `guards` are their values.
     fn release_vanishing(&self, (t, y): (f64, &[f64]), guards: &[f64]) {
         let has_side = |guard: &usize| guards[*guard] == 0.0 && self.side(*guard) != 0.0;
         let zeros: Vec<usize> = (0..guards.len()).filter(has_side).collect();
@@ -314,8 +315,9 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         }
     }
 
-    /// Sets the sides of surfaces on which the motion starts and which it leaves in one direction, whichever of their sides
-    /// applies. `step` (s) is short. Otherwise the rates at the start are those on the surface, not those of the motion.
+    /// Sets the sides of surfaces on which the motion starts and which it leaves to the same side, whichever
+    /// side is assumed for the rates. `step` (s) is short. Without this, the rates at the start would be those
+    /// on the surface, which are not the rates of the motion.
     pub fn leave_surfaces(&self, t: f64, y: &[f64], step: f64) {
         let guards = self.evaluate_guards(t, y);
         let starting = guards.iter().enumerate().filter(|(guard, value)| {
@@ -353,8 +355,9 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.system.apply_event(before, t, y)
     }
 
-    /// Projects a state just beyond surfaces onto the invariants, so that no later projection leads back over these
-    /// surfaces. The state just before them is `near`; the state may change by the errors `allowed`.
+    /// Projects a state just beyond surfaces onto the invariants such that no later projection moves it back
+    /// over these surfaces. `near` is the state just before the surfaces. The state may change by the errors
+    /// `allowed`.
     pub fn project_beyond(
         &self,
         (surfaces, allowed): (&[usize], &[f64]),
@@ -365,8 +368,9 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.project_along((surfaces, allowed), (near, 1.0), t, y);
     }
 
-    /// Projects a state on the near side of surfaces onto the invariants, so that no later projection leads over these
-    /// surfaces, or over one at which the energies jump. The state may change by the errors `allowed`.
+    /// Projects a state on the near side of surfaces onto the invariants such that no later projection moves it
+    /// over these surfaces, or over a surface at which the energies jump. The state may change by the errors
+    /// `allowed`.
     pub fn project_before(&self, (surfaces, allowed): (&[usize], &[f64]), t: f64, y: &mut [f64]) {
         let guards = 0..self.system.guard_count();
         let surfaces: Vec<usize> = guards
@@ -376,9 +380,9 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.project_along((&surfaces, allowed), (&start, -1.0), t, y);
     }
 
-    /// Projects a state. If the projection is not on one side of the surfaces, or does not stay there, replaces the state
-    /// by the nearest along the rates at `start` whose projection is and stays there, if there is one within the errors
-    /// `allowed`: beyond the surfaces if `direction` is 1, and before them if it is -1.
+    /// Projects a state. If the projection is not on one side of the surfaces, or does not stay on it, replaces
+    /// the state by the nearest state along the rates at `start` whose projection does, within the errors
+    /// `allowed`. The side is beyond the surfaces if `direction` is 1, and before them if it is -1.
     fn project_along(
         &self,
         (surfaces, allowed): (&[usize], &[f64]),
@@ -437,7 +441,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         t == self.record.horizon.get()
     }
 
-    /// Extends the rates of the present regime smoothly beyond its surfaces if `keep`; see
+    /// Extends the rates of the current regime smoothly beyond its surfaces if `keep` is true; see
     /// [`System::fix_sides`].
     pub fn fix_sides(&self, keep: bool) {
         self.record.has_released_sides.set(!keep);
@@ -445,15 +449,15 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.system.fix_sides(keep.then_some(regime.as_slice()));
     }
 
-    /// Fixes sides that were released for an earlier step.
+    /// Fixes sides that were released in an earlier step.
     pub fn restore_sides(&self) {
         if self.record.has_released_sides.get() {
             self.fix_sides(true);
         }
     }
 
-    /// Evaluates rates on the side of each state if those of the present regime were not finite in
-    /// a trial. Returns true if so.
+    /// Evaluates rates on the actual side of each state from now on, if those of the current regime were not
+    /// finite in a trial. Returns true if so.
     pub fn release_sides(&self) -> bool {
         let releases = self.has_guards() && self.record.not_finite.get().is_some();
         if releases {
@@ -467,7 +471,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.system.update_modes(t, y);
     }
 
-    /// Writes the modes of the surfaces in the present regime.
+    /// Writes the modes of the surfaces in the current regime.
     pub fn write_modes(&self, modes: &mut Vec<SurfaceMode>) {
         modes.clear();
         let sides = self.record.last_sides.borrow();
@@ -475,7 +479,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.system.write_modes(modes);
     }
 
-    /// Adds the roundings of the rates at rest to `out`; see [`System::add_rate_roundings`].
+    /// Adds the rounding errors of the rates at rest to `out`; see [`System::add_rate_roundings`].
     pub fn add_rate_roundings(&self, length: f64, out: &mut [f64]) {
         self.system.add_rate_roundings(length, out);
     }
@@ -499,7 +503,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         });
     }
 
-    /// Returns the state variable with the highest rate relative to its size.
+    /// Returns the index of the state with the highest rate relative to its size.
     pub fn fastest_state(&self, t: f64, y: &[f64]) -> usize {
         let mut rates = vec![0.0; y.len()];
         self.system.rates(t, y, &mut rates);
