@@ -1,26 +1,26 @@
-//! Balancing of rate matrices by powers of two, because states with different units give entries
-//! of very different size.
+//! Balancing of rate matrices by powers of two: states with different units give entries of very different
+//! magnitude.
 
 use nalgebra::DMatrix;
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
 
-/// Largest entry of a matrix that can be balanced, 1/s. Squares of larger entries overflow, and
-/// balancing does not terminate.
+/// Largest entry of a matrix that can be balanced, 1/s. Squares of larger entries would overflow, and the
+/// balancing would not terminate.
 pub(crate) const MAX_ENTRY_PER_S: f64 = 1e150;
 
-/// Entries below this fraction of the largest entry do not affect the balance, so that negligible
+/// Entries below this fraction of the largest entry are ignored, so that negligible
 /// couplings do not determine the scale of a state.
 const NEGLIGIBLE_FRACTION: f64 = 1e-6;
 
-/// Reduction of the largest entry by a balance of all entries, above which that entry is an effect
-/// of the units.
+/// Factor by which balancing of all entries must reduce the largest entry, to attribute this entry to the
+/// choice of units.
 const MIN_UNIT_EFFECT_FACTOR: f64 = 1e3;
 
 /// Returns the diagonal of D, powers of two, for which the entries of D^-1 A D have similar size.
 /// `guess` is the initial diagonal. The entries of A must be below [`MAX_ENTRY_PER_S`].
 pub(crate) fn balance(matrix: &DMatrix<f64>, guess: Vec<f64>) -> Vec<f64> {
     let all = balance_above(matrix, guess.clone(), 0.0);
-    // The second pass balances the large entries among themselves.
+    // The first pass can make other entries large, so a second one follows.
     let twice = |scale| {
         let once = balance_above(matrix, scale, NEGLIGIBLE_FRACTION);
         balance_above(matrix, once, NEGLIGIBLE_FRACTION)
@@ -41,7 +41,7 @@ pub(crate) fn scale_matrix(matrix: &DMatrix<f64>, scale: &[f64]) -> DMatrix<f64>
     })
 }
 
-/// Balances the entries that are not below the fraction `part` of the largest entry.
+/// Balances the entries that are at least the fraction `part` of the largest entry.
 fn balance_above(matrix: &DMatrix<f64>, mut scale: Vec<f64>, part: f64) -> Vec<f64> {
     let scaled = scale_matrix(matrix, &scale);
     let least = part * scaled.amax();

@@ -1,13 +1,13 @@
 //! Cubic splines with continuous first and second derivatives.
 //!
-//! The third derivative is continuous at the second and the last but one sample ("not-a-knot"; de
-//! Boor, *A Practical Guide to Splines*, chapter IV), so a cubic is reproduced up to its ends.
-//! Outside the samples the spline has the constant value of the first or last sample.
+//! The third derivative is continuous at the second and the last but one sample ("not-a-knot"; de Boor, *A
+//! Practical Guide to Splines*, chapter IV), so a cubic is reproduced up to its ends. Before the first sample
+//! the spline has the value of this sample, after the last sample the value of the last.
 
 use eomgen_codegen::program::evaluator::Enclosure;
 use eomgen_model_spec::interval::Interval;
 
-/// A cubic spline through samples.
+/// Cubic spline through samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CubicSpline {
     times: Vec<f64>,
@@ -38,7 +38,8 @@ impl CubicSpline {
         [value, rate, second]
     }
 
-    /// Returns the value and its first three derivatives at a time, on the cubic of another time, both in s.
+    /// Returns the value and its first three derivatives at a time, on the cubic that belongs to the time
+    /// `piece`, both in s.
     pub fn evaluate_piece(&self, t: f64, piece: f64) -> [f64; 4] {
         let last = self.times.len() - 1;
         if piece < self.times[0] {
@@ -86,11 +87,11 @@ impl CubicSpline {
             .unwrap_or([Enclosure::UNKNOWN; 3])
     }
 
-    /// Returns the same between two times without a sample between them.
+    /// Returns the bounds of [`CubicSpline::bound`] between two times without a sample between them.
     fn bound_cubic(&self, begin: f64, end: f64) -> [Enclosure; 3] {
         let duration = end - begin;
-        // At a sample at one end, the derivatives of the other piece may differ by rounding only,
-        // except at the first and the last sample.
+        // If one end is a sample, the derivatives of the adjacent piece may differ by rounding only, except at
+        // the first and the last sample.
         let middle = self.evaluate(begin + 0.5 * duration);
         let is_outside = end <= self.times[0] || begin >= self.times[self.times.len() - 1];
         if is_outside {
@@ -118,8 +119,8 @@ fn hull<const N: usize>(points: [f64; N]) -> Interval {
     Interval::from_ends(low, high)
 }
 
-/// Computes the second derivatives at the samples: a line through two samples, a parabola through
-/// three, and a not-a-knot spline from four on.
+/// Computes the second derivatives at the samples. The spline is a line for two samples, a parabola for three,
+/// and a not-a-knot spline for four or more.
 fn fit_curvatures(times: &[f64], values: &[f64]) -> Vec<f64> {
     let count = times.len();
     if count < 3 {
@@ -136,7 +137,8 @@ fn fit_curvatures(times: &[f64], values: &[f64]) -> Vec<f64> {
     if count == 3 {
         return vec![right[0] / (3.0 * (step[0] + step[1])); 3];
     }
-    // Tridiagonal in the inner samples; the outer ones are extrapolated from their two neighbours.
+    // The system is tridiagonal in the inner samples; the outer second derivatives are extrapolated from two
+    // neighbours each.
     let inner = count - 2;
     let mut diagonal: Vec<f64> = (0..inner).map(|k| 2.0 * (step[k] + step[k + 1])).collect();
     let mut lower: Vec<f64> = step[..inner].to_vec();
@@ -147,8 +149,7 @@ fn fit_curvatures(times: &[f64], values: &[f64]) -> Vec<f64> {
     let (last, before) = (step[count - 2], step[count - 3]);
     diagonal[inner - 1] += last * (1.0 + last / before);
     lower[inner - 1] -= last * last / before;
-    // No pivoting: the matrix is diagonally dominant except in the outer rows, whose pivots remain
-    // positive.
+    // No pivoting: the matrix is diagonally dominant except in the outer rows, whose pivots remain positive.
     for k in 1..inner {
         let factor = lower[k] / diagonal[k - 1];
         diagonal[k] -= factor * upper[k - 1];

@@ -1,10 +1,11 @@
-//! Dry friction against the direction of sliding, together with scalar surfaces.
+//! Dry friction opposite to a sliding velocity with two or three components, together with scalar switching
+//! surfaces.
 //!
-//! The rates of the sliding velocities are u = c + W s. A scalar surface has |s| <= 1, and s = sign(u) if u is not
-//! 0. A disc has a vector with |s| <= 1, and s = u/|u| if u is not 0. Gauss-Seidel sweeps solve one surface or disc
-//! after another exactly (F. Jourdan, P. Alart, M. Jean 1998). If they converge slowly, Newton's method
-//! solves s = P(s + r u), P the projection onto the bounds (P. Alart, A. Curnier 1991). The fixed-point
-//! residual verifies the result.
+//! The rates of the sliding velocities are u = c + W s. A scalar surface has |s| <= 1, and s = sign(u) if u is
+//! not 0. A disc is the set of friction vectors s with |s| <= 1, and s = u/|u| if u is not 0. Gauss-Seidel
+//! sweeps solve one surface or disc after another exactly (F. Jourdan, P. Alart, M. Jean 1998). If they
+//! converge slowly, Newton's method solves s = P(s + r u), P the projection onto the bounds (P. Alart, A.
+//! Curnier 1991). The fixed-point residual verifies the result.
 
 use std::ops::Range;
 
@@ -16,40 +17,40 @@ const MAX_SWEEPS: usize = 300;
 
 const MAX_NEWTON_STEPS: usize = 50;
 
-/// Halvings of a Newton step that does not reduce the residual.
+/// Maximum number of halvings of a Newton step that does not reduce the residual.
 const MAX_HALVINGS: usize = 20;
 
-/// Change of s in a sweep that counts as converged.
+/// Change of s in a sweep below which the sweeps have converged.
 const CONVERGED_CHANGE: f64 = 1e-14;
 
 /// Largest residual of a solution.
 const MAX_RESIDUAL: f64 = 1e-9;
 
-/// Bisections for the rate of a disc that slides; more than the bits of a number.
+/// Number of bisections for the rate of a sliding disc; more than a number has bits.
 const BISECTIONS: usize = 200;
 
-/// Arrival of a motion at zero sliding velocity.
+/// Arrival of a motion on a disc with zero sliding velocity.
 #[derive(Clone, Debug)]
 pub struct DiscArrival {
-    /// Rows of the velocity among the rates.
+    /// Rows of the sliding velocity in the matrix of the rates.
     pub rows: Range<usize>,
     /// Unit vector of the direction in which the motion leaves if the disc cannot hold it.
     pub along: Vec<f64>,
-    /// True if the disc held the motion until now and would need more than its largest force.
+    /// True if the disc held the motion until now and would need more than its maximum force.
     pub exceeds_limit: bool,
 }
 
 /// Effect of a disc on a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DiscVerdict {
-    /// The disc holds the motion with this vector.
+    /// The disc holds the motion with this friction vector.
     Holds(Vec<f64>),
     /// The motion slides in the direction of this unit vector.
     Slides(Vec<f64>),
 }
 
 impl DiscVerdict {
-    /// Returns the vector that replaces the unit vector.
+    /// Returns the friction vector s of the disc.
     pub fn vector(&self) -> &[f64] {
         match self {
             Self::Holds(s) | Self::Slides(s) => s,
@@ -57,7 +58,7 @@ impl DiscVerdict {
     }
 }
 
-/// Decides the effects of scalar surfaces, whose rows come first, and of discs. Returns `None` if no
+/// Determines whether scalar surfaces, whose rows come first, and discs hold the motion. Returns `None` if no
 /// solution is found.
 pub fn decide_with_discs(
     rates: &Rates,
@@ -121,7 +122,7 @@ impl Problem<'_> {
         (self.residual(&s) <= MAX_RESIDUAL).then_some(s)
     }
 
-    /// Solves one surface or disc after another.
+    /// Solves each surface and each disc once, in order.
     fn sweep(&self, s: &mut DVector<f64>) {
         for row in 0..self.arrivals.len() {
             s[row] = self.solve_scalar(s, row);
@@ -133,7 +134,7 @@ impl Problem<'_> {
         }
     }
 
-    /// Returns the largest change of s by solving a single surface or disc.
+    /// Returns the largest change of s if each surface and disc is solved on its own.
     fn residual(&self, s: &DVector<f64>) -> f64 {
         let scalars =
             (0..self.arrivals.len()).map(|row| (self.solve_scalar(s, row) - s[row]).abs());
@@ -166,7 +167,7 @@ impl Problem<'_> {
             .into_owned()
     }
 
-    /// Returns true if friction of the disc does not drive sliding.
+    /// Returns true if the friction of the disc cannot drive the sliding velocity.
     fn may_hold(&self, disc: &DiscArrival) -> bool {
         self.own(disc).trace() <= 0.0
     }
@@ -179,7 +180,7 @@ impl Problem<'_> {
         let all = &self.rates.c + &self.rates.w * s;
         let free = rows(&all, &disc.rows) - &own * rows(s, &disc.rows);
         if own.amax() == 0.0 {
-            // Contacts stop the sliding, or move it.
+            // Contact forces stop the sliding or drive it.
             return free.clone() / free.norm().max(f64::MIN_POSITIVE);
         }
         let held = solve_least_squares(&own, -free.clone());
@@ -206,7 +207,7 @@ impl Problem<'_> {
         at(high).map_or(held, |s| s.normalize())
     }
 
-    /// Returns the result of Newton's method for s = P(s + r u) from `s`.
+    /// Solves s = P(s + r u) by Newton's method from `s`.
     fn newton(&self, mut s: DVector<f64>) -> DVector<f64> {
         let count = s.len();
         let mut errors = self.projection_error(&s).0;
@@ -275,8 +276,8 @@ mod tests {
     use crate::random_numbers::Numbers;
     use crate::sliding_modes::Sharing;
 
-    /// Returns the rates of discs in two or three directions and of scalar frictions on bodies with a common mass
-    /// matrix, and their arrivals.
+    /// Returns the rates of discs with two or three components and of scalar frictions on bodies with a common
+    /// mass matrix, and their arrivals.
     fn problem(seed: u64) -> (Rates, Vec<Arrival>, Vec<DiscArrival>) {
         let mut numbers = Numbers::new(seed);
         let scalars = (seed % 3) as usize;

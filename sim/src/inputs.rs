@@ -8,10 +8,10 @@ use eomgen_codegen::program::evaluator::Enclosure;
 
 use crate::cubic_spline::CubicSpline;
 
-/// Inputs as a function of time, evaluated at every time of a solver's evaluations.
+/// Inputs as a function of time. Solvers evaluate it at every time at which they evaluate the rates.
 pub trait InputFunction: Debug + Send + Sync {
-    /// Writes the inputs at time `t` (s) to `out`, one entry per input. A NaN, for a time outside
-    /// the function's domain, stops the motion.
+    /// Writes the inputs at time `t` (s) to `out`, one entry per input. A NaN, for a time outside the
+    /// function's domain, stops the simulation.
     fn write(&self, t: f64, out: &mut [f64]);
 }
 
@@ -29,23 +29,24 @@ impl PartialEq for GivenInputs {
     }
 }
 
-/// Small distance from a time, relative to it, across which a function jumps.
+/// Half-width of the narrow interval around a time in which the change of a function is measured, relative to
+/// the time.
 const NEAR_JUMP_DISTANCE: f64 = 1e-13;
 
-/// Larger distance from a time, relative to it, across which a smooth function changes 10,000 times as much.
+/// Half-width of the wide interval, relative to the time. A smooth function changes 10,000 times as much over
+/// it as over the narrow one.
 const FAR_JUMP_DISTANCE: f64 = 1e-9;
 
-/// Inputs of a motion. Each is constant between samples, prescribed (a spline through its samples,
-/// with its rates) or a function of time. Before the first sample the first value applies, after
-/// the last sample the last.
+/// Inputs of a motion. Each input is constant between samples, prescribed (a spline through its samples, with
+/// its rates) or a function of time. Before the first sample the first value applies, after the last sample the
+/// last value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeldInputs {
     times: Vec<f64>,
-    /// Values, one row per time, one column per input.
+    /// Values of the held inputs, one row per time, one column per input.
     values: Vec<f64>,
     count: usize,
-    /// Prescribed motions: the index of each input, followed by its rate and second rate, and its
-    /// spline.
+    /// Prescribed motions: index of the input, whose rate and second rate follow it, and its spline.
     prescribed: Vec<(usize, CubicSpline)>,
     functions: Vec<GivenInputs>,
     /// Times at which functions jump, ascending, s.
@@ -77,8 +78,9 @@ impl HeldInputs {
         }
     }
 
-    /// Returns inputs that keep each of the rows of `count` numbers from its time (s, ascending)
-    /// until the next. Returns `None` without rows, or if the numbers of rows and times differ.
+    /// Returns inputs that are held between samples: row i of `values`, with `count` entries, applies from its
+    /// time (s, ascending) until the next one. Returns `None` without rows, or if the numbers of rows and times
+    /// differ.
     pub fn new(times: Vec<f64>, values: Vec<f64>, count: usize) -> Option<Self> {
         let whole = !times.is_empty() && values.len() == times.len() * count;
         whole.then_some(Self {
@@ -91,8 +93,7 @@ impl HeldInputs {
         })
     }
 
-    /// Sets the input at index `place` to a spline, and the next two inputs to its rate and second
-    /// rate.
+    /// Sets the input at index `place` to a spline, and the next two inputs to its rate and second rate.
     #[must_use]
     pub fn with_prescribed(mut self, place: usize, spline: CubicSpline) -> Self {
         self.prescribed.push((place, spline));
@@ -115,9 +116,9 @@ impl HeldInputs {
         self
     }
 
-    /// Sets the times (s) at which functions jump, so that solvers end a step there. A jump belongs
-    /// to the motion after it: at such a time, functions are evaluated at the next larger number.
-    /// Times that are not finite are ignored.
+    /// Sets the times (s) at which functions jump, so that solvers end a step there. At such a time, functions
+    /// are evaluated at the next larger number and have the value after the jump. Times that are not finite are
+    /// ignored.
     #[must_use]
     pub fn with_jump_times(mut self, mut breaks: Vec<f64>) -> Self {
         breaks.retain(|time| time.is_finite());
@@ -126,8 +127,8 @@ impl HeldInputs {
         self
     }
 
-    /// Returns these inputs around a time (s) at which their held values change from one row to another. Prescribed
-    /// motion and functions continue.
+    /// Returns these inputs around a time (s) at which their held values change from one row to another.
+    /// Prescribed motions and functions stay the same.
     #[must_use]
     pub fn with_held_step(&self, t: f64, before: &[f64], after: &[f64]) -> Self {
         Self {
@@ -137,8 +138,8 @@ impl HeldInputs {
         }
     }
 
-    /// Returns these inputs up to the first of some changes, each a time (s, ascending) with a row of held values, and then
-    /// those of the changes. Prescribed motion and functions continue.
+    /// Returns these inputs up to the first of some changes, then the held values of the changes. Each change
+    /// is a time (s, ascending) with a row of held values. Prescribed motions and functions stay the same.
     #[must_use]
     pub fn with_held_steps(&self, changes: &[(f64, Vec<f64>)]) -> Self {
         let Some((first, _)) = changes.first() else {
@@ -192,7 +193,7 @@ impl HeldInputs {
         Cow::Owned(self.complete(held.to_vec(), t, after))
     }
 
-    /// Returns the inputs at a time (s), in the order of the model, where those that are held have given values.
+    /// Returns the inputs at a time (s), in the order of the model, with `held` as the values of held inputs.
     pub fn evaluate_with_held<'h>(&self, t: f64, held: &'h [f64]) -> Cow<'h, [f64]> {
         match self.is_time_varying() {
             true => Cow::Owned(self.complete(held.to_vec(), t, t)),
@@ -200,8 +201,8 @@ impl HeldInputs {
         }
     }
 
-    /// Returns the prescribed motion from index `place` on and its first three derivatives at a time, on the cubic of
-    /// another time, both in s. A motion without samples rests.
+    /// Returns the prescribed motion at index `place` and its first three derivatives at a time, on the cubic
+    /// that belongs to the time `piece`, both in s. A motion without samples is constant.
     pub fn evaluate_prescribed(&self, place: usize, t: f64, piece: f64) -> [f64; 4] {
         let mut prescribed = self.prescribed.iter();
         match prescribed.find(|(first, _)| *first == place) {
@@ -210,7 +211,8 @@ impl HeldInputs {
         }
     }
 
-    /// Returns the inputs just before a time (s), in the order of the model, where those that are held have given values.
+    /// Returns the inputs just before a time (s), in the order of the model, with `held` as the values of held
+    /// inputs.
     pub fn evaluate_before(&self, t: f64, held: &[f64]) -> Vec<f64> {
         let before = if self.is_jump(t) { t.next_down() } else { t };
         self.complete(held.to_vec(), t, before)
@@ -221,7 +223,7 @@ impl HeldInputs {
         found.is_ok()
     }
 
-    /// Adds prescribed motion at `t` and functions at `function_time`, in s, to held inputs.
+    /// Adds prescribed motions at `t` and functions at `function_time`, in s, to held inputs.
     fn complete(&self, mut inputs: Vec<f64>, t: f64, function_time: f64) -> Vec<f64> {
         for given in &self.functions {
             let places = given.place..given.place + given.count;
@@ -233,8 +235,8 @@ impl HeldInputs {
         inputs
     }
 
-    /// Returns the bounds of the inputs from `begin` to `end` (s), between which no input jumps.
-    /// Functions of time are not bounded.
+    /// Returns the bounds of the inputs from `begin` to `end` (s), between which no input jumps. Inputs given
+    /// as functions of time get [`Enclosure::UNKNOWN`].
     pub fn bound(&self, begin: f64, end: f64) -> Vec<Enclosure> {
         let held = self.last_sample(begin).iter();
         let mut bounds: Vec<Enclosure> = held.map(|value| Enclosure::constant(*value)).collect();
@@ -247,8 +249,8 @@ impl HeldInputs {
         bounds
     }
 
-    /// Returns the time (s), the index and the value of the first input that is held at a number
-    /// that is not finite between two times (s).
+    /// Returns time (s), index and value of the first held input between two times (s) whose value is not
+    /// finite.
     pub fn first_not_finite(&self, begin: f64, end: f64) -> Option<(f64, usize, f64)> {
         let is_held = |place: &usize| !self.is_function(*place);
         let first = self.last_sample_index(begin);
@@ -264,8 +266,8 @@ impl HeldInputs {
             .find(|(_, place, value)| !value.is_finite() && is_held(place))
     }
 
-    /// Returns the index of an input whose function jumps near a time (s), which is not among the jump times: its change
-    /// across that time hardly depends on the distance.
+    /// Returns the index of an input function that jumps near a time (s) that is not among the jump times. The
+    /// change of such a function across this time hardly depends on the width of the interval.
     pub fn find_unknown_jump(&self, t: f64) -> Option<usize> {
         let size = t.abs().max(f64::MIN_POSITIVE);
         let is_near = |known: &f64| (known - t).abs() <= FAR_JUMP_DISTANCE * size;
@@ -283,20 +285,20 @@ impl HeldInputs {
         })
     }
 
-    /// Returns the index of the last sample at or before a time (s), 0 before the first.
+    /// Returns the index of the last sample at or before a time (s), 0 before the first sample.
     pub fn last_sample_index(&self, t: f64) -> usize {
         self.times_until(t).saturating_sub(1)
     }
 
-    /// Returns the inputs of the last sample at or before a time (s), without prescribed motion
-    /// and functions.
+    /// Returns the held inputs of the last sample at or before a time (s), without prescribed motions and
+    /// functions.
     pub fn last_sample(&self, t: f64) -> &[f64] {
         let row = self.last_sample_index(t);
         &self.values[row * self.count..(row + 1) * self.count]
     }
 
-    /// Returns the number of sample times at or before `t`. Evenly spaced times are found by
-    /// division, others by bisection.
+    /// Returns the number of sample times at or before `t`. The search divides if the times are evenly spaced,
+    /// and bisects otherwise.
     fn times_until(&self, t: f64) -> usize {
         if self.count == 0 {
             return 0;
@@ -308,7 +310,7 @@ impl HeldInputs {
         let (first, last) = (times[0], times[times.len() - 1]);
         let part = (t - first) / (last - first);
         let near = ((part * (times.len() - 1) as f64) as usize).min(times.len());
-        // Rounding may give a neighbour.
+        // The division may be wrong by one because of rounding.
         for count in [near + 1, near + 2, near] {
             let is_before = count == 0 || times.get(count - 1).is_some_and(|time| *time <= t);
             let is_after = times.get(count).is_none_or(|time| *time > t);
@@ -319,7 +321,7 @@ impl HeldInputs {
         times.partition_point(|time| *time <= t)
     }
 
-    /// Returns the next time (s) after `t` at which an input jumps.
+    /// Returns the time (s) of the next jump of an input after `t`.
     pub fn next_change(&self, t: f64) -> Option<f64> {
         if self.count == 0 {
             return None;
@@ -332,7 +334,7 @@ impl HeldInputs {
         }
     }
 
-    /// Returns the times of the samples, s.
+    /// Returns the sample times, s.
     pub fn times(&self) -> &[f64] {
         &self.times
     }
@@ -397,7 +399,7 @@ mod tests {
         }
     }
 
-    /// Function that is 0 up to and at 3 s, and 1 later.
+    /// Function that is 0 until 3 s, inclusive, and 1 afterwards.
     #[derive(Debug)]
     struct LateStep;
 

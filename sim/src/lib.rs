@@ -6,10 +6,10 @@
 //! | [`piecewise_linear`] | propagates piecewise-linear models exactly from event to event |
 //! | [`exponential`] | integrates nearly piecewise-linear models with tangent vectors |
 //! | [`sliding_modes`] | finds the surfaces that hold a motion |
-//! | [`friction_discs`] | decides on rest and direction under friction against the direction of sliding |
-//! | [`contact_friction`] | decides the modes of contacts with friction, and computes impacts |
+//! | [`friction_discs`] | dry friction with two or three components of sliding velocity: sticking or sliding direction |
+//! | [`contact_friction`] | modes of contacts with friction, and impacts |
 //! | [`variational`] | measures the growth of a tangent vector |
-//! | [`inputs`] | inputs over time |
+//! | [`inputs`] | inputs as functions of time |
 //! | [`cubic_spline`] | prescribed motion through samples |
 //!
 //! The crate `codegen` derives the models; the crate `compiled_model` chooses the solver.

@@ -1,7 +1,7 @@
 //! Selection of SIMD registers at run time.
 
 /// Evaluates an expression with the registers of AVX2 if the processor has them, otherwise with those
-/// of the target's baseline; `$simd` is the token. The results have the same bits.
+/// of the target's baseline; `$simd` is the token. The results are bit-identical.
 ///
 /// `fearless_simd::dispatch` has variants for SSE4.2 and AVX-512 as well. They double the compiled
 /// code, and vectors of four numbers gain nothing from them.

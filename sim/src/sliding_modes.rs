@@ -12,38 +12,38 @@ use eomgen_analysis::qr_iteration;
 use eomgen_codegen::independence::vectors::dot;
 use nalgebra::{DMatrix, DVector};
 
-/// Rates below this fraction of their terms count as rounding.
+/// Rates below this fraction of the magnitude of their terms count as rounding.
 pub(crate) const RATE_ROUNDING: f64 = 1e-10;
 
-/// Singular values below this fraction of the largest belong to dependent surfaces.
+/// Singular values below this fraction of the largest count as 0; their surfaces are linearly dependent.
 pub const MIN_SINGULAR_VALUE_FRACTION: f64 = 1e-10;
 
-/// Increase of the effect of a row on itself for values beyond limits, relative to that effect. It is small
-/// compared with [`RATE_ROUNDING`], so that an error that is no rounding gives a value far beyond its limit.
+/// Relative increase of the diagonal of the regularised system. It is small compared with [`RATE_ROUNDING`], so
+/// an error above rounding gives a value far beyond its limit.
 const OWN_EFFECT_EXCESS: f64 = 1e-13;
 
-/// Error of a row of a solved system, in roundings of its terms.
+/// Largest error of a row of a solved system, in roundings of its terms.
 const ROW_ROUNDINGS: f64 = 64.0;
 
-/// Number of changes per surface that select the largest error. After these, the first error is
-/// selected, which is guaranteed to terminate (K. G. Murty, *Linear Complementarity*, chapter 11).
+/// Number of changes per surface that select the surface with the largest error. Later changes select the first
+/// surface with an error, which guarantees termination (K. G. Murty, *Linear Complementarity*, chapter 11).
 const LARGEST_FIRST_CHANGES: usize = 4;
 
 const MAX_SURFACES_TO_TRY: usize = 7;
 
-/// Effect of a surface on a motion that is on it.
+/// Effect of a surface on a motion that has reached it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
-    /// The surface holds the motion; the number replaces the sign.
+    /// The surface holds the motion; the number s, between -1 and 1, replaces the sign.
     Holds(f64),
-    /// The surface exerts its largest force to this side, and other surfaces hold the motion.
+    /// The surface exerts its maximum force to this side, and other surfaces hold the motion.
     AtLimit(f64),
     /// The surface releases the motion to this side.
     Releases(f64),
 }
 
 impl Verdict {
-    /// Returns the number that replaces the sign.
+    /// Returns the number s that replaces the sign.
     pub fn sign(self) -> f64 {
         match self {
             Self::Holds(s) | Self::AtLimit(s) | Self::Releases(s) => s,
@@ -54,35 +54,35 @@ impl Verdict {
 /// Arrival of a motion on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival {
-    /// Side to which the motion leaves, -1 or 1, if the surface cannot hold it.
+    /// Side to which the motion leaves if the surface cannot hold it, -1 or 1.
     pub side: f64,
-    /// True if the surface held the motion until now and would need more than its largest force to
-    /// this side.
+    /// True if the surface held the motion until now and would need more than its maximum force to this side.
     pub exceeds_limit: bool,
 }
 
-/// Values of surfaces that hold the motion together and depend on each other, so that many values hold.
+/// Choice of the values s if holding surfaces are linearly dependent, so that s is not unique.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sharing {
-    /// The least largest magnitude: all surfaces hold as long as they can.
+    /// Minimises the largest magnitude: all surfaces hold as long as possible.
     LeastMaximum,
-    /// The least sum of squares, which is linear in the rates. A surface can reach its limit before others do.
+    /// Minimises the sum of squares, which makes s linear in the rates. A surface can reach its limit before
+    /// others do.
     LeastSquares,
 }
 
-/// Rates of the switching functions on their surfaces, g' = c + W s, with s instead of their
-/// signs.
+/// Rates of the switching functions on their surfaces, g' = c + W s, with s instead of the signs of the
+/// functions.
 pub struct Rates {
-    /// Matrix W, in the unit of each row's function per second.
+    /// Matrix W; each row has the unit of its function per second.
     pub w: DMatrix<f64>,
-    /// Vector c, in the same units.
+    /// Vector c, in the units of the rows of W.
     pub c: DVector<f64>,
-    /// Choice among values that hold.
+    /// Choice of s if it is not unique.
     pub sharing: Sharing,
 }
 
-/// Decides the effect of each surface on a motion with these arrivals. Returns `None` if no
-/// solution is found.
+/// Determines the effect of each surface on a motion with these arrivals. Returns `None` if no solution is
+/// found.
 pub fn decide(rates: &Rates, arrivals: &[Arrival]) -> Option<Vec<Verdict>> {
     let count = arrivals.len();
     let begins = |(i, arrival): (usize, &Arrival)| {
@@ -118,7 +118,7 @@ impl Rates {
         self.w[(i, i)] < 0.0
     }
 
-    /// Returns the values that replace the signs: the given sides, and for the other surfaces values that hold.
+    /// Returns the values s: the given sides, and holding values for the other surfaces.
     fn solve_signs(&self, sides: &[Option<f64>]) -> DVector<f64> {
         let mut s = DVector::from_iterator(sides.len(), sides.iter().map(|s| s.unwrap_or(0.0)));
         let held = held_surfaces(sides);
@@ -136,7 +136,7 @@ impl Rates {
         s
     }
 
-    /// Returns the violation of the assumed case of a surface at the values s; positive if
+    /// Returns the violation of the assumed case of a surface at the values s; positive if the case is
     /// violated.
     fn case_violation(&self, sides: &[Option<f64>], s: &DVector<f64>, i: usize) -> f64 {
         match sides[i] {
@@ -150,7 +150,7 @@ impl Rates {
         }
     }
 
-    /// Returns the rate of a surface's function and the size of its terms.
+    /// Returns the rate of a surface's function and the magnitude of its terms.
     fn rate(&self, s: &DVector<f64>, i: usize) -> (f64, f64) {
         let terms = (0..s.len()).map(|j| self.w[(i, j)] * s[j]);
         terms.fold((self.c[i], self.c[i].abs()), |(sum, size), term| {
@@ -177,13 +177,14 @@ impl Rates {
         (0..sides.len()).map(verdict).collect()
     }
 
-    /// Returns true if the rate of a surface is rounding at the values s.
+    /// Returns true if the rate of a surface's function is only rounding at the values s.
     fn is_at_rest(&self, s: &DVector<f64>, i: usize) -> bool {
         let (rate, size) = self.rate(s, i);
         rate.abs() <= RATE_ROUNDING * size
     }
 
-    /// Returns true if the forces change the rate of a surface only with those of the held surfaces.
+    /// Returns true if the rates of the `held` surfaces determine the effect of the forces on the rate of
+    /// surface `i`.
     fn is_dependent(&self, held: &[usize], i: usize) -> bool {
         if held.is_empty() {
             return false;
@@ -214,13 +215,13 @@ impl Rates {
     }
 }
 
-/// Returns the surfaces without a side.
+/// Returns the indices of the surfaces without a side.
 fn held_surfaces(sides: &[Option<f64>]) -> Vec<usize> {
     (0..sides.len()).filter(|i| sides[*i].is_none()).collect()
 }
 
-/// Returns the matrix with each row divided by its largest magnitude, and these magnitudes (1 for a row of
-/// zeros). A row has the unit of its function.
+/// Returns the matrix with each row divided by its largest magnitude, and these magnitudes (1 for a zero row).
+/// The rows of W have different units.
 pub fn divide_rows(w: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
     let sizes = w.row_iter().map(|row| row.amax());
     let sizes = sizes.map(|size| if size > 0.0 { size } else { 1.0 });
@@ -229,8 +230,9 @@ pub fn divide_rows(w: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
     (divided, sizes)
 }
 
-/// Returns the smallest least-squares solution x of W x = b. If a row is not solved to rounding and the rows can be solved
-/// with each divided by its largest magnitude, that solution is returned: rows may have units that differ by decades.
+/// Returns the least-squares solution x of W x = b with the smallest norm. If a row is not solved to rounding,
+/// the rows are divided by their largest magnitudes, because their units may differ by decades. The scaled
+/// solution is returned if it solves all rows.
 pub fn solve_least_squares(w: &DMatrix<f64>, b: DVector<f64>) -> DVector<f64> {
     if b.len() <= 1 {
         let divided = b.zip_map(&w.column_sum(), |b, w| b / w);
@@ -248,8 +250,9 @@ pub fn solve_least_squares(w: &DMatrix<f64>, b: DVector<f64>) -> DVector<f64> {
     }
 }
 
-/// Returns values x that hold surfaces, W x = b, the smallest if surfaces depend on each other, and true. If such surfaces
-/// move apart, so that no values within limits hold all of them, returns values beyond their limits, and false.
+/// Returns values x that hold surfaces, W x = b, and true; the values have the smallest norm if surfaces are
+/// linearly dependent. If no values hold all surfaces, because dependent surfaces move apart, returns values
+/// beyond their limits and false.
 pub fn solve_holding(w: &DMatrix<f64>, b: &DVector<f64>) -> (DVector<f64>, bool) {
     let values = solve_least_squares(w, b.clone());
     if b.len() <= 1 {
@@ -269,8 +272,8 @@ pub fn solve_holding(w: &DMatrix<f64>, b: &DVector<f64>) -> (DVector<f64>, bool)
     }
 }
 
-/// Returns a solution of W x = b with a little more effect of each row on itself, which makes it finite if rows contradict
-/// each other. It is then far beyond the limits of forces.
+/// Returns a solution of W x = b with a slightly increased diagonal. It is finite even if rows contradict each
+/// other, and then far beyond the limits of forces.
 pub(crate) fn solve_beyond_limits(w: &DMatrix<f64>, b: &DVector<f64>) -> Option<DVector<f64>> {
     let (mut divided, sizes) = divide_rows(w);
     for own in 0..w.nrows() {
@@ -279,8 +282,8 @@ pub(crate) fn solve_beyond_limits(w: &DMatrix<f64>, b: &DVector<f64>) -> Option<
     divided.lu().solve(&b.component_div(&sizes))
 }
 
-/// Returns the smallest least-squares solution; 0 if there is none. A step of refinement makes the error of each row a
-/// rounding of its own terms (R. D. Skeel, Math. Comp. 35 (1980) 817-832).
+/// Returns the least-squares solution with the smallest norm; 0 if there is none. One refinement step reduces
+/// the error of each row to a rounding of its terms (R. D. Skeel, Math. Comp. 35 (1980) 817-832).
 fn solve_refined(w: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
     let zero = || DVector::zeros(b.len());
     let Some(svd) = qr_iteration::svd(w).filter(|_| b.iter().all(|entry| entry.is_finite())) else {
@@ -293,7 +296,7 @@ fn solve_refined(w: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
     solution + correction
 }
 
-/// Returns true if each row of W x = b holds up to rounding of its terms.
+/// Returns true if each row of W x = b is satisfied up to rounding of its terms.
 fn are_rows_solved(w: &DMatrix<f64>, b: &DVector<f64>, x: &DVector<f64>) -> bool {
     w.row_iter().zip(b).all(|(row, right)| {
         let terms = row.iter().zip(x).map(|(entry, x)| entry * x);
@@ -304,14 +307,14 @@ fn are_rows_solved(w: &DMatrix<f64>, b: &DVector<f64>, x: &DVector<f64>) -> bool
     })
 }
 
-/// Largest number of passes over the directions in which values may change.
+/// Maximum number of passes over the null-space directions.
 const MAX_PASSES: usize = 20;
 
-/// Reduction of the largest magnitude in a pass below which further passes are useless.
+/// Relative reduction of the largest magnitude in a pass below which the iteration ends.
 const MIN_REDUCTION: f64 = 1e-3;
 
-/// Reduces the largest magnitude of the values s while W s stays the same: surfaces that depend on each other share their
-/// forces, and all of them hold as long as they can. Each of the `groups` of rows is a vector, which counts by its length.
+/// Reduces the largest magnitude of the values s without changing W s: dependent surfaces share their forces,
+/// so all of them hold as long as possible. Each of the `groups` of rows is a vector and counts by its length.
 pub fn reduce_largest(w: &DMatrix<f64>, s: &mut [f64], groups: &[Range<usize>]) {
     if s.len() <= 1 {
         return;
@@ -339,8 +342,8 @@ pub fn reduce_largest(w: &DMatrix<f64>, s: &mut [f64], groups: &[Range<usize>]) 
     }
 }
 
-/// Returns the projection of the vector of one group of rows onto the directions in which W s does not change. Other
-/// axes of the group give the same projection.
+/// Returns the projection of the vector of one group of rows onto the null space of W. The projection does not
+/// depend on the axes of the group.
 fn project_group(null: &[DVector<f64>], (s, own): (&[f64], &Range<usize>)) -> Vec<f64> {
     let mut projection = vec![0.0; s.len()];
     for direction in null {
@@ -358,7 +361,7 @@ fn largest_length(s: &[f64], groups: &[Range<usize>]) -> f64 {
     squares.fold(0.0, f64::max).sqrt()
 }
 
-/// Square of the length of a vector a + x b, as a function of the step x.
+/// Squared length of a vector a + x b as a function of x.
 struct SquareAlong {
     /// b b
     second: f64,
@@ -374,7 +377,7 @@ impl SquareAlong {
     }
 }
 
-/// Returns the squares of all vectors along a direction.
+/// Returns the squared lengths of all vectors along a direction.
 fn squares_along(values: &[f64], direction: &[f64], groups: &[Range<usize>]) -> Vec<SquareAlong> {
     let squares = groups.iter().map(|rows| {
         let (a, b) = (&values[rows.clone()], &direction[rows.clone()]);
@@ -392,7 +395,8 @@ fn largest_square_after(squares: &[SquareAlong], step: f64) -> f64 {
     after.fold(0.0, f64::max)
 }
 
-/// Returns the step after which the largest square is least: one square has its minimum there, or two are equal.
+/// Returns the step that minimises the largest squared length: the minimum of one of them, or an intersection
+/// of two.
 fn find_best_step(squares: &[SquareAlong]) -> f64 {
     let mut best = (0.0, largest_square_after(squares, 0.0));
     for (i, a) in squares.iter().enumerate() {
@@ -495,7 +499,7 @@ mod tests {
 
     #[test]
     fn discs_share_a_force_by_length_in_every_direction() {
-        // Two discs with the levels 3 and 1 under the same velocity in a plane.
+        // Two discs with the friction levels 3 and 1 and the same velocity in a plane.
         let w = -DMatrix::from_fn(4, 4, |row, column| {
             let level = if column < 2 { 3.0 } else { 1.0 };
             level * f64::from(u8::from(row % 2 == column % 2))
@@ -510,7 +514,7 @@ mod tests {
                 assert!((length - 0.25).abs() < 1e-9, "{angle}: {s}");
             }
         }
-        // Along a wall, a contact bears the force across it.
+        // A contact with a wall bears the force normal to the wall.
         let along = DVector::from_vec(vec![0.8, 0.6]);
         let w = -(&along * along.transpose());
         let mut s = &along * 0.7;

@@ -1,17 +1,17 @@
-//! Small linear systems: elimination with full pivoting, and the solution of least norm if rows are
+//! Small linear systems: elimination with full pivoting, and the solution of least norm if rows are linearly
 //! dependent.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::sliding_modes::{solve_beyond_limits, solve_least_squares};
 
-/// A pivot below this fraction of the largest counts as rounding.
+/// Largest pivot that counts as rounding, as a fraction of the largest pivot.
 const MIN_PIVOT_FRACTION: f64 = 1e-10;
 
 /// Largest error of a row that counts as rounding, relative to the largest entry of b or x.
 const MAX_ROW_ERROR: f64 = 1e-10;
 
-/// Solves A x = b with A row by row. If A is singular, x is the least-squares solution of least norm. Returns
+/// Solves A x = b, with A row by row. If A is singular, x is the least-squares solution of least norm. Returns
 /// `None` if an entry is not finite.
 pub fn solve_balance(matrix: Vec<f64>, right: Vec<f64>) -> Option<Vec<f64>> {
     let size = right.len();
@@ -26,8 +26,8 @@ pub fn solve_balance(matrix: Vec<f64>, right: Vec<f64>) -> Option<Vec<f64>> {
     Some(solved.iter().copied().collect())
 }
 
-/// The same, but if that leaves a row unsolved, as where directions that coincided move apart, x is far beyond the limits
-/// of forces.
+/// Solves A x = b like [`solve_balance`]. If the rows contradict each other, because directions that coincided
+/// move apart, x is far beyond the limits of forces.
 pub fn solve_holding_balance(matrix: Vec<f64>, right: Vec<f64>) -> Option<Vec<f64>> {
     let size = right.len();
     let solved = solve_balance(matrix.clone(), right.clone())?;
@@ -43,7 +43,7 @@ pub fn solve_holding_balance(matrix: Vec<f64>, right: Vec<f64>) -> Option<Vec<f6
     Some(beyond.map_or(solved, |beyond| beyond.iter().copied().collect()))
 }
 
-/// Returns the solution of a regular system.
+/// Returns the solution of a nonsingular system.
 fn eliminate(mut matrix: Vec<f64>, mut right: Vec<f64>) -> Option<Vec<f64>> {
     let size = right.len();
     let mut columns: Vec<usize> = (0..size).collect();

@@ -1,13 +1,14 @@
 //! Impact at a single contact with friction: the rates as functions of the normal impulse (E. J. Routh), with
-//! restitution by work (W. J. Stronge, *Impact Mechanics*, chapter 8). The work of the normal impulse during
-//! restitution is e^2 times the work during compression, so that no energy is gained.
+//! energetic restitution (W. J. Stronge, *Impact Mechanics*, chapter 8). The work of the normal impulse during
+//! restitution is e^2 times the work during compression, so no energy is gained.
 
 /// Impact at one contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SingleImpact {
-    /// Changes of the rate of the distance and of the slip by a unit normal and by a unit tangential impulse.
+    /// Changes of the rate of the distance and of the slip, by a unit normal impulse and by a unit tangential
+    /// impulse.
     pub w: [[f64; 2]; 2],
-    /// Rate of the distance, negative, and slip before the impact.
+    /// Rate of the distance (negative) and slip, before the impact.
     pub rates: [f64; 2],
     /// Coefficient of friction.
     pub friction: f64,
@@ -15,10 +16,11 @@ pub struct SingleImpact {
     pub restitution: f64,
 }
 
-/// Slips below this fraction of the largest are zero.
+/// Largest slip that counts as zero, as a fraction of the largest slip.
 const SLIP_ROUNDING: f64 = 1e-14;
 
-/// Intervals of constant slip direction: sliding, rest or reversed sliding, in compression and in restitution.
+/// Maximum number of intervals with constant slip direction: sliding, sticking or reversed sliding, in
+/// compression and in restitution.
 const MAX_INTERVALS: usize = 8;
 
 /// Returns the normal and the tangential impulse; `None` if the rate of the distance does not return to zero.
@@ -31,7 +33,7 @@ pub fn energetic_impulse(impact: &SingleImpact) -> Option<[f64; 2]> {
     } = *impact;
     let mut impulse = [0.0, 0.0];
     let mut work = 0.0;
-    // Work that restitution has to do; known after compression.
+    // Remaining work of restitution; known after compression.
     let mut remaining: Option<f64> = None;
     let smallest_slip = SLIP_ROUNDING * slip.abs().max(w[1][0].abs() * normal_rate.abs() / w[0][0]);
     for _ in 0..MAX_INTERVALS {
@@ -84,7 +86,7 @@ pub fn energetic_impulse(impact: &SingleImpact) -> Option<[f64; 2]> {
     None
 }
 
-/// Returns the tangential impulse per normal impulse at this slip.
+/// Returns the ratio of tangential to normal impulse at this slip.
 fn tangential_ratio(w: &[[f64; 2]; 2], friction: f64, slip: f64) -> f64 {
     if slip != 0.0 {
         return -slip.signum() * friction;

@@ -1,20 +1,20 @@
-//! Lemke's method with lexicographic ties for the modes of contacts (R. W. Cottle, J.-S. Pang, R. E. Stone, *The
-//! Linear Complementarity Problem*, chapter 4).
+//! Lemke's method with lexicographic ties for the modes of contacts (R. W. Cottle, J.-S. Pang, R. E. Stone,
+//! *The Linear Complementarity Problem*, chapter 4).
 //!
-//! Unknowns of a contact: the normal impulse n; with an unknown direction of slip also t + mu n and the slip to the
-//! left v. Their complements are the rate of the distance, the slip to the right and mu n - t (Glocker and
-//! Pfeiffer).
+//! The unknowns of a contact are the normal impulse n and, if the direction of slip is unknown, t + mu n and
+//! the slip to the left v. Their complements are the rate of the distance, the slip to the right and mu n - t
+//! (Glocker and Pfeiffer).
 
 use super::{ContactMode, ContactProblem};
 
-/// Pivots per row after which the method gives up.
+/// Maximum number of pivots per row.
 const MAX_PIVOTS_PER_ROW: usize = 50;
 
-/// Entries of the driving column below this fraction of the largest are rounding.
+/// Entries of the driving column below this fraction of its largest entry are rounding.
 const MIN_PIVOT_FRACTION: f64 = 1e-11;
 
 impl ContactProblem {
-    /// Returns modes of a solution; `None` if the method ends on a ray.
+    /// Returns the modes of a solution; `None` if the method ends on a ray.
     pub(super) fn find_modes_by_lemke(&self) -> Option<Vec<ContactMode>> {
         let count = self.count();
         let full: Vec<usize> = (0..count)
@@ -23,7 +23,7 @@ impl ContactProblem {
         let size = count + 2 * full.len();
         let mut matrix = vec![0.0; size * size];
         let mut right = vec![0.0; size];
-        // Rows of a direction: the effect of normal impulses with their friction, then of t + mu n.
+        // Rows of a direction: the effects of the normal impulses with their friction, then those of t + mu n.
         let rows = (0..count).map(|contact| (contact, contact));
         let tangents = full.iter().enumerate();
         let rows = rows.chain(tangents.map(|(place, contact)| (count + place, count + contact)));
@@ -61,7 +61,7 @@ impl ContactProblem {
     }
 }
 
-/// Solves z >= 0, w = M z + q >= 0, z w = 0. Returns which z are basic; `None` on a ray.
+/// Solves z >= 0, w = M z + q >= 0, z w = 0. Returns true for each z that is basic; `None` on a ray.
 pub(super) fn solve_by_lemke(matrix: &[f64], q: &[f64]) -> Option<Vec<bool>> {
     let size = q.len();
     if q.iter().all(|entry| *entry >= 0.0) {
@@ -100,7 +100,7 @@ pub(super) fn solve_by_lemke(matrix: &[f64], q: &[f64]) -> Option<Vec<bool>> {
         let is_positive = |row: &usize| column(*row) > MIN_PIVOT_FRACTION * largest;
         let rows: Vec<usize> = (0..size).filter(is_positive).collect();
         leaving_row = select_lexicographically(&table, width, entering, rows)?;
-        // The artificial variable leaves as soon as it can.
+        // The artificial variable leaves the basis as soon as possible.
         let out = basis.iter().position(|variable| *variable == artificial)?;
         let ratio = |row: usize| table[row * width + last] / table[row * width + entering];
         if is_positive(&out) && ratio(out) <= ratio(leaving_row) {
@@ -110,7 +110,7 @@ pub(super) fn solve_by_lemke(matrix: &[f64], q: &[f64]) -> Option<Vec<bool>> {
     None
 }
 
-/// Returns the row with the lexicographically smallest ratio: of q, then of the columns of w.
+/// Returns the row with the lexicographically smallest ratio, first of q, then of the columns of w.
 fn select_lexicographically(
     table: &[f64],
     width: usize,

@@ -1,12 +1,12 @@
 //! Unilateral contacts with Coulomb friction along one direction each.
 //!
-//! The rates of the distances and the slips are u = c + W p, with p the normal and the tangential impulses
-//! (or the accelerations, with forces). A normal impulse is not negative, and is 0 if the distance grows. A
-//! tangential impulse is at most mu times the normal one, and opposes the slip if there is any. With given modes of the
-//! contacts this is a linear system; [`ContactProblem::decide`] finds the modes. `lemke` solves the linear
+//! The rates of the distances and the slips are u = c + W p. p are the normal and the tangential impulses; for
+//! forces, u are accelerations. A normal impulse is not negative, and is 0 if the distance grows. A tangential
+//! impulse is at most mu times the normal impulse, and opposes a nonzero slip. For given modes of the contacts
+//! this is a linear system; [`ContactProblem::decide`] finds the modes. `lemke` solves the linear
 //! complementarity problem (C. Glocker, F. Pfeiffer 1992), and `impact` computes a single impact with friction.
 //!
-//! All quantities are scaled by the square roots of W's diagonal, which makes units of contacts comparable.
+//! All quantities are scaled by the square roots of the diagonal of W, which makes different units comparable.
 
 mod balance;
 mod impact;
@@ -23,23 +23,24 @@ pub use impact::{SingleImpact, energetic_impulse};
 /// Largest violation of a condition, relative to the largest scaled rate or impulse.
 const MAX_VIOLATION: f64 = 1e-9;
 
-/// Largest number of contacts whose combinations of modes are all tried.
+/// Largest number of contacts for which all combinations of modes are tried.
 const MAX_ENUMERATED_CONTACTS: usize = 4;
 
-/// Difference of scaled impulses below which two solutions count as equal.
+/// Relative difference of scaled impulses below which two solutions are equal.
 const EQUAL_IMPULSE_FRACTION: f64 = 1e-7;
 
-/// Difference of scaled rates below which two solutions are the same motion, relative to the rates without impulses.
+/// Difference of scaled rates below which two solutions are the same motion, relative to the rates without
+/// impulses.
 const EQUAL_RATE_FRACTION: f64 = 1e-6;
 
 /// Mode of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ContactMode {
-    /// No impulse.
+    /// The contact exerts no impulse.
     Open,
     /// The slip is zero and the tangential impulse inside its bounds.
     Sticks,
-    /// Slips in this direction, -1 or 1; 0 without friction.
+    /// The contact slips in this direction, -1 or 1; 0 without friction.
     Slides(f64),
 }
 
@@ -70,7 +71,7 @@ impl ContactFriction {
     }
 }
 
-/// Contacts at one instant. Directions are the normals of all contacts, then their tangents.
+/// Contacts at one instant. The directions are the normals of all contacts, then their tangents.
 #[derive(Clone, Debug)]
 pub struct ContactProblem {
     /// Friction of each contact.
@@ -88,9 +89,9 @@ pub struct ContactProblem {
 pub struct ContactDecision {
     /// Mode of each contact.
     pub modes: Vec<ContactMode>,
-    /// Normal, then tangential impulses.
+    /// Normal impulses, then tangential impulses.
     pub impulses: Vec<f64>,
-    /// Number of solutions with other rates among all that were tried.
+    /// Number of tried solutions with other rates.
     pub others: usize,
 }
 
@@ -129,9 +130,10 @@ impl ContactProblem {
         self.friction[contact].coefficient * self.scale[tangent] / self.scale[contact]
     }
 
-    /// Decides the modes. A solution with the modes `previous` is kept. Otherwise the solution with the fewest
-    /// changes is taken, and among these the one with the least impulses; with more than four contacts
-    /// it is Lemke's. Modes in `excluded` are not taken. Returns `None` if no solution is found.
+    /// Determines the modes. A solution with the modes `previous` has priority. Otherwise the solution with the
+    /// fewest changed modes is chosen, and among these the one with the smallest impulses. With more than four
+    /// contacts Lemke's solution is chosen. Solutions with modes in `excluded` are not chosen. Returns `None`
+    /// if no solution is found.
     pub fn decide(
         &self,
         previous: Option<&[ContactMode]>,
@@ -158,7 +160,7 @@ impl ContactProblem {
                 .any(|(contact, mode)| modes[*contact] == *mode)
     }
 
-    /// Changes the mode of one contact with an excluded mode.
+    /// Finds a solution by changing one excluded mode of a contact.
     fn decide_by_single_change(
         &self,
         previous: &[ContactMode],
@@ -211,7 +213,7 @@ impl ContactProblem {
         })
     }
 
-    /// Adds the rates after these impulses to `motions` unless they are among them.
+    /// Adds the rates after these impulses to `motions` unless they are already included.
     fn add_distinct_motion(&self, impulses: &[f64], motions: &mut Vec<Vec<f64>>) {
         let scaled = impulses.iter().zip(&self.scale).map(|(p, scale)| p * scale);
         let rates = self.rates(&scaled.collect::<Vec<f64>>());
@@ -253,14 +255,13 @@ impl ContactProblem {
         })
     }
 
-    /// Returns the impulses with which contacts keep these modes, without the conditions on their
-    /// signs; NaN if there are none.
+    /// Returns the impulses that keep these modes, without a check of their signs; NaN if there are none.
     pub fn impulses(&self, modes: &[ContactMode]) -> Vec<f64> {
         self.unscaled_or_nan(self.solve_scaled(modes, solve_balance))
     }
 
-    /// Returns the forces with which contacts keep these modes, without the conditions on their signs; NaN if there are none,
-    /// and far beyond the limits of friction if directions that coincided move apart.
+    /// Returns the forces that keep these modes, without a check of their signs. The forces are NaN if there
+    /// are none, and far beyond the limits of friction if directions that coincided move apart.
     pub fn forces(&self, modes: &[ContactMode]) -> Vec<f64> {
         self.unscaled_or_nan(self.solve_scaled(modes, solve_holding_balance))
     }
@@ -277,7 +278,7 @@ impl ContactProblem {
         pairs.map(|(p, scale)| p / scale).collect()
     }
 
-    /// Returns the scaled impulses with which contacts keep these modes, by a solver of the balance.
+    /// Returns the scaled impulses that keep these modes; `solve` solves the linear system.
     fn solve_scaled(
         &self,
         modes: &[ContactMode],

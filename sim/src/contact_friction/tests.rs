@@ -88,7 +88,7 @@ fn plastic_impacts_gain_no_energy() {
 
 #[test]
 fn previous_modes_are_kept_and_excluded_modes_are_not() {
-    // Friction on a slope at the limit: rest and sliding are both consistent.
+    // Friction on a slope at its limit: both sticking and sliding are consistent.
     let friction = ContactFriction {
         coefficient: 0.5,
         direction: None,

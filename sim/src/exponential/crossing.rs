@@ -1,15 +1,15 @@
-//! Time of a crossing within a step.
+//! Time of a surface crossing within a step.
 
 use super::surfaces::Side;
 
-/// Bisections of the interval with a crossing, before its refinement.
+/// Number of bisections of the interval with a crossing before its refinement.
 const HALVINGS: usize = 30;
 
-/// A function's value and rate at one end of a step.
+/// Value and rate of a function at one end of a step.
 type End = (f64, f64);
 
-/// The time after the beginning of a step of this length, s, at which a function leaves its
-/// side for the first time, by the cubic through both ends.
+/// Returns the time since the start of a step of this length, s, at which a function leaves its side for the
+/// first time. The function is approximated by the cubic through values and rates at both ends.
 #[inline(always)]
 pub fn first_crossing(side: Side, (begin, end): (End, End), length: f64) -> Option<f64> {
     let sign = match side {
@@ -17,7 +17,7 @@ pub fn first_crossing(side: Side, (begin, end): (End, End), length: f64) -> Opti
         Side::Below => -1.0,
         Side::Above => 1.0,
     };
-    // On its side the function is positive from here on.
+    // With this sign the function is positive on its side.
     let (a, da) = ((sign * begin.0).max(0.0), sign * begin.1 * length);
     let (b, db) = (sign * end.0, sign * end.1 * length);
     if b >= 0.0 && (da >= 0.0 || db <= 0.0 || a + da > 0.0) {
@@ -26,14 +26,14 @@ pub fn first_crossing(side: Side, (begin, end): (End, End), length: f64) -> Opti
     crossing([a, da, b, db]).map(|s| s * length)
 }
 
-/// The same over a step of length 1 for a function that begins at `a` and should not be
-/// negative.
+/// Returns the first time at which a function becomes negative in a step of length 1; `a` and `da` are value
+/// and rate at the start, `b` and `db` at the end.
 #[inline(never)]
 fn crossing([a, da, b, db]: [f64; 4]) -> Option<f64> {
     let (c, d) = (3.0 * (b - a) - 2.0 * da - db, 2.0 * (a - b) + da + db);
     let value = |s: f64| a + s * (da + s * (c + s * d));
     let mut last = 1.0;
-    // The minimum of the cubic, if it has one.
+    // Minimum of the cubic, if it exists.
     let discriminant = c * c - 3.0 * da * d;
     if discriminant > 0.0 {
         let root = discriminant.sqrt();
@@ -51,8 +51,8 @@ fn crossing([a, da, b, db]: [f64; 4]) -> Option<f64> {
     if value(last) >= 0.0 {
         return None;
     }
-    // A motion that has just entered its side has value 0 there: what counts is when it
-    // leaves.
+    // A motion that has just crossed the surface has value 0 at the start. The crossing sought is the later
+    // one, at which it leaves the side again.
     let mut first = 0.0;
     if a == 0.0 {
         if da <= 0.0 {

@@ -1,30 +1,30 @@
-//! Derivatives of the nonlinear remainder by the state: the part of the forces on neighbouring
-//! motions that the matrix of the linear part lacks. They are computed by differences, since the
-//! model provides only accelerations.
+//! Derivatives of the nonlinear remainder by the state, which tangent vectors need in addition to the matrix of
+//! the linear part. They are finite differences, because the model provides only accelerations.
 
 use super::remainder::{Force, Remainder};
 use super::slopes::Slopes;
 use super::surfaces::Side;
 use super::types::{ExponentialIntegrator, Motion, Options};
 
-/// Number of steps between differentiations; each switch also causes one. The derivatives vary with
-/// the position, which changes little in between.
+/// Number of steps between two computations of the derivatives; each switch also causes one. The derivatives
+/// vary with the position, which changes little in this time.
 const DIFFERENTIATION_INTERVAL: usize = 4;
 
-/// Change of a state for a difference, as a fraction of its displacement in a step or of itself,
-/// whichever is more.
+/// Step of a finite difference, as a fraction of the displacement of the state in a time step.
+/// [`VALUE_FRACTION`] applies if it gives a larger step.
 const DISPLACEMENT_FRACTION: f64 = 1e-3;
 const VALUE_FRACTION: f64 = 1e-8;
 
-/// And by no less than this part of its typical size: states at rest at 0.
+/// Smallest step of a finite difference, as a fraction of the typical size of the state; it applies to states
+/// at rest at 0.
 const OF_TYPICAL_SIZE: f64 = 1e-10;
 
-/// An acceleration that changes by less than this part of the largest that it has been does so by rounding.
-/// Each is compared with itself: they have different units.
+/// Changes of an acceleration below this fraction of its largest magnitude so far count as rounding.
+/// Accelerations are not compared with each other because their units may differ.
 const ROUNDING: f64 = 1e-10;
 
 impl ExponentialIntegrator {
-    /// Advances the neighbours by their outstanding steps to the present time of the motion.
+    /// Advances the tangent vectors by their pending steps to the current time of the motion.
     pub(super) fn advance_neighbours(
         &mut self,
         motion: &Motion,
@@ -44,8 +44,8 @@ impl ExponentialIntegrator {
         Ok(())
     }
 
-    /// Computes the derivatives at the present state, which must not be on a surface: there
-    /// rounding errors decide the side.
+    /// Computes the derivatives at the current state, which must not be on a surface: rounding would decide its
+    /// side.
     pub(super) fn differentiate(
         &mut self,
         motion: &Motion,
@@ -100,8 +100,8 @@ impl ExponentialIntegrator {
         Ok(())
     }
 
-    /// Returns the gradient of a surface's function in the whole model. The rates scale the changes
-    /// of the states.
+    /// Returns the gradient of a surface's function in the whole model. The rates scale the steps of the
+    /// differences.
     pub(super) fn gradient(
         &self,
         motion: &Motion,
@@ -130,14 +130,13 @@ impl ExponentialIntegrator {
         gradient
     }
 
-    /// By how much a state with a rate is changed.
+    /// Returns the step of a finite difference for a state with this rate.
     fn difference(&self, place: usize, x: f64, rate: f64) -> f64 {
         let size = (DISPLACEMENT_FRACTION * (rate * self.step).abs()).max(VALUE_FRACTION * x.abs());
         size.max(OF_TYPICAL_SIZE * self.typical_sizes[place])
     }
 
-    /// Returns true if a surface separates a motion's state from the same state with one entry
-    /// changed.
+    /// Returns true if a surface separates the state of a motion from the same state with one changed entry.
     fn sides_differ(
         &self,
         motion: &Motion,
@@ -155,7 +154,7 @@ impl ExponentialIntegrator {
     }
 }
 
-/// The accelerations of both.
+/// Returns pairs of the accelerations of two remainders.
 fn pairs<'e>(a: &'e Remainder, b: &'e Remainder) -> impl Iterator<Item = (&'e f64, &'e f64)> {
     a.force.iter().zip(&b.force)
 }

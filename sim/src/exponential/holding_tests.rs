@@ -1,4 +1,4 @@
-//! Motions that dry friction holds, with further forces that differ by the direction of motion.
+//! Motions held by dry friction, with additional forces that depend on the direction of motion.
 
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
@@ -14,7 +14,7 @@ const SAMPLE: f64 = 0.01;
 /// Mass in kg, friction in N, damping in N s/m and length in m.
 const VALUES: [f64; 4] = [2.0, 3.0, 4.0, 0.5];
 
-/// A mass of 2 kg with an input force and this friction, in which T = 3 N and c = 4 N s/m.
+/// Returns a mass of 2 kg with an input force and this friction, in which T = 3 N and c = 4 N s/m.
 fn block(friction: &str) -> Model {
     let text = format!(
         "[model]\nname = \"block\"\n[parameters]\n\
@@ -33,7 +33,7 @@ fn integrator(friction: &str) -> Result<ExponentialIntegrator, UnsupportedModel>
     ExponentialIntegrator::new(exact.evaluator(&VALUES), SAMPLE, 1.0)
 }
 
-/// Returns times of samples (s) and an input with steps.
+/// Returns sample times (s) and an input with steps.
 fn steps_of_force() -> (Vec<f64>, HeldInputs) {
     let times = (0..=200).map(|k| f64::from(k) * SAMPLE);
     let changes = vec![0.0, 0.3, 0.8, 1.2, 1.5];
@@ -41,7 +41,7 @@ fn steps_of_force() -> (Vec<f64>, HeldInputs) {
     (times.collect(), inputs.expect("inputs"))
 }
 
-/// Returns the states of the block, which starts at rest, with this friction.
+/// Returns the states of the block with this friction; it starts at rest.
 fn simulate(friction: &str, times: &[f64], inputs: &HeldInputs) -> Vec<Vec<f64>> {
     let mut states = Vec::new();
     let options = Options {
@@ -100,7 +100,7 @@ fn friction_holds_with_forces_that_depend_on_input_and_position() {
     }
 }
 
-/// Returns positions by small steps that are implicit in the dry friction.
+/// Returns positions computed with small steps that are implicit in the dry friction.
 fn step_implicitly(friction: &str, times: &[f64], inputs: &HeldInputs) -> Vec<f64> {
     const PARTS: u32 = 10_000;
     let [mass, limit, damping, length] = VALUES;

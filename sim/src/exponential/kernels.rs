@@ -1,20 +1,20 @@
-//! Products of small matrices with vectors, compiled for the widest registers there are.
+//! Products of small matrices with vectors, compiled for the widest SIMD registers of the processor.
 
 use crate::registers::dispatch_registers;
 
-/// Rows are filled up to a multiple of this.
+/// Number of rows is padded to a multiple of this.
 pub const LANES: usize = 8;
 
-/// A matrix stored by columns, each filled with zeros to whole SIMD vectors.
+/// Matrix stored by columns, each padded with zeros to whole SIMD vectors.
 #[derive(Clone, Debug, Default)]
 pub struct Columns {
-    /// Rows with those that fill up.
+    /// Number of rows with padding.
     pub rows: usize,
     entries: Vec<f64>,
 }
 
 impl Columns {
-    /// A matrix from its entries.
+    /// Creates a matrix from its entries.
     pub fn from_entries(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
         let padded = rows.next_multiple_of(LANES);
         let mut entries = vec![0.0; padded * columns];
@@ -29,19 +29,19 @@ impl Columns {
         }
     }
 
-    /// One of its numbers.
+    /// Returns one entry.
     pub fn entry(&self, row: usize, column: usize) -> f64 {
         self.entries[column * self.rows + row]
     }
 
-    /// Adds the product with a vector; `out` has as many numbers as there are rows.
+    /// Adds the product with a vector to `out`, which has [`Columns::rows`] entries.
     pub fn add_product(&self, vector: &[f64], out: &mut [f64]) {
         let (rows, entries) = (self.rows, &self.entries[..]);
         dispatch_registers!(_simd => add_product(entries, rows, vector, out));
     }
 
-    /// Adds the products with many vectors, stored one after the other with the padding of the
-    /// rows. The first `inner` numbers of each are used.
+    /// Adds the products with many vectors, which are stored consecutively, each with the padding of the rows.
+    /// The first `inner` entries of each are used.
     pub fn add_products(&self, inner: usize, vectors: &[f64], out: &mut [f64]) {
         let (rows, entries) = (self.rows, &self.entries[..]);
         dispatch_registers!(_simd => {
@@ -69,8 +69,8 @@ fn add_product(entries: &[f64], rows: usize, vector: &[f64], out: &mut [f64]) {
     }
 }
 
-/// The same for so many SIMD vectors of rows, whose sums stay in registers: those of even and of odd
-/// columns apart, so that one addition need not wait for the other.
+/// Adds a product for this number of SIMD vectors of rows. The sums stay in registers. Even and odd columns
+/// have separate sums, so that consecutive additions do not depend on each other.
 #[inline(always)]
 fn add_vectors<const VECTORS: usize>(entries: &[f64], vector: &[f64], out: &mut [f64]) {
     let (entries, _) = entries.as_chunks::<LANES>();
@@ -118,7 +118,7 @@ mod tests {
             matrix.add_product(&vector, &mut out);
             for (row, found) in out.iter().enumerate().take(rows) {
                 let wanted: f64 = (0..columns).map(|j| entry(row, j) * vector[j]).sum();
-                // Small integers and halves: no rounding.
+                // Small integers and halves are exact.
                 assert_eq!(*found, 1.0 + wanted);
             }
         }

@@ -1,12 +1,11 @@
 //! Exponential integrator with event location, for models that are piecewise linear except for
 //! small terms, at a fixed step.
 //!
-//! A step propagates the linear part exactly with a matrix that is computed once per regime.
-//! Nonlinear terms are constant over the step and corrected at its end (exponential Heun method,
-//! order 2; Hochbruck and Ostermann, *Exponential integrators*, Acta Numerica 19 (2010)). The
-//! cubic through both ends of a step locates crossings of surfaces; such a step is made in parts.
-//! The error is a small fraction of the noise of any sensor. The method is several times faster
-//! than exact propagation and carries tangent vectors. The files:
+//! A step propagates the linear part exactly with a matrix that is computed once per regime. Nonlinear terms
+//! are held constant over the step and corrected at its end (exponential Heun method, order 2; Hochbruck and
+//! Ostermann, *Exponential integrators*, Acta Numerica 19 (2010)). The cubic through both ends of a step
+//! locates crossings of surfaces; such a step is made in parts. The error is a small fraction of typical sensor
+//! noise. The method is several times faster than exact propagation and also propagates tangent vectors. Files:
 //!
 //! | task | files |
 //! | --- | --- |
@@ -55,28 +54,28 @@ pub use tangents::{Directions, DrivingAccelerations, NoDrives, Tangents};
 use types::Motion;
 pub use types::{ExponentialIntegrator, Options, SampleCallback, UnsupportedModel};
 
-/// Angle of the fastest mode in a step, rad. The cubic through a step's ends then locates a
+/// Largest angle of the fastest mode in a step, rad. The cubic through the ends of a step then locates a
 /// crossing to a hundredth of the step, as a start for the refinement.
 const MAX_TURN_RAD: f64 = 1.5;
 
-/// Steps from sample to sample at least: forces that are held over a step follow a motion
-/// that the samples show.
+/// Minimum number of steps between two samples. Nonlinear forces are held over a step, so it must be short
+/// compared with the motion, which the samples resolve.
 const LEAST_STEPS: f64 = 4.0;
 
-/// Steps from sample to sample at most; a model that needs more is not integrated.
+/// Maximum number of steps between two samples; a model that needs more is rejected.
 const MOST_STEPS: f64 = 256.0;
 
-/// Intervals that differ from whole steps by less than this part are whole steps: so do the
-/// times of records with rounded or jittering clocks, which err by no more than that.
+/// Largest relative deviation of an interval from a whole number of steps that is ignored. Rounded or jittering
+/// clocks of records cause such deviations.
 const JITTER: f64 = 1e-4;
 
-/// Message of a regime without matrices.
+/// Message for a regime without matrices.
 const UNSUPPORTED_REGIME: &str =
     "the matrices of a regime are not finite, or a surface holds the motion in an unsupported way";
 
 impl ExponentialIntegrator {
-    /// Prepares a model at its parameters, for samples with the distance `sample` (s).
-    /// `refinement` multiplies the number of steps that the linear part needs.
+    /// Prepares a model at its parameters, for samples with the interval `sample` (s). `refinement` multiplies
+    /// the number of steps that the linear part needs.
     ///
     /// # Errors
     /// An unsupported model, or a motion that is too fast for the samples.
@@ -133,7 +132,7 @@ impl ExponentialIntegrator {
         self
     }
 
-    /// Creates tangent vectors of the model. Those of parameters and driven vectors start at 0.
+    /// Creates tangent vectors of the model. Those of parameters and those driven by accelerations start at 0.
     pub fn create_tangents<'d>(
         &self,
         directions: Directions,
@@ -143,8 +142,8 @@ impl ExponentialIntegrator {
         Tangents::new(sizes, self.prescribed.clone(), directions, drives)
     }
 
-    /// Adds tangent vectors of parameters. For each parameter, `moved` has values on one or both
-    /// sides of `own`, the parameters of the evaluator.
+    /// Adds tangent vectors of parameters. For each parameter, `moved` has parameter values with this parameter
+    /// changed in one or both directions from `own`, the parameters of the evaluator.
     pub fn set_moved_parameters(&mut self, own: &[f64], moved: Vec<Vec<MovedParameters>>) {
         self.regimes.clear();
         self.known.clear();
@@ -153,7 +152,7 @@ impl ExponentialIntegrator {
         self.moved = moved;
     }
 
-    /// Limits the number of surface crossings of a motion.
+    /// Limits the number of events of a motion, such as surface crossings.
     pub fn limit_crossings(&mut self, most: usize) {
         self.most_crossings = most;
     }
@@ -270,7 +269,7 @@ impl ExponentialIntegrator {
         Ok(motion)
     }
 
-    /// The regime with these sides.
+    /// Returns the index of the regime with these sides; creates the regime if necessary.
     fn regime(&mut self, sides: &[Side]) -> Result<usize, String> {
         self.known_regime(sides)
             .ok_or_else(|| UNSUPPORTED_REGIME.to_owned())
@@ -302,7 +301,7 @@ impl ExponentialIntegrator {
         Some(regime)
     }
 
-    /// Goes on with constant inputs to a time, s.
+    /// Simulates with constant inputs until a time, s.
     fn interval(
         &mut self,
         motion: &mut Motion,
@@ -337,7 +336,8 @@ impl ExponentialIntegrator {
         self.advance_neighbours(motion, until, options)
     }
 
-    /// Prepares for steps in the present regime with the present inputs.
+    /// Computes the contribution of the current inputs to a step in the current regime, and the surfaces'
+    /// functions.
     fn prepare(&self, motion: &mut Motion) {
         let regime = &self.regimes[motion.regime];
         motion.base.clear();
@@ -348,8 +348,8 @@ impl ExponentialIntegrator {
         self.evaluate_events(motion);
     }
 
-    /// Evaluates the surfaces' functions and their rates at the present state, without the
-    /// contribution of the remainder to the rates.
+    /// Evaluates the surfaces' functions and their rates at the current state. The rates do not include the
+    /// change of the functions by the nonlinear remainder.
     fn evaluate_events(&self, motion: &mut Motion) {
         let regime = &self.regimes[motion.regime];
         let degrees = self.degrees;
@@ -366,7 +366,7 @@ impl ExponentialIntegrator {
         }
     }
 
-    /// Makes a whole step if no surface is crossed within.
+    /// Makes a whole step if it contains no event. Returns false otherwise.
     fn whole_step(
         &mut self,
         motion: &mut Motion,

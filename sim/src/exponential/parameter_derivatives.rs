@@ -1,5 +1,5 @@
-//! Derivatives of a regime by parameters: exact for a neighbouring motion between switches, where held
-//! drives follow no mode that turns far within a step.
+//! Derivatives of a regime by parameters. They are exact for tangent vectors between switches, if no mode
+//! excited by the held drives turns far within a step.
 
 use eomgen_codegen::program::affine::AffineEvaluator;
 use nalgebra::DMatrix;
@@ -9,38 +9,37 @@ use super::regime_rates::{DOUBLINGS, Rates, TERMS, flow_scale, held_rates};
 use super::surfaces::{Row, Side, Surfaces};
 use crate::balancing::scale_matrix;
 
-/// A series of the exponential converges to rounding within [`TERMS`] terms for a matrix whose norm is
-/// below this.
+/// Norm of a matrix below which the series of the exponential converges to rounding within [`TERMS`] terms.
 const SERIES_NORM: f64 = 0.5;
 
-/// Independent parameters (SI, in the order of the model's program) with one changed value.
+/// Values of the independent parameters (SI, in the order of the model's program), one of which is changed.
 #[derive(Clone, Debug)]
 pub struct MovedParameters {
     /// Values of all parameters.
     pub values: Vec<f64>,
-    /// Change of that parameter, SI.
+    /// Change of the changed parameter, SI.
     pub parameter_change: f64,
 }
 
 /// Derivatives of a regime by one parameter.
 #[derive(Clone, Debug)]
 pub(super) struct RegimeDerivative {
-    /// Of the rates' matrix, states x states.
+    /// Derivative of the matrix of the rates, states x states.
     pub state: Columns,
-    /// Of the rates by a unit constant and the inputs.
+    /// Derivative of the matrix that maps (1, inputs) to the rates.
     pub given: Columns,
-    /// Of the surfaces' functions.
+    /// Derivatives of the surfaces' functions.
     pub functions: Vec<Row>,
-    /// For one step, two, four and so on: contributions of the state at the beginning to a tangent vector,
-    /// and of a unit constant and the inputs.
+    /// For 1, 2, 4 ... steps: matrices that map the state at the start, and (1, inputs), to the change of a
+    /// tangent vector.
     pub doubled: Vec<(Columns, Columns)>,
 }
 
-/// The rates of a regime and the functions of its surfaces.
+/// Rates of a regime and functions of its surfaces.
 type RegimeRows = (Rates, Vec<Row>);
 
-/// Finds the derivatives of a regime by each parameter; `base`: the values of the evaluator's own
-/// parameters. None if one of them cannot be found.
+/// Computes the derivatives of a regime by each parameter. `base` are the parameters of the evaluator. Returns
+/// `None` if a derivative cannot be computed.
 pub(super) fn regime_derivatives(
     evaluator: &mut AffineEvaluator,
     surfaces: &Surfaces,
@@ -71,7 +70,7 @@ pub(super) fn regime_derivatives(
     derivatives
 }
 
-/// Returns the difference quotient of a regime's rows over `span`, and its effect on tangent vectors.
+/// Returns the difference quotient of a regime's matrices over `span`, and its effect on tangent vectors.
 fn difference(
     own: &Rates,
     (a, b): (&RegimeRows, &RegimeRows),
@@ -106,9 +105,9 @@ fn difference(
     }
 }
 
-/// Derivatives of exp(W h) where W changes as V, for h of one step, two, four and so on: the Fréchet
-/// derivative by the series and by squaring (Higham, Functions of Matrices, 2008, section 10.6). The
-/// first `states` rows of both are rates, the others are 0.
+/// Returns the Fréchet derivatives of exp(W h) in the direction V, for h of 1, 2, 4 ... steps, by the series
+/// and by squaring (Higham, Functions of Matrices, 2008, section 10.6). The first `states` rows of W and V are
+/// rates, the others are 0.
 fn flow_derivatives(
     whole: &DMatrix<f64>,
     change: &DMatrix<f64>,

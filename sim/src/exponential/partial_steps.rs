@@ -1,4 +1,4 @@
-//! Steps through surfaces: made in parts, from one crossing to the next.
+//! Steps with events: they are made in parts, from event to event.
 
 use super::crossing::first_crossing;
 use super::release::Release;
@@ -8,20 +8,20 @@ use super::surfaces::{Row, Side, dot};
 use super::tangents::{ReachedSurface, add_exponential_series};
 use super::types::{ExponentialIntegrator, Motion, Options};
 
-/// Crossings within a step after which the rest of it is made without looking.
+/// Number of events within a step after which the rest of the step is made without event location.
 const MOST_CROSSINGS: usize = 12;
 
-/// The motion itself is right to this part of its size.
+/// Relative error of a partial step of the motion.
 const ROUNDING: f64 = 1e-16;
 
-/// Delay of a release after the holding force reaches its bound, in steps: the motion then leaves the
-/// surface by more than rounding.
+/// Delay of a release after the holding force reaches its bound, in steps. The motion then leaves the surface
+/// by more than rounding.
 const RELEASE_DELAY_STEPS: f64 = 1e-6;
 
 /// Event within a step.
 enum Event {
-    /// The motion reaches a surface at a time, s, from the beginning; the surface itself moves with
-    /// a slope.
+    /// The motion reaches a surface at the time `tau` (s) since the start of the part. `slope` is the rate of
+    /// the function due to the nonlinear remainder.
     Crossing {
         surface: usize,
         slope: f64,
@@ -39,11 +39,12 @@ impl Event {
     }
 }
 
-/// Smallest rate of a function that leads back, as a fraction of its size.
+/// Smallest rate of a function towards its surface, relative to the magnitude of its terms, with which the
+/// surface holds the motion.
 const MIN_RETURN_RATE: f64 = 1e-9;
 
 impl ExponentialIntegrator {
-    /// Makes a step in parts, from surface to surface.
+    /// Makes a step in parts, from event to event.
     pub(super) fn parts(
         &mut self,
         motion: &mut Motion,
@@ -96,7 +97,7 @@ impl ExponentialIntegrator {
         }
         self.part(motion, rest);
         self.end_step(motion, rest, end, inputs, options)?;
-        // If surfaces follow each other too fast, signs decide.
+        // If the events follow each other too fast, the signs of the functions at the end decide the sides.
         let regime = &self.regimes[motion.regime];
         let functions = regime.functions.iter().zip(&motion.remainder.moved);
         for (side, (function, moved)) in motion.sides.iter_mut().zip(functions) {
@@ -112,9 +113,9 @@ impl ExponentialIntegrator {
         Ok(())
     }
 
-    /// Returns the first event in a part of a step, s, at whose end the motion is. `begin` is the
-    /// state at its beginning with the functions of the surfaces, their rates, and the nonlinear
-    /// remainder.
+    /// Returns the first event in a part of a step of this length, s; the motion is at the end of the part.
+    /// `begin` contains the functions of the surfaces with their rates and the state at its start, and the
+    /// nonlinear remainder.
     fn first_event(
         &self,
         motion: &Motion,
@@ -147,7 +148,7 @@ impl ExponentialIntegrator {
             .min_by(|a, b| a.tau().total_cmp(&b.tau()))
     }
 
-    /// Moves the state on by a part of a step, s.
+    /// Advances the state by a part of a step, s.
     fn part(&self, motion: &mut Motion, tau: f64) {
         let regime = &self.regimes[motion.regime];
         let mut rates = vec![0.0; regime.matrix.rows];
@@ -155,7 +156,7 @@ impl ExponentialIntegrator {
         add_exponential_series(&regime.matrix, &mut motion.state, &mut rates, tau, ROUNDING);
     }
 
-    /// Computes the rates at the present state.
+    /// Computes the rates at the current state.
     pub(super) fn rates(&self, motion: &Motion, out: &mut [f64]) {
         let regime = &self.regimes[motion.regime];
         let degrees = self.degrees;
@@ -166,8 +167,8 @@ impl ExponentialIntegrator {
         sums.for_each(|(o, f)| *o += f);
     }
 
-    /// Goes from `begin` to an event, by one step of Newton's method from its first estimate; returns
-    /// when that is, s.
+    /// Advances from `begin` to an event, by one Newton step from the estimated time. Returns the time since
+    /// `begin`, s.
     fn refine_time(&self, motion: &mut Motion, event: &Event, most: f64, begin: &[f64]) -> f64 {
         let regime = &self.regimes[motion.regime];
         let (row, offset, slope): (&Row, f64, f64) = match event {
@@ -201,7 +202,7 @@ impl ExponentialIntegrator {
         better
     }
 
-    /// After a part that reached the step's end.
+    /// Completes a part that ends at the end of the step.
     fn end_step(
         &mut self,
         motion: &mut Motion,
@@ -215,7 +216,8 @@ impl ExponentialIntegrator {
         Ok(())
     }
 
-    /// Lets the others follow a part of a step, to a time and whether on a surface.
+    /// Corrects the nonlinear forces over a part of a step, and advances the tangent vectors. `t` is the end of
+    /// the part; `on_surface` is true if a surface was reached there.
     fn accompany(
         &mut self,
         motion: &mut Motion,
@@ -240,7 +242,8 @@ impl ExponentialIntegrator {
         Ok(())
     }
 
-    /// Makes good that forces were held at what they were at the beginning of a part.
+    /// Corrects the state at the end of a part for the change of the nonlinear forces, which were held at their
+    /// initial values.
     fn correct(
         &mut self,
         motion: &mut Motion,
@@ -251,7 +254,7 @@ impl ExponentialIntegrator {
         let before = motion.remainder.force.clone();
         let mut rates = vec![0.0; self.regimes[motion.regime].matrix.rows];
         self.rates(motion, &mut rates);
-        // On this side of a surface that was reached.
+        // Evaluates the remainder on the near side of the reached surface.
         self.find_remainder_beside(motion, (t, -OFFSET_STEPS), &rates, options)?;
         let degrees = self.degrees;
         for (place, before) in before.iter().enumerate() {
@@ -264,8 +267,8 @@ impl ExponentialIntegrator {
         Ok(())
     }
 
-    /// Goes through a surface, moved with a slope, or stays on it where forces on both sides
-    /// lead back.
+    /// Crosses a surface, or enters the regime held on it if the rates on both sides point towards it. `slope`
+    /// is the rate of its function due to the nonlinear remainder.
     pub(super) fn cross(
         &mut self,
         motion: &mut Motion,
@@ -304,7 +307,7 @@ impl ExponentialIntegrator {
             self.find_remainder_beside(motion, (t, OFFSET_STEPS), &rates, options)?;
             self.rates(motion, &mut after);
         } else if old == Side::Below && here == 0.0 && there <= 0.0 {
-            // It only touches.
+            // The motion touches the surface without crossing it.
             motion.sides[surface] = old;
             motion.regime = before;
             self.find_remainder_beside(motion, (t, -OFFSET_STEPS), &rates, options)?;

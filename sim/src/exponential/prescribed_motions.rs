@@ -1,5 +1,5 @@
-//! Prescribed motions among the inputs: each is a cubic between its samples, and the integrator carries it with its
-//! rate and second rate as states. Their third rate is held between samples, so that steps are exact.
+//! Prescribed motions among the inputs. Each is a cubic between its samples. The integrator treats it, its rate
+//! and its second rate as states, and holds its third rate between samples, so the steps are exact.
 
 use std::borrow::Cow;
 
@@ -10,9 +10,9 @@ use crate::inputs::HeldInputs;
 /// Prescribed motions of a model.
 #[derive(Clone, Debug)]
 pub(super) struct PrescribedMotions {
-    /// Index of each among the inputs, followed by its rates.
+    /// Index of each prescribed motion among the inputs. Its rates follow it.
     places: Vec<usize>,
-    /// Number of states of the model, after which those of prescribed motions come.
+    /// Number of states of the model. The states of prescribed motions follow them.
     model_states: usize,
 }
 
@@ -24,8 +24,8 @@ impl PrescribedMotions {
         }
     }
 
-    /// Sets the states of prescribed motions at a time on the cubics of another time (s), and their third rates among
-    /// the inputs.
+    /// Sets the states of prescribed motions at `t` (s) from the cubics at the time `piece` (s), and the inputs
+    /// at the indices of second rates to the third rates.
     pub fn set(
         &self,
         inputs: &HeldInputs,
@@ -41,12 +41,12 @@ impl PrescribedMotions {
         }
     }
 
-    /// Returns the states of the model.
+    /// Returns the part of a state that belongs to the model.
     pub fn model_state<'s>(&self, state: &'s [f64]) -> &'s [f64] {
         &state[..self.model_states]
     }
 
-    /// Returns the inputs of the model at a state.
+    /// Returns the inputs of the model, with prescribed motions from a state.
     pub fn model_inputs<'i>(&self, state: &[f64], inputs: &'i [f64]) -> Cow<'i, [f64]> {
         if self.places.is_empty() {
             return Cow::Borrowed(inputs);

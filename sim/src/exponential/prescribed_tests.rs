@@ -7,7 +7,8 @@ use eomgen_model_spec::source::Source;
 
 use super::{Directions, ExponentialIntegrator, NoDrives, Options};
 
-/// Mass of 1 kg with a force by the distance and the speed from the base.
+/// Returns an integrator of a mass of 1 kg, with a force that depends on distance and speed relative to the
+/// base.
 fn integrator(force: &str, parameters: &[f64]) -> ExponentialIntegrator {
     let text = format!(
         r#"

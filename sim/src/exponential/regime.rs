@@ -1,6 +1,6 @@
-//! One regime of a piecewise-linear model, prepared for steps of one length: x' = A x + B u,
-//! where u is a unit constant and the inputs. A state held on surfaces moves by the convex
-//! combination of the motions on both sides that keeps it there.
+//! One regime of a piecewise-linear model, prepared for steps of one length: x' = A x + B u, where u contains a
+//! unit constant and the inputs. On holding surfaces, the rates are the convex combination of the rates on both
+//! sides that stays on the surfaces.
 
 use eomgen_analysis::qr_iteration;
 use eomgen_codegen::program::affine::AffineEvaluator;
@@ -13,63 +13,63 @@ use super::parameter_derivatives::RegimeDerivative;
 use super::regime_rates::{DOUBLINGS, HeldRates, Rates, flow_scale, held_rates, state_scale};
 use super::surfaces::{Row, Side, Surfaces, dot};
 
-/// A regime.
+/// Matrices of one regime.
 #[derive(Clone, Debug)]
 pub struct Regime {
     /// Length of a step, s.
     pub length: f64,
-    /// The rates' matrix, states x states.
+    /// Matrix A of the rates, states x states.
     pub matrix: Columns,
-    /// Effect of a unit constant and the inputs on the rates.
+    /// Matrix B, which maps (1, inputs) to the rates.
     pub given: DMatrix<f64>,
-    /// A state to the one a step later; below it the surfaces' functions there, then their
-    /// rates.
+    /// Map from the state to the state after a step, followed by the surfaces' functions and their rates there.
     pub step: Columns,
-    /// Effect of a unit constant and the inputs, held over the step, on the same.
+    /// Contribution of (1, inputs), held over the step, to the rows of `step`.
     pub step_given: Columns,
-    /// Effect of accelerations, held over the step, on the same.
+    /// Contribution of accelerations, held over the step, to the rows of `step`.
     pub step_force: Columns,
-    /// For neighbouring motions: one step, two, four and so on.
+    /// Matrices of 1, 2, 4 ... steps, for tangent vectors.
     pub doubled: Vec<DoubledStep>,
-    /// Derivatives by each of the parameters that the integrator differentiates by.
+    /// Derivatives by the parameters of the tangent vectors.
     pub(super) by_parameter: Vec<RegimeDerivative>,
-    /// The surfaces' functions.
+    /// Functions of the surfaces.
     pub functions: Vec<Row>,
-    /// And their rates.
+    /// Rates of the surfaces' functions.
     pub rates: Vec<Row>,
-    /// The surfaces that hold the motion.
+    /// Surfaces that hold the motion.
     pub held: Vec<HeldSurface>,
-    /// Effect of external accelerations on the sides of holding surfaces, a row for each, and the
-    /// effect of the sides on the accelerations, a column for each.
+    /// Effect of external accelerations on the holding forces, one row per holding surface, and effect of the
+    /// holding forces on the accelerations, one column per surface.
     force_effects: (DMatrix<f64>, DMatrix<f64>),
 }
 
-/// Several steps at once.
+/// Matrices for several steps at once.
 #[derive(Clone, Debug)]
 pub struct DoubledStep {
-    /// The state at their end by the one at their beginning.
+    /// Map from the state at the start to the state at the end.
     pub state: Columns,
-    /// Contribution of a unit constant and the inputs, held so long.
+    /// Contribution of (1, inputs), held over these steps.
     pub given: Columns,
-    /// Contribution of accelerations held so long.
+    /// Contribution of accelerations held over these steps.
     pub force: Columns,
 }
 
-/// A surface that holds a motion. Its holding force is between those on both sides; it is measured by the
-/// reduction of the function's rate, from the lower side.
+/// A surface that holds a motion. Its holding force lies between the forces on both sides. It is measured by
+/// the reduction of the rate of the surface's function, relative to the lower side.
 #[derive(Clone, Debug)]
 pub struct HeldSurface {
-    /// Its place among the surfaces.
+    /// Index of the surface.
     pub surface: usize,
-    /// Holding force. The surface releases the motion to the lower side if it is negative.
+    /// Holding force. If it becomes negative, the surface releases the motion to the lower side.
     pub above_low: HoldingForce,
-    /// Holding force minus the force on the upper side. The surface releases the motion to the upper side if it is positive.
+    /// Holding force minus the force on the upper side. If it becomes positive, the surface releases the motion
+    /// to the upper side.
     pub above_high: HoldingForce,
-    /// Change of the state that raises the surface's function by one.
+    /// Shortest change of the state that increases the surface's function by one.
     pub across: Vec<f64>,
 }
 
-/// A holding force, and its rate per second.
+/// A holding force and its rate, 1/s times the unit of the force.
 #[derive(Clone, Debug)]
 pub struct HoldingForce {
     pub value: Row,
@@ -96,7 +96,7 @@ impl HeldSurface {
         }
     }
 
-    /// Returns the holding force above that of a side.
+    /// Returns the holding force relative to the force on a side.
     pub fn force_to(&self, side: Side) -> &HoldingForce {
         match side {
             Side::Above => &self.above_high,
@@ -104,7 +104,8 @@ impl HeldSurface {
         }
     }
 
-    /// Returns the difference of the forces on both sides, and the share of the upper side in the holding force.
+    /// Returns the difference of the forces on both sides, and the share of the upper side in the holding
+    /// force.
     pub fn difference_and_share(&self, state: &[f64], inputs: &[f64]) -> (f64, f64) {
         let [low, high] = [&self.above_low, &self.above_high]
             .map(|force| force.value.evaluate_with_inputs(state, inputs));
@@ -119,8 +120,8 @@ impl HeldSurface {
 }
 
 impl Regime {
-    /// The regime with these sides, for steps of `step` s; none if a state cannot be held as
-    /// they say, or its matrices are not finite.
+    /// Creates the regime with these sides, for steps of `step` s. Returns `None` if the surfaces cannot hold
+    /// the motion as given by `sides`, or a matrix is not finite.
     pub fn new(
         evaluator: &mut AffineEvaluator,
         surfaces: &Surfaces,
@@ -193,8 +194,8 @@ impl Regime {
 }
 
 impl Regime {
-    /// Subtracts the reaction of holding surfaces from external accelerations, and writes the
-    /// change of their holding forces to `forces`.
+    /// Subtracts the reaction of holding surfaces from external accelerations, and writes the change of their
+    /// holding forces to `forces`.
     pub fn subtract_held(&self, accelerations: &mut [f64], forces: &mut Vec<f64>) {
         forces.clear();
         if self.held.is_empty() {
@@ -211,8 +212,7 @@ impl Regime {
         }
     }
 
-    /// Writes the rates at a state with a unit constant and the inputs; `out` has a number for
-    /// each row of the matrix.
+    /// Writes the rates at a state with (1, inputs) `given`; `out` has an entry for each row of the matrix.
     pub fn rates(&self, state: &[f64], given: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         for (column, value) in self.given.column_iter().zip(given) {
@@ -223,13 +223,13 @@ impl Regime {
     }
 }
 
-/// The shortest change of the state that raises a function by one.
+/// Returns the shortest change of the state that increases a function by one.
 fn across(function: &[f64]) -> Vec<f64> {
     let square = dot(function, function);
     function.iter().map(|entry| entry / square).collect()
 }
 
-/// The rate of a function along a motion.
+/// Returns the rate of a function for these rates of the state.
 fn along(row: &Row, rates: &Rates) -> Row {
     let times = |matrix: &DMatrix<f64>| -> Vec<f64> {
         let columns = matrix.column_iter();
@@ -243,8 +243,8 @@ fn along(row: &Row, rates: &Rates) -> Row {
     }
 }
 
-/// exp(W h) of a matrix whose first `states` rows are rates and whose others are 0: balanced, because
-/// the norm decides how often the exponential is squared.
+/// Returns exp(W h) of a matrix whose first `states` rows are rates; its other rows are 0. The matrix is
+/// balanced first because its norm determines the number of squarings.
 fn exponential(whole: &DMatrix<f64>, states: usize, step: f64) -> DMatrix<f64> {
     let scale = flow_scale(whole, states, step);
     let flow = (scale_matrix(whole, &scale) * step).exp();
@@ -252,7 +252,7 @@ fn exponential(whole: &DMatrix<f64>, states: usize, step: f64) -> DMatrix<f64> {
     scale_matrix(&flow, &back)
 }
 
-/// The largest magnitude of the rates' eigenvalues over the regimes, 1/s.
+/// Returns the largest magnitude of the eigenvalues of the rates over all regimes, 1/s.
 pub fn fastest_rate(evaluator: &mut AffineEvaluator, surfaces: &Surfaces) -> f64 {
     let count = surfaces.guards.len();
     let mut fastest: f64 = 0.0;
@@ -265,7 +265,7 @@ pub fn fastest_rate(evaluator: &mut AffineEvaluator, surfaces: &Surfaces) -> f64
         let system = evaluator.system(&surfaces.guard_sides(&sides, |_| 0.0));
         let rates = Rates::new(&system);
         if rates.state.iter().all(|entry| entry.is_finite()) {
-            // A matrix whose iteration does not end has no steps that are short enough.
+            // If the eigenvalue iteration does not converge, no step is short enough.
             let balanced = scale_matrix(&rates.state, &state_scale(&rates.state));
             let eigenvalues = qr_iteration::eigenvalues(&balanced);
             let sizes = eigenvalues.map(|all| all.iter().map(|e| e.norm()).fold(0.0, f64::max));

@@ -1,5 +1,5 @@
-//! The rates of a regime as matrices, with the surfaces that hold the motion, and the scale in which
-//! their exponential is taken.
+//! Rates of a regime as matrices, reduced to the surfaces that hold the motion, and the balancing of these
+//! matrices for their exponential.
 
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
 use nalgebra::{DMatrix, DVector, DVectorView, RowDVector};
@@ -8,23 +8,23 @@ use crate::balancing::{MAX_ENTRY_PER_S, balance, scale_matrix};
 
 use super::surfaces::{Row, Side, Surfaces};
 
-/// Smallest relative difference between the forces on the two sides of a surface. Smaller ones are
+/// Smallest relative difference between the forces on the two sides of a surface; smaller differences are
 /// rounding.
 const MIN_RELATIVE_JUMP: f64 = 1e-9;
 
-/// Terms of a series for a part of a step: a step turns no mode by more than about one
-/// radian, and 1/14! is rounding's size.
+/// Number of terms of the exponential series for a part of a step. A step turns no mode by more than about one
+/// radian, and 1/14! is of the order of rounding.
 pub(super) const TERMS: usize = 14;
 
-/// Steps that neighbouring motions make at once are doubled so often at most.
+/// Maximum number of doublings of the steps of tangent vectors.
 pub(super) const DOUBLINGS: usize = 6;
 
-/// The rates of a regime as matrices.
+/// Rates of a regime as matrices.
 #[derive(Clone)]
 pub(super) struct Rates {
-    /// By the state.
+    /// Matrix that maps the state to the rates.
     pub state: DMatrix<f64>,
-    /// By a unit constant and the inputs.
+    /// Matrix that maps (1, inputs) to the rates.
     pub given: DMatrix<f64>,
 }
 
@@ -35,7 +35,7 @@ impl Rates {
         entries.copied().all(f64::is_finite)
     }
 
-    /// Both blocks as rows of a square matrix; the others are 0.
+    /// Returns both matrices as the upper rows of a square matrix; the other rows are 0.
     pub fn joined_matrix(&self) -> DMatrix<f64> {
         let (n, given) = self.given.shape();
         let mut whole = DMatrix::zeros(n + given, n + given);
@@ -57,7 +57,7 @@ impl Rates {
     }
 }
 
-/// Returns the rates with these sides, the surfaces' functions, and how surfaces hold the motion.
+/// Returns the rates with these sides, the surfaces' functions, and the data of holding surfaces.
 pub(super) fn held_rates(
     evaluator: &mut AffineEvaluator,
     surfaces: &Surfaces,
@@ -70,18 +70,19 @@ pub(super) fn held_rates(
     Some((rates, functions, held))
 }
 
-/// Surfaces that hold a motion. Their holding forces are measured by the reduction of the rates of their functions.
+/// Surfaces that hold a motion. Their holding forces are measured by the reduction of the rates of their
+/// functions.
 pub(super) struct HeldRates {
-    /// For each of them its place, its holding force above that on the lower side, and the difference of the forces on
-    /// both sides.
+    /// For each holding surface: its index, its holding force relative to the lower side, and the difference of
+    /// the forces on both sides.
     pub forces: Vec<(usize, Row, Row)>,
-    /// Effect of the rates on the holding forces, a row for each.
+    /// Effect of the rates on the holding forces, one row per surface.
     pub factor: DMatrix<f64>,
-    /// Effect of a holding force on the rates, a column for each.
+    /// Effect of a holding force on the rates, one column per surface.
     pub directions: DMatrix<f64>,
 }
 
-/// Makes the rates those of a state that is held where the sides say so.
+/// Reduces the rates to those on the holding surfaces of `sides`.
 fn hold(
     evaluator: &mut AffineEvaluator,
     surfaces: &Surfaces,
@@ -125,8 +126,8 @@ fn hold(
     })
 }
 
-/// Returns true if the forces of a surface can hold a motion but change their direction with the state or the inputs: the
-/// held motion is then not linear.
+/// Returns true if a surface can hold a motion by forces whose direction depends on the state or the inputs.
+/// The held motion is then not linear.
 pub(super) fn is_held_in_varying_direction(
     evaluator: &mut AffineEvaluator,
     surfaces: &Surfaces,
@@ -147,13 +148,13 @@ pub(super) fn is_held_in_varying_direction(
     difference.find_direction().is_none() && difference.changes_function()
 }
 
-/// Difference between the rates above a surface and those below, on the surface. States are scaled to like size.
+/// Difference of the rates above and below a surface, on the surface. States are scaled to similar size.
 struct SideDifference {
-    /// Columns by the states, a unit constant and the inputs. Those of rounding are 0.
+    /// Matrix that maps the state and (1, inputs) to the difference. Columns at the level of rounding are 0.
     columns: DMatrix<f64>,
     /// Rounding of each column.
     roundings: Vec<f64>,
-    /// Function of the surface, by the states.
+    /// Function of the surface, as a row over the states.
     function: RowDVector<f64>,
     /// Powers of two that scale the states.
     scale: Vec<f64>,
@@ -218,7 +219,8 @@ impl SideDifference {
         }
     }
 
-    /// Returns the reduction of the rate of the function by the difference: positive for forces that lead back.
+    /// Returns the reduction of the function's rate by the difference: positive if this rate is lower
+    /// above the surface than below.
     fn function_reduction(&self) -> Row {
         let states = self.scale.len();
         let rates = -&self.function * &self.columns;
@@ -229,8 +231,8 @@ impl SideDifference {
         }
     }
 
-    /// Returns the difference that reduces the rate of the function by 1, if its direction is constant on the surface and
-    /// changes the function.
+    /// Returns the direction of the difference, scaled such that it reduces the function's rate by 1. Returns
+    /// `None` if the direction is not constant on the surface or does not change the function.
     fn find_direction(&self) -> Option<DVector<f64>> {
         let columns = self.columns.column_iter().zip(&self.roundings);
         let present = columns.filter(|(column, _)| column.amax() > 0.0);
@@ -263,7 +265,7 @@ impl SideDifference {
     }
 }
 
-/// Powers of two that bring states of different units to like size.
+/// Returns powers of two that scale states of different units to similar size.
 pub(super) fn state_scale(rates: &DMatrix<f64>) -> Vec<f64> {
     let one = vec![1.0; rates.nrows()];
     match rates.iter().all(|entry| entry.abs() < MAX_ENTRY_PER_S) {
@@ -272,7 +274,7 @@ pub(super) fn state_scale(rates: &DMatrix<f64>) -> Vec<f64> {
     }
 }
 
-/// Powers of two that balance such a matrix for its exponential.
+/// Returns powers of two that balance the matrix of [`Rates::joined_matrix`] for its exponential.
 pub(super) fn flow_scale(whole: &DMatrix<f64>, states: usize, step: f64) -> Vec<f64> {
     let rates = whole.view((0, 0), (states, states)).into_owned();
     let mut scale = state_scale(&rates);

@@ -1,5 +1,5 @@
-//! The time at which a surface no longer holds a motion: there the holding force leaves the interval between the forces on
-//! both sides.
+//! Release of a motion by a surface: the time at which the holding force leaves the interval between the forces
+//! on both sides.
 
 use super::crossing::first_crossing;
 use super::regime::HoldingForce;
@@ -8,25 +8,25 @@ use super::remainder_search::OFFSET_STEPS;
 use super::surfaces::{Side, dot};
 use super::types::{ExponentialIntegrator, Motion, Options};
 
-/// A state and the nonlinear remainder there.
+/// A state and the nonlinear remainder at this state.
 type End<'e> = (&'e [f64], &'e Remainder);
 
-/// The release of a motion by a surface.
+/// Release of a motion by a surface.
 #[derive(Clone, Copy)]
 pub(super) struct Release {
-    /// Place among the surfaces that hold the motion.
+    /// Index among the surfaces that hold the motion.
     pub place: usize,
     /// Side of the motion after the release.
     pub to: Side,
-    /// Time from the beginning of the step, s.
+    /// Time since the start of the step, s.
     pub tau: f64,
     /// Rate at which the nonlinear remainder changes the holding force.
     pub slope: f64,
 }
 
 impl ExponentialIntegrator {
-    /// Returns the first release within a step of this length, s, by the cubics through both of its
-    /// ends.
+    /// Returns the first release within a step of this length, s. The holding forces are approximated by cubics
+    /// through both ends.
     pub(super) fn find_first_release(
         &self,
         motion: &Motion,
@@ -64,8 +64,8 @@ impl ExponentialIntegrator {
         releases.flatten().min_by(|a, b| a.tau.total_cmp(&b.tau))
     }
 
-    /// Lets the motion go on to one side of a surface that held it. Rates do not jump there: the
-    /// surface bore all of one side and nothing of the other.
+    /// Releases the motion from surfaces to the given sides. The rates do not jump, because the holding force
+    /// equals the force on that side.
     pub(super) fn release_motion(
         &mut self,
         motion: &mut Motion,
@@ -85,7 +85,7 @@ impl ExponentialIntegrator {
         self.find_remainder_beside(motion, (t, OFFSET_STEPS), &rates, options)
     }
 
-    /// Lets the motion go from surfaces that no longer hold it, because an input has changed.
+    /// Releases the motion from surfaces that no longer hold it because an input changed.
     pub(super) fn release(
         &mut self,
         motion: &mut Motion,

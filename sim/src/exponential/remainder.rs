@@ -1,5 +1,5 @@
-//! The nonlinear remainder: what of a model is not linear between its surfaces. Accelerations,
-//! and how far the surfaces themselves lie from the linear part's.
+//! Nonlinear remainder of a model: the accelerations that its piecewise-linear part lacks, and the displacement
+//! of its switching surfaces relative to those of this part.
 
 use super::prescribed_motions::PrescribedMotions;
 use super::regime::Regime;
@@ -7,30 +7,30 @@ use super::surfaces::{Row, Surfaces};
 
 /// Terms that a model adds to its piecewise-linear part.
 pub trait Force {
-    /// Writes the added accelerations at a state. Each term uses the sides of its surfaces.
+    /// Writes the added accelerations at a state. Each term uses the sides of the actual surfaces of the model.
     fn write_accelerations(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]);
 
-    /// Writes the value of each guard of the piecewise-linear part in the whole model. Returns
-    /// false if all are always those of the piecewise-linear part.
+    /// Writes the guards of the piecewise-linear part as the whole model has them. Returns false if no guard
+    /// ever differs from the piecewise-linear part.
     fn write_guards(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut Vec<f64>) -> bool;
 }
 
-/// The nonlinear remainder at a state.
+/// Nonlinear remainder at a state.
 #[derive(Clone, Debug, Default)]
 pub struct Remainder {
-    /// Accelerations, with a regime's own taken away.
+    /// Accelerations relative to those of the regime.
     pub force: Vec<f64>,
-    /// Addition to the function of each surface.
+    /// Value added to the function of each surface.
     pub moved: Vec<f64>,
-    /// True if a surface may be moved.
+    /// True if a surface may be displaced.
     pub moves: bool,
-    /// Addition to the side of each holding surface, in the order of the regime.
+    /// Value added to the holding force of each holding surface, in the order of the regime.
     pub borne: Vec<f64>,
     guards: Vec<f64>,
 }
 
 impl Remainder {
-    /// Nothing, so far.
+    /// Creates a remainder of 0.
     pub fn zero(accelerations: usize, surfaces: usize) -> Self {
         Self {
             force: vec![0.0; accelerations],
@@ -39,8 +39,8 @@ impl Remainder {
         }
     }
 
-    /// Computes the remainder at a state: accelerations relative to those of the linear part on the
-    /// sides of its surfaces.
+    /// Computes the remainder at a state. The accelerations are relative to the linear part with the sides of
+    /// its own surfaces.
     pub fn find(
         &mut self,
         (force, prescribed): (&mut dyn Force, &PrescribedMotions),
@@ -64,9 +64,9 @@ impl Remainder {
 #[derive(Debug, Default)]
 pub struct RegimeDifference {
     pub pair: (usize, usize),
-    /// By each state that they differ by, one per acceleration.
+    /// Differences by the states: index of a state, and one entry per acceleration. Zero columns are omitted.
     by_state: Vec<(usize, Vec<f64>)>,
-    /// The same by a unit constant and the inputs.
+    /// Differences by a unit constant and the inputs, in the form of `by_state`.
     by_given: Vec<(usize, Vec<f64>)>,
 }
 

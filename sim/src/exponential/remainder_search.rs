@@ -1,18 +1,17 @@
-//! The nonlinear remainder along a motion: what of a model is not linear between its surfaces: accelerations, and how far the surfaces
-//! themselves lie beyond the linear part's. Teeth with a transmission error touch where the
-//! deflection less the error reaches the play; where that differs from the linear part's place
-//! by more than the play, an integration by the linear part's sides would be in the wrong regime.
+//! Nonlinear remainder along a motion, including the displacement of surfaces. For example, gear teeth with a
+//! transmission error touch when the deflection minus the error reaches the play. If the displacement exceeds
+//! the play, the sides of the linear part would give the wrong regime.
 
 use super::remainder::{Force, RegimeDifference, Remainder};
 use super::surfaces::Side;
 use super::types::{ExponentialIntegrator, Motion, Options};
 
-/// Distance from a crossed surface, in steps, at which a model is evaluated on either side: on the
-/// surface itself rounding errors decide the side.
+/// Distance from a crossed surface, in steps, at which the model is evaluated on each side; on the surface
+/// itself rounding would decide the side.
 pub const OFFSET_STEPS: f64 = 1e-4;
 
 impl ExponentialIntegrator {
-    /// Computes the nonlinear remainder at the present state of a motion.
+    /// Computes the nonlinear remainder at the current state of a motion.
     pub(super) fn find_remainder(
         &mut self,
         motion: &mut Motion,
@@ -24,7 +23,7 @@ impl ExponentialIntegrator {
         self.remainder_at(here, at, force, &mut motion.remainder)
     }
 
-    /// The same at any state, relative to a regime with its sides.
+    /// Computes the nonlinear remainder at any state, relative to a regime with its sides.
     pub(super) fn remainder_at(
         &mut self,
         (here, sides): (usize, &[Side]),
@@ -40,8 +39,8 @@ impl ExponentialIntegrator {
         Ok(())
     }
 
-    /// Computes the remainder at a distance of `steps` from a crossed surface, by extrapolation
-    /// with the given rates.
+    /// Computes the remainder `steps` steps away from a crossed surface, at a state extrapolated with the given
+    /// rates.
     pub(super) fn find_remainder_beside(
         &mut self,
         motion: &mut Motion,
@@ -63,8 +62,7 @@ impl ExponentialIntegrator {
         self.remainder_at(here, at, &mut **force, &mut motion.remainder)
     }
 
-    /// Takes accelerations relative to those of a regime on its sides, instead of the regime in
-    /// which the linear part would be.
+    /// Converts accelerations from the regime of the linear part at this state to the regime `here`.
     fn relate(
         &mut self,
         (here, sides): (usize, &[Side]),

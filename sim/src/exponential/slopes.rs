@@ -1,30 +1,29 @@
-//! Derivatives of the nonlinear remainder's accelerations by each state, kept for neighbouring
-//! motions.
+//! Derivatives of the nonlinear remainder's accelerations by each state, stored for tangent vectors.
 
 use super::remainder::Remainder;
 
-/// Derivatives of the nonlinear remainder's accelerations by each state, at both ends of the
-/// neighbours' step.
+/// Derivatives of the nonlinear remainder's accelerations by each state, at both ends of a step of the tangent
+/// vectors.
 #[derive(Debug, Default)]
 pub struct Slopes {
-    /// For each state the accelerations' derivatives, one after the other.
+    /// Derivatives at the start: all accelerations by the first state, then by the second, and so on.
     pub here: Vec<f64>,
     pub there: Vec<f64>,
-    /// States by which some are not 0, in the order in which that was seen.
+    /// Indices of states with a nonzero derivative, in the order in which they were found.
     pub active: Vec<usize>,
-    /// True if each is known.
+    /// True for `here` and `there` if they have been computed.
     pub is_known: [bool; 2],
     pub asked: usize,
     pub base: Remainder,
     pub moved: Remainder,
     pub rates: Vec<f64>,
-    /// The largest that each acceleration has been.
+    /// Largest magnitude of each acceleration so far.
     pub largest: Vec<f64>,
     pub state: Vec<f64>,
 }
 
 impl Slopes {
-    /// Of a model with so many states, rates that forces act on, and surfaces.
+    /// Creates derivatives of 0 for these numbers of states, of rates that forces act on, and of surfaces.
     pub fn new(states: usize, forced: usize, surfaces: usize) -> Self {
         Self {
             here: vec![0.0; states * forced],
@@ -36,27 +35,26 @@ impl Slopes {
         }
     }
 
-    /// Marks the derivatives at the present state as unknown.
+    /// Marks the derivatives at the current state as unknown.
     pub fn forget_here(&mut self) {
         self.is_known = [false; 2];
         self.asked = 0;
     }
 
-    /// Keeps the derivatives unchanged over the step.
+    /// Uses the derivatives at the start of the step also at its end.
     pub fn keep(&mut self) {
         self.there.copy_from_slice(&self.here);
         self.is_known[1] = true;
     }
 
-    /// Moves the derivatives at the end of the step to its beginning, after the neighbours have
-    /// made it.
+    /// Moves the derivatives at the end of the step to the start of the next step.
     pub fn shift_to_end(&mut self) {
         std::mem::swap(&mut self.here, &mut self.there);
         self.is_known = [self.is_known[1], false];
     }
 
-    /// Adds what a neighbour feels where it set out, or if that is not known, will feel; nothing
-    /// if neither is.
+    /// Adds the acceleration of a tangent vector at the start of a step. If the derivatives there are unknown,
+    /// those at the end are used; if both are unknown, nothing is added.
     pub fn add_begin(&self, vector: &[f64], out: &mut [f64]) {
         let derivatives = match self.is_known {
             [true, _] => &self.here,
@@ -66,7 +64,7 @@ impl Slopes {
         self.add(derivatives, vector, 1.0, out);
     }
 
-    /// Adds what a neighbour feels where it goes to, times a factor.
+    /// Adds the acceleration of a tangent vector at the end of a step, times a factor.
     pub fn add_end(&self, vector: &[f64], factor: f64, out: &mut [f64]) {
         self.add(&self.there, vector, factor, out);
     }

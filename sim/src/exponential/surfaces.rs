@@ -1,15 +1,15 @@
-//! The switching surfaces of a piecewise-linear model and on which side of each a motion is.
+//! Switching surfaces of a piecewise-linear model, and the side of each on which a motion is.
 
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
 
-/// On which side of a surface a motion is.
+/// Side of a surface on which a motion is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Side {
-    /// Its function is not positive.
+    /// The function of the surface is not positive.
     Below,
-    /// It is positive.
+    /// The function of the surface is positive.
     Above,
-    /// Forces on both sides lead back to it.
+    /// The surface holds the motion: the rates on both sides point towards it.
     Held,
 }
 
@@ -24,26 +24,26 @@ impl Side {
     }
 }
 
-/// Surfaces that differ: those of one function and one threshold are one.
+/// Distinct surfaces: guards with the same function and threshold share one.
 #[derive(Clone, Debug)]
 pub struct Surfaces {
-    /// For each surface the guards that are it.
+    /// Indices of the guards of each surface.
     pub guards: Vec<Vec<usize>>,
     /// Number of guards.
     count: usize,
 }
 
-/// A row of a linear function: of the state, of a unit constant and the inputs.
+/// Coefficients of a linear function of the state, a unit constant and the inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// One per state.
+    /// Coefficient of each state.
     pub state: Vec<f64>,
-    /// A constant and one per input.
+    /// Constant, then the coefficient of each input.
     pub given: Vec<f64>,
 }
 
 impl Row {
-    /// The value of the function.
+    /// Returns the value of the function.
     pub fn evaluate(&self, state: &[f64], given: &[f64]) -> f64 {
         dot(&self.state, state) + dot(&self.given, given)
     }
@@ -59,18 +59,18 @@ impl Row {
         }
     }
 
-    /// The value of the function at a state and at inputs without the leading unit constant.
+    /// Returns the value of the function at a state and at inputs without the leading unit constant.
     pub fn evaluate_with_inputs(&self, state: &[f64], inputs: &[f64]) -> f64 {
         dot(&self.state, state) + self.given[0] + dot(&self.given[1..], inputs)
     }
 }
 
-/// A sum of products.
+/// Returns the scalar product.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// A guard's function.
+/// Returns the function of a guard.
 fn row(system: &AffineSystem, guard: usize) -> Row {
     let guards = &system.guards;
     let part = |block: &[f64]| {
@@ -86,8 +86,8 @@ fn row(system: &AffineSystem, guard: usize) -> Row {
 }
 
 impl Surfaces {
-    /// Returns the surfaces of a model, or `None` if one may move with the side of another, or
-    /// depends only on inputs.
+    /// Returns the surfaces of a model, or `None` if the function of a surface depends on the side of another
+    /// surface, or only on inputs.
     pub fn new(evaluator: &mut AffineEvaluator) -> Option<Self> {
         let count = evaluator.guard_count();
         if evaluator.guards_rest().contains(&true) {
@@ -112,13 +112,14 @@ impl Surfaces {
         })
     }
 
-    /// The function of each surface.
+    /// Returns the function of each surface.
     pub fn rows(&self, system: &AffineSystem) -> Vec<Row> {
         let rows = self.guards.iter().map(|guards| row(system, guards[0]));
         rows.collect()
     }
 
-    /// A number for each guard: its side, or `held` for those that are held.
+    /// Returns the number of each guard by its side: 0 below, 1 above, and `held` of the surface on a holding
+    /// surface.
     pub fn guard_sides(&self, sides: &[Side], held: impl Fn(usize) -> f64) -> Vec<f64> {
         let mut numbers = vec![0.0; self.count];
         for (place, (guards, side)) in self.guards.iter().zip(sides).enumerate() {

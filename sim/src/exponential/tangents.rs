@@ -1,6 +1,5 @@
-//! Neighbouring motions to first order, carried along an integration: through steps by the regime's
-//! own matrix, through switches by the saltation matrix, driven by a parameter that differs or by
-//! accelerations.
+//! Tangent vectors propagated along with an integration: over steps by the matrices of the regime, and through
+//! switches by the saltation matrix. Changes of parameters or external accelerations drive them.
 
 use super::kernels::{self, Columns};
 use super::prescribed_motions::PrescribedMotions;
@@ -9,23 +8,23 @@ use super::regime_rates::TERMS;
 use super::slopes::Slopes;
 use super::surfaces::dot;
 
-/// A switch whose function has less than this part of its usual rate divides by nothing.
+/// Smallest rate of a function at a switch, relative to its usual rate. At smaller rates (grazing) the
+/// saltation quotient is not formed.
 const GRAZING: f64 = 1e-9;
 
-/// Steps over which drives are held, at their mean over both ends.
+/// Number of steps over which drives are held at the mean of both ends.
 const DRIVEN_STEPS: usize = 2;
 
-/// Distance from a holding surface at which a model is evaluated on one side, as a fraction of the
-/// effect of the difference of both sides on the surface's function in one step.
+/// Distance from a holding surface at which a model is evaluated on one side. It is a fraction of the change of
+/// the surface's function in one step by the difference of both sides.
 const OFFSET_IN_DIFFERENCES: f64 = 1e-6;
 
-/// A neighbouring motion through a part of a step is right to this part of its size.
+/// Relative error of a tangent vector after a part of a step.
 const PART_ERROR: f64 = 1e-9;
 
 /// Differences of accelerations that drive tangent vectors.
 pub trait DrivingAccelerations {
-    /// Writes the difference of each acceleration at a state, for one driven vector after the
-    /// other.
+    /// Writes the difference of each acceleration at a state, consecutively for each driven vector.
     fn write_differences(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]);
 }
 
@@ -36,13 +35,13 @@ impl DrivingAccelerations for NoDrives {
     fn write_differences(&mut self, _: f64, _: &[f64], _: &[f64], _: &mut [f64]) {}
 }
 
-/// The function of a surface that a motion has reached.
+/// Function of a surface that a motion has reached.
 pub(super) struct ReachedSurface<'r> {
-    /// Its derivatives by the state.
+    /// Derivatives of the function by the state.
     pub gradient: &'r [f64],
-    /// Its derivatives by the parameters of tangent vectors.
+    /// Derivatives of the function by the parameters of tangent vectors.
     pub by_parameter: &'r [f64],
-    /// Its rate, per s.
+    /// Rate of the function, per s.
     pub rate: f64,
 }
 
@@ -57,34 +56,34 @@ pub struct Directions {
     pub driven_count: usize,
 }
 
-/// Tangent vectors of the initial state, then of parameters, then driven ones.
+/// Tangent vectors: by the initial state, then by parameters, then driven by accelerations.
 pub struct Tangents<'d> {
     states: usize,
     degrees: usize,
     /// Number of rates that forces act on.
     forced: usize,
     prescribed: PrescribedMotions,
-    /// Number of derivatives by the initial state.
+    /// Number of tangent vectors by the initial state.
     free: usize,
     by_parameter: usize,
     driven: usize,
     /// Number of entries from one vector to the next.
     pub stride: usize,
-    /// Entries of all vectors.
+    /// Entries of all vectors, one vector after the other.
     pub vectors: Vec<f64>,
     next: Vec<f64>,
-    /// The state of the motion at the time of the vectors, and a later one.
+    /// State of the motion at the time of the vectors, and a later state.
     from: Vec<f64>,
     later: Vec<f64>,
-    /// Steps that the motion has made and the vectors have not.
+    /// Number of steps that the motion has made and the vectors have not.
     pending: usize,
-    /// True if the motion is on a surface: rounding errors decide the drives.
+    /// True if the motion is on a surface, where rounding would decide the drives.
     on_surface: bool,
     drives: &'d mut dyn DrivingAccelerations,
-    /// Drives at the present state, and a step later.
+    /// Drives at the current state, and a step later.
     here: Vec<f64>,
     there: Vec<f64>,
-    /// Effect of the nonlinear remainder on neighbours, if there are any.
+    /// Derivatives of the nonlinear remainder, if the model has one.
     pub(super) slopes: Option<Slopes>,
     felt: Vec<f64>,
 }
@@ -139,7 +138,7 @@ impl<'d> Tangents<'d> {
         self.find_drives(regime, at);
     }
 
-    /// Computes the driving accelerations at the present state, in a regime.
+    /// Computes the driving accelerations at the current state, in a regime.
     pub fn find_drives(&mut self, regime: &Regime, at: (f64, &[f64], &[f64])) {
         if self.driven > 0 {
             let out = (&mut self.here[..], self.forced);
@@ -153,7 +152,7 @@ impl<'d> Tangents<'d> {
         self.free + self.by_parameter + self.driven
     }
 
-    /// Records a whole step of the motion; returns true if the vectors must follow now.
+    /// Records a whole step of the motion. Returns true if the pending steps of the vectors must be made now.
     pub fn step(&mut self) -> bool {
         self.pending += 1;
         (self.driven > 0 || self.slopes.is_some()) && self.pending >= DRIVEN_STEPS
@@ -170,7 +169,7 @@ impl<'d> Tangents<'d> {
         self.forget_slopes();
     }
 
-    /// Discards the derivatives of the nonlinear terms at the present state.
+    /// Discards the derivatives of the nonlinear terms at the current state.
     pub fn forget_slopes(&mut self) {
         if let Some(slopes) = &mut self.slopes {
             slopes.forget_here();
@@ -204,8 +203,8 @@ impl<'d> Tangents<'d> {
         }
     }
 
-    /// Makes several steps at once, with the drives held, and corrected at the end what is felt
-    /// of the forces that change with the state.
+    /// Makes several steps at once. The drives are held. The forces that depend on the state are held and
+    /// corrected at the end.
     fn several(&mut self, regime: &Regime, doubling: usize, given: &[f64]) {
         let forced = self.forced;
         let DoubledStep {
@@ -249,7 +248,7 @@ impl<'d> Tangents<'d> {
         std::mem::swap(&mut self.vectors, &mut self.next);
     }
 
-    /// Advances the vectors by a part of a step, `tau` s, that ends at a state.
+    /// Advances the vectors by a part of a step, `tau` s, to a state.
     pub fn advance_part(&mut self, regime: &Regime, tau: f64, end: (f64, &[f64], &[f64])) {
         let (n, degrees, forced) = (self.states, self.degrees, self.forced);
         if self.on_surface {
@@ -282,15 +281,15 @@ impl<'d> Tangents<'d> {
         }
     }
 
-    /// Moves the vectors of parameters by a part of a step, s: by the series of the exponential of the
-    /// motion and its derivative together.
+    /// Advances the vectors of parameters by a part of a step, s, with the exponential series of the motion and
+    /// of its derivative.
     fn parameters_part(&mut self, regime: &Regime, tau: f64, inputs: &[f64]) {
         if self.by_parameter == 0 {
             return;
         }
         let (n, rows) = (self.states, regime.matrix.rows);
         let given: Vec<f64> = [1.0].iter().chain(inputs).copied().collect();
-        // The terms of the motion's own series: the k-th is tau/k times the matrix times the one before.
+        // Term k of the series of the motion is tau/k times the matrix times term k-1.
         let mut motion: Vec<Vec<f64>> = Vec::with_capacity(TERMS);
         for k in 1..TERMS {
             let mut term = vec![0.0; rows];
@@ -324,8 +323,8 @@ impl<'d> Tangents<'d> {
         }
     }
 
-    /// Goes through a switch: the gradient of the function that reached its surface, its derivatives by
-    /// the parameters and its rate, the rates before and after.
+    /// Applies the saltation matrix of a switch, given the function of the reached surface and the rates before
+    /// and after the switch.
     pub(super) fn apply_saltation(
         &mut self,
         reached: &ReachedSurface<'_>,
@@ -352,8 +351,8 @@ impl<'d> Tangents<'d> {
     }
 }
 
-/// Finds the drives in a regime. On a surface that holds the motion the accelerations are a convex
-/// combination of those on both sides, and the surface takes away what would lead off it.
+/// Computes the drives in a regime. On a holding surface, the accelerations are a convex combination of those
+/// on both sides, minus the reaction of the surface.
 fn drives_in(
     regime: &Regime,
     (drives, prescribed): (&mut dyn DrivingAccelerations, &PrescribedMotions),
@@ -399,7 +398,7 @@ fn drives_in(
     }
 }
 
-/// Moves a state so that the function of a surface changes by `distance`.
+/// Changes a state so that the function of a surface changes by `distance`.
 fn move_across(state: &mut [f64], held: &HeldSurface, distance: f64) {
     let sums = state.iter_mut().zip(&held.across);
     sums.for_each(|(x, across)| *x += distance * across);
@@ -423,7 +422,7 @@ pub fn add_exponential_series(
         large.resize(rates.len(), 0.0);
         &mut large
     };
-    // The original numbers, and the sizes of the terms so far.
+    // Magnitudes of the initial entries plus those of the terms so far.
     let mut sizes: Vec<f64> = vector.iter().map(|value| value.abs()).collect();
     for (slot, rate) in rates.iter_mut().enumerate() {
         *rate *= tau;

@@ -61,8 +61,8 @@ fn integration_matches_exact_motion_through_events() {
     let mut integrator =
         ExponentialIntegrator::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be integrated");
     let found = run(&mut integrator, &initial, &times, &inputs);
-    // Deflections of the meshes, the carrier coordinate and the modes: micrometres to millimetres.
-    // A sensor of the rig resolves 0.7 um.
+    // Deflections of the meshes, the carrier coordinate and the modes, between micrometres and millimetres. A
+    // sensor of the rig resolves 0.7 um.
     for (sample, (a, b)) in found.iter().zip(&wanted.states).enumerate() {
         for place in 0..7 {
             let difference = (a[place] - b[place]).abs();
@@ -186,7 +186,7 @@ fn driven(driven: usize) -> Directions {
     }
 }
 
-/// A mass of 2 kg with an input force and dry friction of 3 N.
+/// Returns a mass of 2 kg with an input force and dry friction of 3 N.
 fn sliding() -> Model {
     let text = r#"
 [model]
@@ -215,7 +215,7 @@ fn dry_friction_sticks_and_releases() {
     let exact = PiecewiseLinear::derive(&model, &[]).expect("piecewise linear");
     let mut integrator = ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0)
         .expect("can be integrated");
-    // Sticking for a second, 1 m/s^2 for the next, then decelerated by 1.5 m/s^2 until it sticks
+    // The mass sticks for 1 s, accelerates at 1 m/s^2 for 1 s, then decelerates at 1.5 m/s^2 until it sticks
     // again.
     let inputs = HeldInputs::new(vec![0.0, 1.0, 2.0], vec![2.0, 5.0, 0.0], 1).expect("inputs");
     let times: Vec<f64> = (0..=400).map(|k| f64::from(k) * 0.01).collect();
@@ -267,7 +267,7 @@ fn driven_tangent_matches_response_to_acceleration() {
     assert!(last[0] == 0.0 && (last[stride] - 0.5).abs() < 1e-12);
 }
 
-/// A motor of 80 kg that drives a table of 18 kg with dry friction of 41 N through a stiff screw.
+/// Returns a motor of 80 kg that drives a table of 18 kg with dry friction of 41 N through a stiff screw.
 fn axis() -> Model {
     let text = r#"
 [model]
@@ -317,7 +317,7 @@ fn release_within_step_is_located() {
     let found = run(&mut integrator, &[0.0; 4], &times, &inputs);
     let differences = found.iter().zip(&wanted.states).map(|(a, b)| a[1] - b[1]);
     let most = differences.fold(0.0f64, |most, d| most.max(d.abs()));
-    // With a release at the end of the step, the error is 2 um.
+    // If the release were applied at the end of the step, the error would be 2 um.
     assert!(most < 2e-9, "{most:e} m");
 }
 
@@ -327,7 +327,7 @@ fn driven_tangent_stays_on_sticking_surface() {
     let exact = PiecewiseLinear::derive(&model, &[]).expect("piecewise linear");
     let mut integrator = ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0)
         .expect("can be integrated");
-    // Sticking for a second, then 1 m/s^2.
+    // The mass sticks for 1 s, then accelerates at 1 m/s^2.
     let inputs = HeldInputs::new(vec![0.0, 1.0], vec![2.0, 5.0], 1).expect("inputs");
     let times: Vec<f64> = (0..=200).map(|k| f64::from(k) * 0.01).collect();
     let mut push = Push;
@@ -449,7 +449,8 @@ impact = { on = "alpha", value = "-d*dot(alpha)*above(alpha - beta - g)" }
                 moved[place] += change;
                 motion(&moved).states
             });
-            // Impacts make neighbouring motions diverge; later differences are no derivatives.
+            // Impacts make neighbouring motions diverge, so later finite differences do not approximate
+            // derivatives.
             for state in 0..2 {
                 let wanted =
                     |sample: usize| (after[sample][state] - before[sample][state]) / (2.0 * step);

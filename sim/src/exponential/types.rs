@@ -17,26 +17,27 @@ pub struct ExponentialIntegrator {
     pub(super) surfaces: Surfaces,
     pub(super) regimes: Vec<Regime>,
     pub(super) known: HashMap<Vec<Side>, Option<usize>>,
-    /// Number of states with those of prescribed motions, which come last.
+    /// Number of states, including the states of prescribed motions, which are the last ones.
     pub(super) states: usize,
     pub(super) prescribed: PrescribedMotions,
-    /// The typical size of each state.
+    /// Typical size of each state.
     pub(super) typical_sizes: Vec<f64>,
-    /// Degrees of freedom: as many positions come first in the state, then as many rates.
+    /// Number of degrees of freedom: the state starts with this number of positions, then the same number of
+    /// rates.
     pub(super) degrees: usize,
-    /// Number of rates that forces act on: accelerations, and rates of states of first order.
+    /// Number of rates that forces act on: accelerations, and rates of first-order states.
     pub(super) forced: usize,
-    /// The length of a step, s.
+    /// Length of a step, s.
     pub(super) step: f64,
-    /// The most surfaces that a motion may cross, and how many it did.
+    /// Maximum number of events of a motion, and their number so far.
     pub(super) most_crossings: usize,
     pub(super) crossings: usize,
-    /// The sides of the linear part by itself, the last such sides with their regime, and the
-    /// difference of that regime from the present one.
+    /// Sides of the linear part by its own surfaces, the last different sides with their regime, and the
+    /// difference between that regime and the current one.
     pub(super) own: Vec<Side>,
     pub(super) last_own: (Vec<Side>, usize),
     pub(super) apart: RegimeDifference,
-    /// The evaluator's own parameters and those to their sides, by which is differentiated.
+    /// Parameters of the evaluator, and changed parameters for difference quotients.
     pub(super) own_parameters: Vec<f64>,
     pub(super) moved: Vec<Vec<MovedParameters>>,
 }
@@ -48,11 +49,11 @@ pub enum UnsupportedModel {
     UnsupportedTerms,
     /// A surface holds the motion by forces whose direction depends on the state or the inputs.
     VaryingHoldingDirection,
-    /// Too many steps between two samples; the number required.
+    /// Too many steps between two samples; contains the required number.
     TooManySteps(f64),
 }
 
-/// Present point of a motion.
+/// Current point of a motion.
 pub(super) struct Motion {
     pub(super) t: f64,
     pub(super) state: Vec<f64>,
@@ -60,13 +61,13 @@ pub(super) struct Motion {
     pub(super) regime: usize,
     /// A unit constant and the inputs.
     pub(super) given: Vec<f64>,
-    /// Contribution of these to a step.
+    /// Contribution of `given` to a step.
     pub(super) base: Vec<f64>,
-    /// Functions of the surfaces and their rates.
+    /// Functions of the surfaces, then their rates.
     pub(super) event_values: Vec<f64>,
-    /// Nonlinear remainder there.
+    /// Nonlinear remainder at the current state.
     pub(super) remainder: Remainder,
-    /// End of a step, its nonlinear remainder, and half the change of the remainder.
+    /// State at the end of a trial step, its nonlinear remainder, and half the change of the remainder.
     pub(super) next: Vec<f64>,
     pub(super) later: Remainder,
     pub(super) change: Vec<f64>,

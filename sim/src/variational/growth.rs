@@ -5,8 +5,8 @@ use crate::ode::{Settings, SolveError, System, Trajectory, simulate};
 
 const SIZE_SAMPLES: usize = 64;
 
-/// Largest shrinkage exponent of a vector over one piece of an interval. The solver's error is
-/// relative to the largest length, so it remains a small fraction of the last one.
+/// Largest decay exponent of a vector over one piece of an interval. The solver's error is relative to the
+/// largest length of the vector. With this limit it remains a small fraction of the last length.
 const MAX_SHRINKAGE_EXPONENT: f64 = 4.0;
 
 const MAX_PIECES: u32 = 4096;
@@ -16,7 +16,8 @@ const MAX_PIECES: u32 = 4096;
 pub struct MeasurementTimes {
     /// Start of the motion, s.
     pub start: f64,
-    /// Time before the first measurement, s. The vector aligns in its second half.
+    /// Time before the first measurement, s. In its second half the vector aligns with the fastest growing
+    /// direction.
     pub transient: f64,
     /// Time between two measurements, s.
     pub interval: f64,
@@ -53,14 +54,13 @@ impl From<SolveError> for GrowthError {
 
 /// Measures the growth of a tangent vector along the motion from `initial` at its start.
 ///
-/// The system must implement its own Jacobian: finite differences would cross switching surfaces.
-/// `felt` is true for each state that a rate or a switching function depends on; the others, such
-/// as the angle of an unrestrained rotation, do not count in the length. `settings` limits the
-/// number of all steps together.
+/// The system must implement its own Jacobian: finite differences would cross switching surfaces. `felt` is
+/// true for each state that a rate or a switching function depends on. Other states, such as the angle of an
+/// unrestrained rotation, do not contribute to the length. The step limit of `settings` applies to all
+/// intervals together.
 ///
-/// # Errors
-/// A motion that cannot be simulated, neighbouring motions that do not remain close, invalid
-/// times, or no state with an influence.
+/// # Errors A motion that cannot be simulated, neighbouring motions that do not remain close, invalid times, or
+/// no state for which `felt` is true.
 pub fn measure_growth(
     system: &dyn System,
     initial: &[f64],
@@ -114,8 +114,8 @@ struct MotionWithTangent<'a> {
 }
 
 impl<'a> MotionWithTangent<'a> {
-    /// Starts with the first unit vector of the states that count, turned slightly towards the
-    /// others.
+    /// Starts with the unit vector of the first state that contributes to the length, with small components of
+    /// the others.
     fn new(
         system: &'a dyn System,
         (start, initial): (f64, &[f64]),
@@ -222,7 +222,7 @@ impl<'a> MotionWithTangent<'a> {
         }
     }
 
-    /// Counts steps and events of a motion and returns its last state.
+    /// Adds steps and events of a motion to the totals and returns its last state.
     fn count_work(&mut self, motion: Trajectory) -> Vec<f64> {
         let work = motion.statistics;
         let steps = work.steps + work.rejected_steps + work.trial_steps;

@@ -2,11 +2,11 @@
 
 use crate::ode::System;
 
-/// Width of finite differences relative to the size of a state: wide compared with the rounding of
-/// a switching function, narrow compared with its curvature.
+/// Step of finite differences relative to the size of a state: large compared with the rounding of a switching
+/// function, small enough that its curvature is negligible.
 const DIFFERENCE_FRACTION: f64 = 1e-3;
 
-/// Largest relative difference of times that belong to the same surface, written twice.
+/// Largest relative difference of crossing times of two functions that describe the same surface.
 const MAX_TIME_DIFFERENCE_FRACTION: f64 = 1e-6;
 
 pub(super) struct Surfaces<'a> {
@@ -38,7 +38,7 @@ impl Surfaces<'_> {
         let mut moved = y.to_vec();
         for state in 0..y.len() {
             let size = self.sizes[state].max(y[state].abs());
-            // A state that has been 0 up to now has the size of its unit.
+            // A state that has always been 0 has the size 1 in its unit.
             let step = DIFFERENCE_FRACTION * if size > 0.0 { size } else { 1.0 };
             let (high, low) = (y[state] + step, y[state] - step);
             moved[state] = high;
@@ -52,9 +52,9 @@ impl Surfaces<'_> {
     }
 }
 
-/// Returns the delay (s) with which the neighbour at the distance `v` reaches the surface between
-/// two points; `from` are the rates on the near side. `None` if there are several surfaces with
-/// different delays, or if the motion only touches the surface.
+/// Returns the delay (s) with which a neighbouring motion at the distance `v` reaches the surface between two
+/// points; `from` are the rates on the near side. Returns `None` if there are several surfaces with different
+/// delays, or if the motion only touches the surface.
 pub(super) fn find_delay(
     surfaces: &Surfaces<'_>,
     (before, near): (f64, &[f64]),
@@ -66,8 +66,7 @@ pub(super) fn find_delay(
         surfaces.evaluate(before, near),
         surfaces.evaluate(t, beyond),
     );
-    // The shortest time in which a state changes by its size, to resolve a dependence of surfaces
-    // on time.
+    // Shortest time in which a state changes by its size; it is the time step for surfaces that depend on time.
     let times = from.iter().zip(surfaces.sizes);
     let times = times.filter(|(rate, size)| **rate != 0.0 && **size > 0.0);
     let time = times

@@ -7,14 +7,13 @@ use eomgen_codegen::program::evaluator::Enclosure;
 use super::saltation::{Surfaces, find_delay};
 use crate::ode::System;
 
-/// Largest change of the rates over a surface, relative to the rates, that counts as none: at a
-/// kink the rates differ only by the change over the step.
+/// Largest change of the rates over a surface, relative to the rates, that does not count as a jump: at a kink
+/// the rates differ only by their change over the step.
 const MAX_KINK_JUMP_FRACTION: f64 = 1e-9;
 
-/// A system with a tangent vector: its state is the state y of a system, then a vector v with v' =
-/// J(t, y) v, where J are the derivatives of the rates with respect to the state; 2 n numbers. On
-/// a switching surface g(t, y) = 0 at which the rates jump from f- to f+, the saltation matrix
-/// transforms v:
+/// A system with a tangent vector. Its state of 2 n entries is the state y of a system, then a vector v with v'
+/// = J(t, y) v; J is the Jacobian of the rates with respect to the state. On a switching surface g(t, y) = 0 at
+/// which the rates jump from f- to f+, the saltation matrix transforms v:
 ///
 /// ```text
 /// v+ = v- + (f+ - f-) (dg/dy v-) / (dg/dt + dg/dy f-)
@@ -33,8 +32,8 @@ pub struct TangentSystem<'s> {
 }
 
 impl<'s> TangentSystem<'s> {
-    /// Adds a tangent vector to a system. `sizes` are magnitudes of its states for finite
-    /// differences, 0 if unknown.
+    /// Adds a tangent vector to a system. `sizes` are the magnitudes of its states for finite differences, 0 if
+    /// unknown.
     pub fn new(system: &'s dyn System, sizes: Vec<f64>) -> Self {
         let states = system.state_count();
         Self {
@@ -46,13 +45,13 @@ impl<'s> TangentSystem<'s> {
         }
     }
 
-    /// Returns the time (s) at which the motion crossed several surfaces at once, if it did. There
-    /// the order of the crossings, and thus v, is not determined.
+    /// Returns the time (s) at which the motion crossed several surfaces at once, if it did. The order of the
+    /// crossings, and thus v, is then undetermined.
     pub fn simultaneous_crossing_time(&self) -> Option<f64> {
         self.together.get()
     }
 
-    /// Returns the rates on the side of the state.
+    /// Returns the rates on the side of the surface on which the state is.
     fn evaluate_rates(&self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut rates = vec![0.0; y.len()];
         self.system.rates(t, y, &mut rates);
@@ -121,8 +120,8 @@ impl System for TangentSystem<'_> {
     fn apply_event(&self, (before, start): (f64, &[f64]), t: f64, y: &mut [f64]) -> bool {
         let states = self.system.state_count();
         let (start, (y, v)) = (&start[..states], y.split_at_mut(states));
-        // The start of the step can be on the surface up to the last bit, with the rates of either
-        // side. Evaluate as far before it as the end is behind it.
+        // The start of the step can be on the surface up to rounding, with the rates of either side. The rates
+        // are evaluated at the mirror image of the end instead.
         let mirrored = start.iter().zip(&*y).map(|(start, end)| 2.0 * start - end);
         let near: Vec<f64> = mirrored.collect();
         let near = (2.0 * before - t, &*near);
