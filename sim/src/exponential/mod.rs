@@ -10,9 +10,9 @@
 //! | task | files |
 //! | --- | --- |
 //! | matrices of a step | `regime`, `regime_rates`, `parameter_derivatives`, `kernels` |
-//! | surfaces and events | `surfaces`, `crossing`, `parts`, `release` |
+//! | surfaces and events | `surfaces`, `crossing`, `partial_steps`, `release` |
 //! | prescribed motions | `prescribed_motions` |
-//! | nonlinear terms | `remainder`, `remainder_at` |
+//! | nonlinear terms | `remainder`, `remainder_search` |
 //! | tangent vectors | `tangents`, `slopes`, `differences` |
 
 mod crossing;

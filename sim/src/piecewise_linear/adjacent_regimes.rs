@@ -1,5 +1,5 @@
-//! Regimes next to the limits of a regime: the regime itself, possible jumps of the rate of the
-//! limiting function, and the transition of neighbouring motions.
+//! Regimes beyond the limits of a regime: which regime it is, whether the rate of the limiting function jumps,
+//! and how the transition changes tangent vectors.
 
 use nalgebra::Complex;
 
@@ -10,28 +10,28 @@ use super::propagator::Propagator;
 use super::saltation;
 use super::transition::Limit;
 
-/// Rates that differ by less than this part of their size are continuous.
+/// Relative difference of rates below which they count as continuous.
 const CONTINUOUS: f64 = 1e-12;
 
-/// The roundings of a sum of products of size 1.
+/// Rounding error of a sum of products of magnitude 1.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Regime on the other side of a limit, and the kind of the transition.
+/// Regime beyond a limit, and properties of the transition.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Adjacent {
     pub regime: usize,
-    /// True if the rate of the family's function may jump there.
+    /// True if the rate of the limiting function may jump.
     pub jumps: bool,
     /// Index of the saltation matrix of the transition, if it is constant.
     pub saltation: Option<usize>,
-    /// True if the functions of other families may jump in the transition.
+    /// True if the transition may change functions or limits of other families.
     pub moves_others: bool,
-    /// True if the motion is on other surfaces there, so that all surfaces are decided together.
+    /// True if the motion is then on several surfaces, whose effects are decided together.
     pub meets_others: bool,
 }
 
 impl Propagator {
-    /// Finds the regime on the other side of a limit and stores it.
+    /// Finds the regime beyond a limit and stores it.
     pub(super) fn find_adjacent(&mut self, limit: &Limit) -> Result<Adjacent, ExactError> {
         let &Limit {
             before,
@@ -106,7 +106,7 @@ impl Propagator {
         })
     }
 
-    /// The rate of a family's function at a state as a regime has it.
+    /// Returns the rate of a family's function at a state, with the function and the rates of a regime.
     pub(super) fn rate(
         &self,
         index: usize,
@@ -141,7 +141,7 @@ impl Propagator {
         ROUNDING * size
     }
 
-    /// Returns the partial derivative by time of a function of sinusoids.
+    /// Returns the partial derivative with respect to time of a function with sinusoids.
     pub(super) fn explicit_rate(&self, function: &Linear, phases: &[Complex<f64>]) -> f64 {
         let terms = phases.iter().enumerate().map(|(index, phase)| {
             let omega = self.phases[index][0];

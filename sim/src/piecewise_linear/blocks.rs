@@ -1,14 +1,14 @@
-//! A triangular matrix to block-diagonal form: T X = X D with X unit upper triangular.
+//! Block diagonalisation of a triangular matrix: T X = X D with X unit upper triangular.
 
 use std::ops::Range;
 
 use nalgebra::{Complex, DMatrix};
 
-/// X of T X = X D, where D holds the diagonal blocks of T; the blocks are contiguous
-/// ranges that cover T, and blocks that differ share no eigenvalue.
+/// Returns X of T X = X D, where D contains the diagonal blocks of T. The blocks are contiguous ranges that
+/// cover T, and different blocks share no eigenvalue.
 ///
-/// Column block by column block the Sylvester equations
-/// T_ii X_ij - X_ij T_jj = -(T_ij + sum over i < k < j of T_ik X_kj) are solved from below.
+/// The Sylvester equations T_ii X_ij - X_ij T_jj = -(T_ij + sum over i < k < j of T_ik X_kj) are solved for one
+/// block column after another, from the bottom up.
 pub(super) fn decouple(
     triangle: &DMatrix<Complex<f64>>,
     blocks: &[Range<usize>],
@@ -35,7 +35,7 @@ pub(super) fn decouple(
     coupling
 }
 
-/// The inverse of a unit upper triangular matrix.
+/// Returns the inverse of a unit upper triangular matrix.
 pub(super) fn inverse(coupling: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
     let size = coupling.nrows();
     let mut inverse = DMatrix::identity(size, size);
@@ -65,7 +65,7 @@ mod tests {
                 Complex::new(0.0, 0.0)
             }
         });
-        // A defective pair inside of one block.
+        // A defective pair of eigenvalues inside one block.
         triangle[(2, 2)] = triangle[(1, 1)];
         let blocks = [0..1, 1..3, 3..4, 4..6];
         let coupling = decouple(&triangle, &blocks);
@@ -81,7 +81,7 @@ mod tests {
                     } else {
                         Complex::new(0.0, 0.0)
                     };
-                    // Rounding, times the condition of the small matrix.
+                    // The error is rounding times the condition number of the small matrix.
                     assert!((diagonal[(row, column)] - wanted).norm() < 1e-11);
                 }
             }

@@ -1,30 +1,29 @@
 //! Bounds of a function within a step.
 //!
-//! At the present time of the flow each function is known with three derivatives and a bound m of
-//! the fourth. The cubic through them minus m s^4/24 is a lower bound over a step, 0 <= s <= h, and
-//! plus m s^4/24 an upper one; their derivatives bound the rate. In Bernstein's basis the
-//! coefficients of a bound enclose it. If those of the lower bound are above the lower limit, and
-//! those of the upper bound below the upper limit, the step contains no crossing. If a function
-//! certainly ends below its limit, and either falls or is concave throughout the step, the step
-//! contains exactly one crossing.
+//! Each function is known at the current time of the flow with three derivatives and a bound m of the fourth
+//! derivative. For 0 <= s <= h, the cubic Taylor polynomial minus m s^4/24 is a lower bound and plus m s^4/24
+//! an upper bound. Their derivatives bound the rate. In the Bernstein basis the coefficients of a bound enclose
+//! its values. If the coefficients of the lower bound are above the lower limit, and those of the upper bound
+//! below the upper limit, the step contains no crossing. If a function certainly ends below its lower limit,
+//! and is decreasing or concave in the whole step, the step contains exactly one crossing; likewise for the
+//! upper limit.
 //!
-//! Modes too fast for a step are bounded by their amplitudes. After a limit has just been left they
-//! are bounded by their rates instead: they change the function by at most their rate times the
-//! time.
+//! Modes too fast for a step are bounded by their amplitudes. Just after a function has left a limit, they are
+//! bounded by their rates instead: they change the function by at most their rate times the time.
 
 use super::event_evaluation::Local;
 
 /// Behaviour of a function within a step.
 pub(super) enum Verdict {
-    /// It keeps its limits.
+    /// The function stays within its limits.
     WithinLimits,
-    /// It crosses a limit, and that once.
+    /// The function crosses a limit exactly once.
     Crossing { upper: bool },
-    /// Nothing is certain.
+    /// The bounds are too wide for a decision.
     Undecided,
 }
 
-/// Classifies a function between two limits over the next `length` s.
+/// Classifies a function with two limits over the next `length` s.
 #[inline(always)]
 pub(super) fn classify_step(local: &Local, [low, high]: [f64; 2], length: f64) -> Verdict {
     let [value, rate, second, third] = local.derivatives;
@@ -35,7 +34,7 @@ pub(super) fn classify_step(local: &Local, [low, high]: [f64; 2], length: f64) -
     let end = a + b + c;
     let (above, below) = (value - low, high - value);
     let noise = local.noise + local.drift_noise * h;
-    // Up to rounding a limit is not reached; moving inward from it is safe.
+    // A limit is not reached if the distance is within rounding; motion away from the limit is safe.
     let margin = |distance: f64| distance.max(0.0) + noise;
     let room = Room {
         ends: [above + end + m + local.fast, below - end + m + local.fast],
@@ -44,8 +43,8 @@ pub(super) fn classify_step(local: &Local, [low, high]: [f64; 2], length: f64) -
             margin(above + local.fast_here),
             margin(below - local.fast_here),
         ],
-        // The coefficients of the rate are four times the differences of the value's, those
-        // of the second derivative twelve times the second ones.
+        // The coefficients of the rate are 4 times the first differences of the value's coefficients. Those of
+        // the second derivative are 12 times the second differences.
         fast_difference: 0.25 * local.fast_rate * h,
         fast_bend: local.fast_second * h * h / 12.0,
         leaves: (rate.abs() - local.fast_rate) * h > 8.0 * noise,
@@ -57,25 +56,23 @@ pub(super) fn classify_step(local: &Local, [low, high]: [f64; 2], length: f64) -
     bounds.judge(&room)
 }
 
-/// The distances that a function has to its limits, the lower one first.
+/// Distances of a function to its lower and to its upper limit.
 struct Room {
-    /// The most that can be left at the end of the step.
+    /// Largest possible distance at the end of the step; negative beyond the limit.
     ends: [f64; 2],
-    /// Distances from the limits at the start for any values of the fast modes, at least the
-    /// rounding error.
+    /// Smallest distance at the start for any phase of the fast modes, and at least the rounding error.
     margins: [f64; 2],
-    /// Distances from the limits at the start for the present values of the fast modes, at least
-    /// the rounding error.
+    /// Distance at the start for the current phase of the fast modes, and at least the rounding error.
     margins_here: [f64; 2],
-    /// A bound of the fast modes' contribution to differences of coefficients.
+    /// Bound of the fast modes' contribution to first differences of coefficients.
     fast_difference: f64,
-    /// The same for second differences.
+    /// Bound of the fast modes' contribution to second differences of coefficients.
     fast_bend: f64,
-    /// True if the function moves by more than rounding at first.
+    /// True if the function initially changes by more than rounding.
     leaves: bool,
 }
 
-/// Coefficients of the bounds in Bernstein's basis, relative to the value at the start.
+/// Bernstein coefficients of the lower and upper bound, relative to the value at the start.
 struct Bounds {
     lower: [f64; 5],
     upper: [f64; 5],
@@ -101,7 +98,8 @@ impl Bounds {
 }
 
 impl Room {
-    /// Returns true if a limit is kept by a function whose way towards it has these bounds.
+    /// Returns true if a function does not reach a limit, given Bernstein coefficients that bound its change
+    /// towards this limit.
     #[inline(always)]
     fn is_kept(&self, limit: usize, towards: &[f64; 5]) -> bool {
         let most = towards.iter().fold(0.0, |most, c| greater(*c, most));
@@ -114,8 +112,8 @@ impl Room {
         self.margins_here[limit] >= most
     }
 
-    /// Returns true if a limit is crossed, and that once, by a function whose way from it has
-    /// these bounds.
+    /// Returns true if a function crosses a limit exactly once, given Bernstein coefficients that bound its
+    /// change away from this limit.
     #[inline(always)]
     fn is_crossed(&self, limit: usize, from: &[f64; 5]) -> bool {
         let difference = |place: usize| from[place + 1] - from[place];
@@ -128,8 +126,8 @@ impl Room {
     }
 }
 
-/// The greater of two numbers, in one instruction: which of them if one is no number is of no
-/// concern, as nothing is certain then.
+/// Returns the greater of two numbers in one instruction. The result for NaN does not matter, because the
+/// verdict is then undecided.
 #[inline(always)]
 fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }

@@ -1,5 +1,5 @@
-//! Motion of a cluster of eigenvalues: exp(centre tau) times a polynomial, and the response to
-//! constant and sinusoidal forces, including resonance.
+//! Motion of a cluster of eigenvalues: exp(centre tau) times a polynomial, and the response to constant and
+//! sinusoidal forces, including resonance.
 
 use nalgebra::{Complex, DVector};
 
@@ -8,12 +8,12 @@ use super::event_function::{monomial, monomials};
 use super::forced_integrals::{DERIVATIVES, integrals};
 use super::regime::Cluster;
 
-/// A cluster in one flow.
+/// Coordinates of a cluster at the start of a flow, and the forces on it.
 #[derive(Clone, Debug)]
 pub(super) struct ClusterFlow {
     zeta: DVector<Complex<f64>>,
     drift: DVector<Complex<f64>>,
-    /// For each phase the factors of I_k(i omega - centre) and of I_k(-i omega - centre).
+    /// Factors of I_k(i omega - centre) and of I_k(-i omega - centre) for each phase.
     sinusoids: Vec<[DVector<Complex<f64>>; 2]>,
 }
 
@@ -27,7 +27,7 @@ const BINOMIALS: [[f64; 5]; 5] = [
 ];
 
 impl ClusterFlow {
-    /// Starts at a state, with exp(i theta) of the phases there.
+    /// Starts at a state, with exp(i theta) of the phases at that time.
     pub fn new(cluster: &Cluster, state: &[f64], inputs: &[f64], phases: &[Complex<f64>]) -> Self {
         let complex = state.iter().map(|y| Complex::new(*y, 0.0));
         let mut drift = cluster.constants[0].clone();
@@ -49,7 +49,7 @@ impl ClusterFlow {
         }
     }
 
-    /// Returns the exponents, relative to the centre, with the response to each.
+    /// Returns the exponents of the forces, relative to the centre, with the force vector of each.
     fn exponents<'a>(
         &'a self,
         cluster: &Cluster,
@@ -63,7 +63,7 @@ impl ClusterFlow {
         all
     }
 
-    /// Adds the cluster's part of a function at `tau`, with bounds over the next `ahead` s.
+    /// Adds the cluster's contribution to a function at `tau`, with bounds over the next `ahead` s.
     pub fn add_to(
         &self,
         cluster: &Cluster,
@@ -101,13 +101,13 @@ impl ClusterFlow {
             }
         }
         add_derivatives(cluster, tau, end, &inner, &bound, local);
-        // The contribution at the start is known from the state.
+        // The contribution at the start follows from the state.
         if let Some(power) = powers.first() {
             local.derivatives[0] -= dot(power, &self.zeta).re;
         }
     }
 
-    /// Adds how far the cluster has moved the state at `tau`.
+    /// Adds the displacement of the state by the cluster at `tau`.
     pub fn add_state(&self, cluster: &Cluster, phases: &[[f64; 2]], tau: f64, out: &mut [f64]) {
         let values = self.evaluate(cluster, phases, tau) - &self.zeta;
         for (slot, row) in out.iter_mut().zip(cluster.columns.row_iter()) {
@@ -119,7 +119,7 @@ impl ClusterFlow {
         }
     }
 
-    /// The cluster's coordinates at `tau`.
+    /// Returns the cluster's coordinates at `tau`.
     fn evaluate(&self, cluster: &Cluster, phases: &[[f64; 2]], tau: f64) -> DVector<Complex<f64>> {
         let exponents = self.exponents(cluster, phases);
         let orders = DERIVATIVES + cluster.terms;
@@ -144,7 +144,7 @@ impl ClusterFlow {
     }
 }
 
-/// Adds the derivatives of exp(centre tau) q(tau), given those of q and their bounds.
+/// Adds the derivatives of exp(centre tau) q(tau), given the derivatives of q and their bounds.
 fn add_derivatives(
     cluster: &Cluster,
     tau: f64,

@@ -1,21 +1,22 @@
-//! Clusters of eigenvalues that share a part of a decomposition: those near zero, and those too
-//! close to each other.
+//! Clusters of eigenvalues that share an invariant subspace: eigenvalues near zero, and eigenvalues close to
+//! each other.
 
 use std::ops::Range;
 
 use nalgebra::Complex;
 
-/// Eigenvalues below this fraction of the fastest rate, or of 1 1/s, count as near zero. As
-/// separate modes they would respond to a constant force with a large amplitude that cancels.
+/// Largest magnitude of an eigenvalue near zero, as a fraction of the fastest rate or of 1 1/s. As a separate
+/// mode it would respond to a constant force with a large amplitude that cancels.
 const NEAR_ZERO: f64 = 1e-5;
 
-/// Eigenvalues with a smaller relative distance always share a part.
+/// Relative distance below which eigenvalues always share a subspace.
 const MIN_RELATIVE_DISTANCE: f64 = 1e-9;
 
-/// Imaginary parts below this part of the largest eigenvalue count as zero.
+/// Imaginary parts below this fraction of the largest eigenvalue count as zero.
 pub(super) const REAL: f64 = 1e-11;
 
-/// Returns true for each eigenvalue near zero, among them those up to `undetermined`, 1/s.
+/// Returns true for each eigenvalue near zero, which includes those with magnitudes up to `undetermined`, 1/s,
+/// and real ones up to `slow`, 1/s.
 pub(super) fn near_zero(
     eigenvalues: &[Complex<f64>],
     forcing: f64,
@@ -23,7 +24,7 @@ pub(super) fn near_zero(
 ) -> Vec<bool> {
     let fastest = forcing.abs().max(1.0);
     let largest = eigenvalues.iter().map(|e| e.norm()).fold(fastest, f64::max);
-    // A conjugate pair differs by rounding only and must not be torn apart.
+    // The magnitudes of a conjugate pair differ by rounding; both must be on the same side of the bound.
     let mut bound = (NEAR_ZERO * largest).max(undetermined);
     for value in eigenvalues {
         if (value.norm() - bound).abs() < 1e-3 * bound {
@@ -37,8 +38,8 @@ pub(super) fn near_zero(
         .collect()
 }
 
-/// Returns the number of the cluster of each eigenvalue, 0 for those near zero. `share` decides
-/// from two eigenvalues and their relative distance.
+/// Returns the cluster number of each eigenvalue, 0 for those near zero. `share` decides for two eigenvalues,
+/// given their indices and relative distance.
 pub(super) fn clusters(
     eigenvalues: &[Complex<f64>],
     zeros: usize,
@@ -66,7 +67,7 @@ pub(super) fn clusters(
     cluster
 }
 
-/// Ranges of equal neighbours.
+/// Returns the index ranges of equal consecutive numbers.
 pub(super) fn runs(cluster: &[usize]) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for (place, number) in cluster.iter().enumerate() {

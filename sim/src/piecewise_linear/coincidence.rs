@@ -1,25 +1,25 @@
-//! Coincident surfaces: their functions are proportional, and both are on their thresholds at once.
-//! The order in which they are found to be crossed must not affect the result.
+//! Coincident surfaces: their functions are proportional, and both reach their thresholds at the same time. The
+//! order in which the crossings are found must not affect the result.
 
 use super::event_function::Linear;
 use super::outline::Outline;
 
-/// Largest residual of proportional functions, relative.
+/// Largest relative residual of proportional functions.
 const ROUNDING: f64 = 1e-11;
 
-/// A surface that is crossed.
+/// Surface that a motion crosses.
 pub(super) struct Crossing {
     pub family: usize,
-    /// The family's function in the regime before, without a constant.
+    /// Function of the family in the regime before the crossing, without its constant.
     pub function: Linear,
-    /// Threshold that the function equals.
+    /// Threshold that the function has reached.
     pub threshold: f64,
-    /// The outline of the regime before.
+    /// Index of the outline of the regime before the crossing.
     pub outline: usize,
 }
 
-/// The threshold that a family's function is on where another surface is crossed, and the factor
-/// between both functions.
+/// Returns the rank of the threshold that a family's function has at the crossing of another surface, and the
+/// factor between both functions; `None` if it is not on a threshold there.
 pub(super) fn coincident_rank(
     outline: &Outline,
     family: usize,
@@ -32,7 +32,7 @@ pub(super) fn coincident_rank(
     Some((rank, factor))
 }
 
-/// c where f = c g, if there is one and it is not 0.
+/// Returns c of f = c g; `None` if the functions are not proportional or c is 0.
 pub(super) fn factor(f: &Linear, g: &Linear) -> Option<f64> {
     let (mut product, mut square, mut largest) = (0.0, 0.0, 0.0_f64);
     for (a, b) in f.coefficients().zip(g.coefficients()) {

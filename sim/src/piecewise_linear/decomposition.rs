@@ -1,9 +1,9 @@
-//! A real matrix as a sum of independent parts: A = sum of columns matrix rows.
+//! Decomposition of a real matrix into independent parts: A = sum of columns matrix rows.
 //!
-//! Integrals (states that affect no other state, and all eigenvalues near zero) are one part with a
-//! real basis and a nearly nilpotent matrix: its exponential is a polynomial. The eigenvectors of
-//! such a cluster have a condition number of 1e12 and more. Every other eigenvalue is a separate
-//! part, except that eigenvalues with nearly equal eigenvectors share one.
+//! The *integrals* are one part with a real basis: states that affect no other state, and all eigenvalues near
+//! zero. The matrix of this part is nearly nilpotent, so its exponential is a polynomial. The eigenvectors of
+//! such a cluster would have a condition number of 1e12 and more. Every other eigenvalue is a separate part,
+//! but eigenvalues with nearly equal eigenvectors share one.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -11,71 +11,73 @@ use super::clustering::{clusters, near_zero};
 use super::invariant::Found;
 use super::schur::SchurForm;
 
-/// Eigenvectors are well-conditioned if no eigenvalue is more sensitive than this. Amplitudes
-/// and eigenvalues are both wrong by it: four digits of sixteen at most.
+/// Largest sensitivity of well-conditioned eigenvalues. The relative errors of amplitudes and eigenvalues grow
+/// by this factor, which costs at most four of sixteen digits.
 const WELL_CONDITIONED: f64 = 100.0;
 
-/// Bound on the sensitivity of two eigenvalues with nearly equal eigenvectors, times their relative
-/// distance. A higher sensitivity has other causes.
+/// Bound on the sensitivity of two eigenvalues with nearly equal eigenvectors, times their relative distance. A
+/// higher sensitivity has other causes.
 const SENSITIVITY_FACTOR: f64 = 3.0;
 
-/// Sensitivity of unusable eigenvectors, and the relative distance that then counts as close.
+/// Sensitivity above which eigenvectors are unusable, and the relative distance below which eigenvalues then
+/// share a part.
 const EXTREME_SENSITIVITY: (f64, f64) = (1e6, 1e-2);
 
-/// Error of a matrix that the QR iteration leaves, relative. In 1200 random chains of 4 to 10
-/// integrators, 4 to 1024 roundings find the same zeros; one rounding misses 10 % of them.
+/// Relative error of a matrix after the QR iteration. In 1200 random chains of 4 to 10 integrators, thresholds
+/// of 4 to 1024 roundings find the same zeros; one rounding misses 10 % of them.
 const ITERATION_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// A part of a matrix: A columns = columns (centre + matrix).
+/// One part of a matrix: A columns = columns (centre + matrix).
 #[derive(Clone, Debug)]
 pub(super) struct Part {
     /// Centre of the eigenvalues, 1/s.
     pub centre: Complex<f64>,
-    /// The rest: upper triangular with small diagonal, 1/s.
+    /// Matrix relative to the centre: upper triangular with a small diagonal, 1/s.
     pub matrix: DMatrix<Complex<f64>>,
-    /// states x size.
+    /// Basis of the invariant subspace, states x size.
     pub columns: DMatrix<Complex<f64>>,
-    /// size x states; rows columns = 1.
+    /// Left inverse of `columns`, size x states: rows columns = 1.
     pub rows: DMatrix<Complex<f64>>,
-    /// 2 for a part that represents its conjugate as well, 1 for a real part.
+    /// 2 for a part that also represents its conjugate, 1 for a real part.
     pub weight: f64,
 }
 
-/// The part with eigenvalues near zero.
+/// Part with the eigenvalues near zero.
 #[derive(Clone, Debug)]
 pub(super) struct Integrals {
-    /// The matrix in its basis, 1/s.
+    /// Matrix in the basis `columns`, 1/s.
     pub matrix: DMatrix<f64>,
-    /// states x size.
+    /// Basis of the invariant subspace, states x size.
     pub columns: DMatrix<f64>,
-    /// size x states.
+    /// Left inverse of `columns`, size x states.
     pub rows: DMatrix<f64>,
-    /// The largest magnitude of its eigenvalues, 1/s.
+    /// Largest magnitude of the eigenvalues, 1/s.
     pub radius: f64,
     /// Number of coordinates that affect no other coordinate; they are the first ones.
     pub pure: usize,
 }
 
-/// A matrix by parts: its exponential is the sum of theirs, twice the real part for a
-/// weight of 2.
+/// Parts of a matrix. Its exponential is the sum of the exponentials of the parts, with twice the real part if
+/// the weight is 2.
 #[derive(Clone, Debug)]
 pub(super) struct Decomposition {
     pub integrals: Integrals,
     pub parts: Vec<Part>,
 }
 
-/// Why a matrix could not be decomposed.
+/// Reason why a matrix cannot be decomposed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DecompositionError {
-    /// It holds infinite numbers or none.
+    /// An entry is infinite or NaN.
     NotFinite,
     /// The eigenvalue iteration did not converge.
     NotConverged,
 }
 
 impl Decomposition {
-    /// The parts of a square matrix whose state begins with so many positions and as many rates, on which forces act as fast as `forcing`, 1/s. Real
-    /// eigenvalues up to `slow` in magnitude, 1/s, go to the integrals.
+    /// Decomposes a square matrix whose state starts with `degrees` positions and the same number of rates.
+    /// Forces act on the rates as fast as `forcing`, 1/s. Real eigenvalues with magnitudes up to `slow`, 1/s,
+    /// become part of the integrals.
     pub fn decompose(
         matrix: &DMatrix<f64>,
         degrees: usize,
@@ -116,10 +118,10 @@ impl Decomposition {
     }
 }
 
-/// Returns a unit of time for each state in which positions and rates have similar magnitudes: 1
-/// for the positions, which are the first states, and for states of first order; a power of two
-/// near the fastest rate for the rates between them. If forces act on rates only through states of
-/// first order, rounding errors of other entries must not set the unit.
+/// Returns a time unit for each state in which positions and rates have similar magnitudes. It is 1 for the
+/// positions, which are the first states, and for first-order states. For the rates between them it is a power
+/// of two near the fastest rate. If forces act on rates only through first-order states, rounding errors of
+/// other entries must not determine the unit.
 fn time_scale(matrix: &DMatrix<f64>, degrees: usize, felt: &[usize]) -> Vec<f64> {
     let filters = matrix.ncols() - 2 * degrees;
     let block = |row: usize, column: usize| {
@@ -127,7 +129,7 @@ fn time_scale(matrix: &DMatrix<f64>, degrees: usize, felt: &[usize]) -> Vec<f64>
         let (shape, place) = ((size(row), size(column)), (row * degrees, column * degrees));
         matrix.view(place, shape).amax()
     };
-    // A filter faster than its load acts as a gain, a slower one as an integral.
+    // A filter faster than its load acts as a gain, a slower one as an integrator.
     let filter = block(2, 2);
     let through = [block(1, 2) * block(2, 0), block(1, 2) * block(2, 1)];
     let at_gain = through.map(|product| match product > 0.0 {
@@ -153,9 +155,8 @@ fn time_scale(matrix: &DMatrix<f64>, degrees: usize, felt: &[usize]) -> Vec<f64>
     felt.iter().map(of).collect()
 }
 
-/// Returns the largest magnitude, 1/s, of the eigenvalues after the first `zeros` that rounding
-/// errors could have moved from zero. A chain of k integrators has k-fold zeros, which rounding
-/// errors move by their k-th root.
+/// Returns the largest magnitude, 1/s, of the eigenvalues after the first `zeros` that are zero up to rounding.
+/// A chain of k integrators has a k-fold eigenvalue zero, which rounding errors displace by their k-th root.
 fn undetermined_radius(schur: &SchurForm, zeros: usize, sensitivity: &[f64]) -> f64 {
     let error = ITERATION_ROUNDING * schur.triangle.norm();
     let eigenvalues = schur.eigenvalues().into_iter().zip(sensitivity);
@@ -166,14 +167,14 @@ fn undetermined_radius(schur: &SchurForm, zeros: usize, sensitivity: &[f64]) -> 
         .fold(0.0, |largest, (magnitude, _)| largest.max(magnitude))
 }
 
-/// The parts, with those eigenvalues together that are sensitive because of each other.
+/// Returns the parts. Eigenvalues that are sensitive because they are close to each other share a part.
 fn best_parts(schur: &SchurForm, zeros: usize) -> Found {
     let eigenvalues = schur.eigenvalues();
     let first = Found::with_clusters(schur, zeros, clusters(&eigenvalues, zeros, |_, _, _| false));
     if first.condition() <= WELL_CONDITIONED {
         return first;
     }
-    // In the order of the Schur form, as the eigenvalues are.
+    // The sensitivities have the order of the Schur form, like the eigenvalues.
     let sensitivity = first.sensitivity.clone();
     let shared = |a: usize, b: usize, distance: f64| {
         let least = sensitivity[a].min(sensitivity[b]);
@@ -218,7 +219,7 @@ mod tests {
 
     #[test]
     fn free_masses_and_oscillator_are_decomposed() {
-        // Two free masses, one of them dragged, and an oscillator driven by the second rate.
+        // Two free masses, one of them with drag, and an oscillator that the second rate drives.
         let matrix = DMatrix::from_row_slice(
             6,
             6,

@@ -1,16 +1,16 @@
 //! Release of a motion from a surface that held it, such as breakaway from dry friction.
 //!
-//! At the release the surface's function equals its threshold and its rate is zero: the force has
-//! just reached the friction limit, and the second derivative leads off the surface. The signs of
-//! value and rate are rounding errors. If they were used, the motion would alternate between
-//! sticking and slipping. The state is therefore put onto the surface, and `flow` ignores crossings
-//! until the function is farther away than its rounding error.
+//! At the release the surface's function equals its threshold and its rate is zero: the force has just reached
+//! the friction limit, and the second derivative points away from the surface. The computed signs of value and
+//! rate are rounding errors. If they were used, the motion would alternate between sticking and slipping. The
+//! state is therefore projected onto the surface, and `flow` ignores crossings until the distance of the
+//! function from its threshold exceeds its rounding error.
 
 use super::propagator::{Departure, Motion, Propagator};
 
 impl Propagator {
-    /// Puts the motion, after a change from the regime `before`, onto every surface that holds it
-    /// now or held it before. The motion departs from those that held it only before.
+    /// Projects the state, after a change from the regime `before`, onto every surface that holds it now or
+    /// held it before. The motion departs from the surfaces that held it only before.
     pub(super) fn release_surfaces(&self, motion: &mut Motion, before: usize) {
         let (before, after) = (&self.regimes[before], &self.regimes[motion.regime]);
         for (family, pair) in before.cells.iter().zip(&after.cells).enumerate() {
@@ -27,7 +27,7 @@ impl Propagator {
             };
             let function = &after.functions[family];
             if function.is_still() {
-                // It rests: there is no surface that the state could be put onto.
+                // The function is constant: no change of the state reaches the surface.
                 continue;
             }
             if departs {

@@ -1,7 +1,7 @@
-//! Surfaces whose functions depend on the sides of others, as that of sign(deadzone(p, b)) does, or
-//! only on inputs. Such a function can be constant within a regime and equal to a threshold. It
-//! then has no side and needs no search. Whenever another surface is crossed, or an input jumps,
-//! the cell of the function is determined again: by its value, and on a threshold by its rates.
+//! Surfaces whose functions depend on the sides of other surfaces, as in sign(deadzone(p, b)), or only on
+//! inputs. Such a function can be constant within a regime and equal to a threshold. It then has no side and
+//! needs no search. Its cell is determined again whenever another surface is crossed or an input jumps: by its
+//! value, and on a threshold by its rates.
 
 use nalgebra::Complex;
 
@@ -9,10 +9,11 @@ use super::coincidence::{Crossing, coincident_rank};
 use super::parallel_guards::Cell;
 use super::propagator::Propagator;
 
-/// A value is on a threshold if it differs by no more than this part of its terms.
+/// Largest difference between a value and its threshold that counts as zero, as a fraction of the magnitude of
+/// its terms.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// State of a motion when cells are determined.
+/// State, inputs and phases at which cells are determined.
 #[derive(Clone, Copy)]
 pub(super) struct StateAt<'a> {
     pub state: &'a [f64],
@@ -20,26 +21,25 @@ pub(super) struct StateAt<'a> {
     pub phases: &'a [Complex<f64>],
 }
 
-/// Reason for a decision.
+/// Reason why cells are determined again.
 #[derive(Clone, Copy)]
 pub(super) enum DecisionCause<'a> {
-    /// A motion that begins.
+    /// Start of a motion.
     Start,
-    /// Inputs that changed, or a function that a jump led over its limit, in the regime with
-    /// this outline.
+    /// Jump of inputs, or of a function over its limit, in the regime with this outline.
     Jump(usize),
-    /// A surface that is crossed.
+    /// Crossing of a surface.
     Crossing(&'a Crossing),
 }
 
 impl Propagator {
-    /// Returns true if any surface depends on others.
+    /// Returns true if any surface depends on other surfaces.
     pub(super) fn has_dependents(&self) -> bool {
         self.dependent.contains(&true)
     }
 
-    /// Decides the cells of dependent functions, and of all at a start, inner ones first; until
-    /// they agree with each other, or as often as there are any.
+    /// Determines the cells of dependent functions, at a start of all functions, in the order of the families.
+    /// Repeats this until the cells agree with each other, at most once per family and once more.
     pub(super) fn settle(
         &mut self,
         cells: &mut [Cell],
@@ -59,7 +59,7 @@ impl Propagator {
         }
     }
 
-    /// Decides only those that have one value throughout the regime with these cells.
+    /// Determines the cells of dependent functions that are constant throughout their regime.
     pub(super) fn settle_resting(&mut self, cells: &mut [Cell], standing: StateAt<'_>) {
         for _ in 0..=cells.len() {
             let before = cells.to_vec();
@@ -77,9 +77,9 @@ impl Propagator {
         }
     }
 
-    /// Returns true if any function feels on which side of its threshold a family is that is held
-    /// there: others may then be in other cells on either side, and no combination of two regimes
-    /// tells the motion.
+    /// Returns true if the function of another family depends on the side of a family that is held on its
+    /// threshold. The other family may then be in different cells on the two sides, and no combination of two
+    /// regimes describes the motion.
     pub(super) fn is_felt(&mut self, cells: &[Cell], family: usize) -> bool {
         let Cell::On(rank) = cells[family] else {
             return false;
@@ -127,7 +127,7 @@ impl Propagator {
         let value = function.value(standing.state, standing.inputs, standing.phases);
         let thresholds = &outline.thresholds[family];
         let size = match before {
-            // A motion begins where it is said to.
+            // The start is on a threshold only if the value equals it exactly.
             None => 0.0,
             Some(_) => function.size(standing.state, standing.inputs, standing.phases),
         };
@@ -141,8 +141,8 @@ impl Propagator {
         }
     }
 
-    /// Returns the cell into which the rates on both sides of a threshold lead a function that is
-    /// on it.
+    /// Returns the cell into which the rates on both sides of a threshold move a function that is on the
+    /// threshold.
     fn follow_rates(
         &mut self,
         family: usize,
@@ -173,7 +173,7 @@ impl Propagator {
     }
 }
 
-/// Returns true if a cell borders on a threshold.
+/// Returns true if a threshold bounds a cell.
 fn is_beside(cell: Cell, rank: usize) -> bool {
     match cell {
         Cell::Between(above) => above == rank || above == rank + 1,

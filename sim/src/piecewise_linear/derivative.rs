@@ -7,7 +7,7 @@ use super::parallel_guards::Cell;
 use super::propagator::Propagator;
 use crate::ode::SolveError;
 
-/// Rates of the state with the sizes of their terms.
+/// Rates of the state with the magnitudes of their terms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rates {
     /// Rates, one per state.

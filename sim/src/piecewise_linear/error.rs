@@ -40,7 +40,7 @@ pub enum ExactError {
         /// Index of the switching function.
         guard: usize,
     },
-    /// A reason that applies to any solver.
+    /// An error that any solver can report.
     Stopped(SolveError),
 }
 
@@ -54,7 +54,7 @@ impl ExactError {
         }
     }
 
-    /// Returns the message with cause, time, place and cure.
+    /// Returns the message: cause, time, state or surface, and remedy.
     pub fn format_named(&self, names: &Names<'_>) -> String {
         let cause = self.format_cause(names);
         let advantage = match self {
@@ -67,7 +67,7 @@ impl ExactError {
         format!("{cause}; use the general solver ({general}){advantage}")
     }
 
-    /// Returns the cause, with time and place.
+    /// Returns the cause with time and state or surface.
     pub fn format_cause(&self, names: &Names<'_>) -> String {
         match self {
             Self::NotLinear { formula } => {

@@ -1,5 +1,5 @@
-//! A function in one flow: its terms, its value and derivatives at the present time, and its bounds
-//! within a step.
+//! Event function in one flow: its terms, its value and derivatives at the current time, and its bounds within
+//! a step.
 
 use fearless_simd::Simd;
 
@@ -8,68 +8,69 @@ use super::kernels::{self, Factors};
 use super::simd_vectors::SimdVector;
 use super::step_table::Step;
 
-/// The roundings of a few operations on a number of size 1.
+/// Rounding error of a few operations on a number of magnitude 1.
 pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// A function in one flow.
+/// Event function in one flow.
 #[derive(Clone, Debug, Default)]
 pub(super) struct EventEvaluation {
-    /// It keeps its limits until then, s after the start.
+    /// Time since the start until which the function stays within its limits, s.
     pub safe_until: f64,
-    /// Time since the start of the last summation, s.
+    /// Time since the start at which the function was evaluated last, s.
     pub summed_up_at: f64,
-    /// The value at the start.
+    /// Value at the start.
     start: f64,
-    /// The sum of its terms' magnitudes.
+    /// Sum of the magnitudes of the terms of the value at the start.
     start_size: f64,
     /// Contribution of each power of time to the value and the derivatives of order 1 to 3.
     terms: Vec<SimdVector>,
-    /// The sum of the magnitudes of the terms of the rate at the start, which may cancel.
+    /// Sum of the magnitudes of the terms of the rate at the start, which may cancel.
     rate_size: f64,
-    /// A bound of the polynomial's fourth derivative within the window.
+    /// Bound of the polynomial's fourth derivative within the window.
     fourth: f64,
-    /// The value, and the sum of the magnitudes of its terms.
+    /// Value, and sum of the magnitudes of its terms.
     pub value: f64,
     pub size: f64,
-    /// Derivatives of order 1 to 3 at the places of their orders.
+    /// Derivatives of order 1 to 3, each at the index of its order.
     derivatives: SimdVector,
-    /// The polynomial's part of the first one.
+    /// Contribution of the polynomial to the first derivative.
     polynomial_rate: f64,
-    /// The parts of the modes before each, and of all: of the amplitudes in the value, and of
-    /// the derivatives of order 1 to 3.
+    /// Cumulative sums over the modes: contribution of the amplitudes to the value and to the derivatives of
+    /// order 1 to 3.
     before: Vec<SimdVector>,
-    /// Their magnitudes in the orders 0, 1, 4 and 2, and of which measurement.
+    /// Cumulative sums of the magnitudes of these contributions in the orders 0, 1, 4 and 2, and the number of
+    /// the measurement of amplitudes that they belong to.
     sizes_before: Vec<SimdVector>,
     measurement: u64,
     /// Errors of value and rate at the start while the function leaves a limit that held it.
     pub slack: Option<[f64; 2]>,
 }
 
-/// Value and derivatives of a function at the present time of a flow, with bounds.
+/// Value and derivatives of a function at the current time of a flow, with bounds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Local {
-    /// The value and the derivatives of order 1 to 3, of the slow modes only.
+    /// Value and derivatives of order 1 to 3; contributions of the slow modes only.
     pub derivatives: [f64; 4],
-    /// A bound of the magnitude of the fourth derivative of the slow modes.
+    /// Bound of the magnitude of the fourth derivative of the slow modes.
     pub fourth: f64,
-    /// A bound of the fast modes' contribution to the value.
+    /// Bound of the fast modes' contribution to the value.
     pub fast: f64,
-    /// A bound of the fast modes' contribution to the first derivative.
+    /// Bound of the fast modes' contribution to the first derivative.
     pub fast_rate: f64,
-    /// A bound of the fast modes' contribution to the second derivative.
+    /// Bound of the fast modes' contribution to the second derivative.
     pub fast_second: f64,
-    /// The fast modes' contribution to the value here.
+    /// Contribution of the fast modes to the value at the current time.
     pub fast_here: f64,
     /// Rounding error of the value.
     pub noise: f64,
     /// Rounding error of the first derivative.
     pub rate_noise: f64,
-    /// The part of it that adds to the value in proportion to time.
+    /// Rounding error per time, which adds to the value in proportion to time.
     pub drift_noise: f64,
 }
 
 impl EventEvaluation {
-    /// Prepares for a flow from a start, given the known quantities there and the causes of the
+    /// Prepares the function for a flow, given the state and forces at its start and the causes of the
     /// integrals' rates. `coefficients` is scratch memory.
     #[inline(always)]
     pub fn start<S: Simd>(
@@ -92,8 +93,7 @@ impl EventEvaluation {
         self.fourth = polynomial.terms(simd, causes, coefficients, &mut self.terms);
     }
 
-    /// Takes the magnitudes of the modes' amplitudes, if they are new: those of this
-    /// measurement.
+    /// Updates the sums of magnitudes if the magnitudes of the amplitudes have been measured again.
     #[inline(always)]
     pub fn take_sizes<S: Simd>(
         &mut self,
@@ -108,8 +108,8 @@ impl EventEvaluation {
         }
     }
 
-    /// Sums up, so long after the start, s, given the amplitudes, how far they have moved, and
-    /// the powers of the time.
+    /// Evaluates the function at a time since the start, s, given the amplitudes, their displacements, and the
+    /// powers of the time.
     #[inline(always)]
     pub fn sum_up<S: Simd>(
         &mut self,
@@ -131,13 +131,13 @@ impl EventEvaluation {
         self.polynomial_rate = summed.polynomial_rate;
     }
 
-    /// Value and derivatives without the clusters' parts, with bounds over the next step of
+    /// Returns value and derivatives without the contributions of clusters, with bounds over the next step of
     /// `step`.
     #[inline(always)]
     pub fn local(&self, step: &Step) -> Local {
         let modes = self.before.len() - 1;
         let slow = step.slow.min(modes);
-        // Without the fast modes, at whatever phase they are.
+        // The contribution of the fast modes at their current phase is subtracted.
         let left_out = self.before[modes] - self.before[slow];
         let all = self.sizes_before[modes];
         let sizes = (all - self.sizes_before[slow]).to_array();
@@ -147,7 +147,7 @@ impl EventEvaluation {
         derivatives[0] = self.value - left_out[0];
         let (mut fast, mut fast_rate, mut fast_second) = (0.0, 0.0, 0.0);
         if slow < modes {
-            // With the rounding of the sums.
+            // Includes the rounding error of the sums.
             fast = (sizes[0] + ROUNDING * all[0]) * step.growth;
             fast_rate = (sizes[1] + ROUNDING * all[1]) * step.growth;
             fast_second = (sizes[3] + ROUNDING * all[3]) * step.growth;

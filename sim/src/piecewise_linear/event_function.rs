@@ -1,6 +1,5 @@
-//! A linear function of the motion within one regime, prepared so that its value and its
-//! derivatives by time cost a few products per mode, and the limits between which it stays
-//! while the regime lasts.
+//! Event function: a linear function of the motion within one regime, and the limits between which it stays
+//! while the regime lasts. It is prepared such that value and time derivatives take a few products per mode.
 
 use eomgen_codegen::program::affine::AffineRows;
 use nalgebra::{Complex, DVector};
@@ -11,7 +10,7 @@ use super::modes::Modes;
 use super::regime::Cluster;
 use super::simd_vectors::{SimdVector, SplitComplex, pack};
 
-/// A function of state, inputs and sinusoids: coefficients as in [`AffineRows`].
+/// Function of state, inputs and sinusoids: coefficients as in [`AffineRows`].
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Linear {
     pub state: DVector<f64>,
@@ -22,7 +21,7 @@ pub(super) struct Linear {
 }
 
 impl Linear {
-    /// Row `row` of some functions.
+    /// Returns the function in row `row`.
     pub fn row(rows: &AffineRows, row: usize) -> Self {
         let part = |values: &[f64]| {
             let width = values.len().checked_div(rows.rows).unwrap_or(0);
@@ -37,7 +36,7 @@ impl Linear {
         }
     }
 
-    /// The value at a state, with the sines and cosines of the phases.
+    /// Returns the value at a state, with the sines and cosines of the phases.
     pub fn value(&self, state: &[f64], inputs: &[f64], phases: &[Complex<f64>]) -> f64 {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let mut value = dot(self.state.as_slice(), state) + dot(&self.inputs, inputs);
@@ -57,13 +56,13 @@ impl Linear {
         moving + sinusoids.sum::<f64>() + self.constant.abs()
     }
 
-    /// Returns true if neither the state nor time moves it.
+    /// Returns true if the function does not depend on the state or time.
     pub fn is_still(&self) -> bool {
         let moving = self.state.iter().chain(&self.sines).chain(&self.cosines);
         moving.copied().all(|factor| factor == 0.0)
     }
 
-    /// Returns the factors of all variables.
+    /// Returns the coefficients of all variables.
     pub fn coefficients(&self) -> impl Iterator<Item = f64> + '_ {
         let driven = self.inputs.iter().chain(&self.sines).chain(&self.cosines);
         self.state.iter().chain(driven).copied()
@@ -73,16 +72,16 @@ impl Linear {
 /// Limits of a function within a regime.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limits {
-    /// The family of parallel guards the function belongs to.
+    /// Family of parallel surfaces that the function belongs to.
     pub family: usize,
-    /// The regime lasts while the function is above.
+    /// Lower limit: the regime lasts while the function is above it.
     pub low: f64,
-    /// The regime lasts while the function is below.
+    /// Upper limit: the regime lasts while the function is below it.
     pub high: f64,
 }
 
 impl Limits {
-    /// No limits.
+    /// Returns infinite limits.
     pub fn none(family: usize) -> Self {
         Self {
             family,
@@ -92,18 +91,18 @@ impl Limits {
     }
 }
 
-/// The factors of a mode in a function, side by side.
+/// Factors of one mode in a function, in the layout of SIMD vectors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Weights {
-    /// Real parts in the derivatives of order 0 to 3.
+    /// Real parts of the factors in the derivatives of order 0 to 3.
     pub re: SimdVector,
-    /// Imaginary parts.
+    /// Imaginary parts of the factors in the derivatives of order 0 to 3.
     pub im: SimdVector,
-    /// Magnitudes for the orders 0, 1, 4 and 2.
+    /// Magnitudes of the factors in the orders 0, 1, 4 and 2.
     pub size: SimdVector,
 }
 
-/// The factors of a SIMD vector of modes in the value of a function.
+/// Factors of the modes of one SIMD vector in the value of a function.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ValueWeights {
     pub re: SimdVector,
@@ -111,23 +110,22 @@ pub(super) struct ValueWeights {
     pub size: SimdVector,
 }
 
-/// A function prepared for one regime.
+/// Function prepared for one regime.
 #[derive(Clone, Debug)]
 pub(super) struct EventFunction {
     pub linear: Linear,
     pub limits: Limits,
-    /// The factors of each mode.
+    /// Factors of each mode.
     pub weights: Vec<Weights>,
-    /// The factors of each SIMD vector of modes in the value.
+    /// Factors of each SIMD vector of modes in the value.
     pub value_weights: Vec<ValueWeights>,
     /// Contribution of the integrals.
     pub polynomial: Polynomial,
     /// row columns N^k of each cluster.
     pub cluster_powers: Vec<Vec<DVector<Complex<f64>>>>,
-    /// Known quantities at a motion's start that the function reads, with factors.
+    /// Indices of the initial values that the function depends on, with their factors.
     felt: Vec<(usize, f64)>,
-    /// Sum of the magnitudes of the terms of the rate, per unit of each known quantity at a
-    /// motion's start.
+    /// Sum of the magnitudes of the terms of the rate, per unit of each initial value.
     rate_sizes: Vec<f64>,
 }
 
@@ -183,8 +181,8 @@ impl EventFunction {
         }
     }
 
-    /// The value at the start of a motion, and the sum of its terms' magnitudes: `given` is
-    /// the state, a unit constant, the inputs, and sine and cosine of each phase.
+    /// Returns the value at the start of a motion, and the sum of the magnitudes of its terms. `given` are the
+    /// initial values: the state, a unit constant, the inputs, and sine and cosine of each phase.
     pub fn evaluate(&self, given: &[f64]) -> (f64, f64) {
         let (mut value, mut size) = (0.0, 0.0_f64);
         for (place, factor) in &self.felt {
@@ -202,7 +200,7 @@ impl EventFunction {
     }
 }
 
-/// The factors of all modes, given those in the value.
+/// Returns the factors of all modes in the derivatives, given their factors in the value.
 fn weights(values: &[Complex<f64>], modes: &Modes) -> Vec<Weights> {
     let of = |((value, rate), magnitude): ((&Complex<f64>, &Complex<f64>), &f64)| {
         let factors = [0, 1, 2, 3].map(|order| value * rate.powu(order));
@@ -217,7 +215,7 @@ fn weights(values: &[Complex<f64>], modes: &Modes) -> Vec<Weights> {
     rates.map(of).collect()
 }
 
-/// The same in SIMD vectors.
+/// Returns the factors in the value, packed in SIMD vectors.
 fn value_weights(values: &[Complex<f64>]) -> Vec<ValueWeights> {
     let parts = SplitComplex::new(values);
     let sizes: Vec<f64> = values.iter().map(|value| value.norm()).collect();
@@ -231,7 +229,7 @@ fn value_weights(values: &[Complex<f64>]) -> Vec<ValueWeights> {
         .collect()
 }
 
-/// tau^k / k! for k = 0 .. out.len() - 1.
+/// Writes tau^k / k! for k = 0 .. out.len() - 1.
 pub(super) fn monomials(tau: f64, out: &mut [f64]) {
     let mut value = 1.0;
     for (k, slot) in out.iter_mut().enumerate() {
@@ -240,7 +238,7 @@ pub(super) fn monomials(tau: f64, out: &mut [f64]) {
     }
 }
 
-/// T^k / k!, for a bound; 0 for a negative k.
+/// Returns T^k / k! for a bound; 0 for a negative k.
 pub(super) fn monomial(time: f64, k: i32) -> f64 {
     if k < 0 {
         return 0.0;

@@ -1,9 +1,9 @@
-//! Motion within one regime from a start: its displacement after a time tau.
+//! Motion within one regime: its displacement at a time tau since the start.
 //!
-//! All sums are differences from the start. A motion that has hardly moved is then as accurate as
-//! its start, even if it consists of modes whose amplitudes are thousands of times larger and
-//! nearly cancel. A flow advances by a step of the step table or by any time, and returns the
-//! values and derivatives of the regime's functions and the state at its present time.
+//! All sums are differences from the start. A motion that has hardly moved is then as accurate as its start,
+//! even if it consists of modes whose amplitudes are thousands of times larger and nearly cancel. A flow
+//! advances by a step of the step table or by any time. It returns the values and derivatives of the regime's
+//! functions and the state at its current time.
 
 use fearless_simd::Simd;
 
@@ -20,45 +20,44 @@ use super::simd_vectors::{
 };
 use super::step_table::Step;
 
-/// Amplitudes may be followed back by at most this multiple of the shortest decay time, as this
+/// Largest time by which amplitudes are computed backwards, in units of the shortest decay time, because this
 /// magnifies their rounding errors.
 const MAX_DECAY_TIMES_BACK: f64 = 1.0;
 
-/// Change of the logarithm of the fastest decaying amplitude after which the magnitudes are
-/// computed again.
+/// Change of the logarithm of the fastest decaying amplitude after which the magnitudes are computed again.
 const MAX_LOG_DECAY: f64 = 0.25;
 
-/// Error of a rate that vanishes at the release of a motion, in rounding errors of all its terms:
-/// the place of the release is known as accurately.
+/// Error of a rate that is zero at the release of a motion, in rounding errors of all its terms. The time of
+/// the release has this accuracy.
 const DEPARTURE_ROUNDINGS: f64 = 16.0;
 
 /// Distance, in rounding errors, at which a function has left its limit.
 const DEPARTED_ROUNDINGS: f64 = 4.0;
 
-/// A motion in one regime. Its memory is used again for the next one.
+/// Motion in one regime. Its memory is reused for the next motion.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Flow {
-    /// Since the start, s.
+    /// Time since the start, s.
     pub tau: f64,
-    /// The state at the start, a unit constant, the inputs, and sine and cosine of each phase.
+    /// Initial values: the state, a unit constant, the inputs, and sine and cosine of each phase.
     given: Vec<f64>,
-    /// The coordinates at the start, as [`Regime`] has them.
+    /// Coordinates at the start, in the layout of [`Regime`].
     start: Vec<SimdVector>,
     /// Displacements of the coordinates.
     moved: Vec<SimdVector>,
-    /// The modes' amplitudes at tau.
+    /// Amplitudes of the modes at `tau`.
     now: Vec<SimdVector>,
-    /// Their magnitudes, when they were found, s, and how often.
+    /// Magnitudes of the amplitudes, the time at which they were measured, s, and the number of measurements.
     size: Vec<SimdVector>,
     measured_at: f64,
     measurements: u64,
-    /// The integrals' causes, and how these make them move, once it is asked for.
+    /// Causes of the integrals, and the motion that they cause, which is computed on first use.
     causes: Vec<f64>,
     motion: Vec<SimdVector>,
-    /// Of the last polynomial.
+    /// Coefficients of the last polynomial.
     coefficients: Vec<SimdVector>,
-    /// Powers of a time from the power 0 on, that time, and how many count at near times and
-    /// at all.
+    /// Powers of a time from the power 0 on, this time, and the number of powers needed at near times and at
+    /// all times.
     powers: Vec<f64>,
     powers_of: f64,
     power_counts: [usize; 2],
@@ -66,12 +65,12 @@ pub(super) struct Flow {
     /// True if a function is leaving a limit that held it.
     departs: bool,
     clusters: Vec<ClusterFlow>,
-    /// The state to be.
+    /// Scratch memory for the state.
     sum: Vec<SimdVector>,
 }
 
 impl Flow {
-    /// Starts at a state, with exp(i theta) of the phases there.
+    /// Starts at a state, with exp(i theta) of the phases at that time.
     #[inline(always)]
     pub fn start<S: Simd>(
         &mut self,
@@ -130,7 +129,7 @@ impl Flow {
         self.measure(simd, regime);
     }
 
-    /// Goes back to the start.
+    /// Resets the flow to its start.
     fn rewind(&mut self, regime: &Regime) {
         self.moved.clear();
         self.moved.resize(self.start.len(), SimdVector::ZERO);
@@ -139,7 +138,7 @@ impl Flow {
             .extend_from_slice(&self.start[..2 * regime.modes.simd_vectors()]);
     }
 
-    /// Advances the modes by their expm1 over some time.
+    /// Advances the modes, given their expm1 over the duration.
     #[inline(always)]
     fn advance<S: Simd>(&mut self, simd: S, expm1: &SplitComplex) {
         kernels::advance(simd, expm1, self.amplitudes());
@@ -157,7 +156,8 @@ impl Flow {
     #[inline(always)]
     pub fn shift<S: Simd>(&mut self, simd: S, regime: &Regime, time: f64) {
         if -time * regime.modes.damping > MAX_DECAY_TIMES_BACK {
-            // From the start: what has decayed below the rounding of that would grow again out of rounding.
+            // Restarts from the start: an amplitude that decayed below its rounding error would grow back from
+            // this error.
             let tau = self.tau + time;
             self.rewind(regime);
             self.tau = 0.0;
@@ -189,7 +189,7 @@ impl Flow {
         }
     }
 
-    /// Advances by so little that a short series gives the expm1.
+    /// Advances by a time so short that a short series gives the expm1.
     #[inline(always)]
     fn advance_little<S: Simd>(&mut self, simd: S, rates: &SplitComplex, time: f64, fastest: f64) {
         let terms = terms_of_expm1(fastest * time.abs());
@@ -204,7 +204,7 @@ impl Flow {
         }
     }
 
-    /// The state a time after the start, s.
+    /// Writes the state at a time since the start, s.
     pub fn state_at(&mut self, regime: &Regime, tau: f64, out: &mut [f64]) {
         dispatch_registers!(simd => {
             self.advance_to(simd, regime, tau);
@@ -212,7 +212,7 @@ impl Flow {
         });
     }
 
-    /// Goes back from a state that overflowed to the last time with a finite state, and writes this state.
+    /// Returns from a state that overflowed to the last time with a finite state, and writes this state.
     #[cold]
     pub fn go_back_to_finite_state(&mut self, regime: &Regime, out: &mut [f64]) {
         let (mut finite, mut infinite) = (0.0, self.tau);
@@ -230,7 +230,7 @@ impl Flow {
         self.state_at(regime, finite, out);
     }
 
-    /// Advances to a time after the start at which only the state is needed.
+    /// Advances to a time since the start at which only the state is needed.
     #[inline(always)]
     pub fn advance_to<S: Simd>(&mut self, simd: S, regime: &Regime, tau: f64) {
         self.rewind(regime);
@@ -251,7 +251,7 @@ impl Flow {
         values.chain(sizes).all(|value| value.is_finite())
     }
 
-    /// Finds the amplitudes' magnitudes anew, if they may have shrunk by much.
+    /// Computes the magnitudes of the amplitudes again if they may have decreased considerably.
     #[inline(always)]
     fn measure<S: Simd>(&mut self, simd: S, regime: &Regime) {
         let decayed = (self.tau - self.measured_at) * regime.modes.damping;
@@ -265,7 +265,7 @@ impl Flow {
         kernels::magnitudes(simd, re, im, &mut self.size);
     }
 
-    /// Finds the powers of tau that count, an even number of them.
+    /// Computes the needed powers of tau, an even number of them.
     #[inline(always)]
     fn find_powers(&mut self, regime: &Regime) {
         if self.powers_of == self.tau {
@@ -282,7 +282,7 @@ impl Flow {
         }
     }
 
-    /// Sums up a function over its modes here.
+    /// Evaluates a function at the current time.
     #[inline(always)]
     pub fn sum_up<S: Simd>(&mut self, simd: S, regime: &Regime, place: usize) {
         self.find_powers(regime);
@@ -303,8 +303,8 @@ impl Flow {
         ROUNDING * regime.event_functions[place].rate_size(&self.given)
     }
 
-    /// Begins the departure of a function from a limit that held it, where its value and rate are
-    /// rounding errors. Does nothing if the function leaves for certain.
+    /// Starts the departure of a function from a limit that held it, where its value and rate are rounding
+    /// errors. Does nothing if the rate exceeds its rounding error.
     pub fn depart<S: Simd>(&mut self, simd: S, regime: &Regime, place: usize) {
         let Some(step) = regime.step_table.steps.last() else {
             return;
@@ -329,14 +329,14 @@ impl Flow {
         self.departs = true;
     }
 
-    /// Returns the errors of value and rate here of a function that is still leaving a limit.
+    /// Returns the errors of value and rate at the current time of a function that is still leaving a limit.
     pub fn departure_errors(&self, place: usize) -> Option<[f64; 2]> {
         let [value, rate] = self.evaluations[place].slack?;
         Some([value + rate * self.tau, rate])
     }
 
-    /// Ends the departures of functions that are farther from their limits by now than
-    /// rounding at the start can have brought them.
+    /// Ends the departures of functions whose distance from their limits exceeds the effect of rounding at the
+    /// start.
     #[inline(always)]
     pub fn end_departures<S: Simd>(&mut self, simd: S, regime: &Regime) {
         if !self.departs {
@@ -360,29 +360,29 @@ impl Flow {
             .any(|evaluation| evaluation.slack.is_some());
     }
 
-    /// Returns true if a function is known to keep its limits until a time after the start, s.
+    /// Returns true if a function is known to stay within its limits until a time since the start, s.
     pub fn is_safe(&self, place: usize, until: f64) -> bool {
         self.evaluations[place].safe_until >= until
     }
 
-    /// Notes that a function keeps its limits until a time after the start, s.
+    /// Records that a function stays within its limits until a time since the start, s.
     pub fn note_safe(&mut self, place: usize, until: f64) {
         self.evaluations[place].safe_until = until;
     }
 
-    /// Returns true if a function has been summed up here.
+    /// Returns true if a function has been evaluated at the current time.
     pub fn is_summed_up(&self, place: usize) -> bool {
         self.evaluations[place].summed_up_at == self.tau
     }
 
-    /// Returns true if a function that has been summed up here is certainly between two limits.
+    /// Returns true if an evaluated function is certainly between two limits.
     pub fn is_between(&self, place: usize, low: f64, high: f64) -> bool {
         let value = self.evaluations[place].value;
         self.clusters.is_empty() && low < value && value < high
     }
 
-    /// Computes a result from value and derivatives of a function that has been summed up here,
-    /// with bounds over the next step of `step`. The closure keeps them in registers.
+    /// Applies a closure to value and derivatives of an evaluated function, with bounds over the next step of
+    /// `step`. The closure allows the compiler to keep them in registers.
     #[inline(always)]
     pub fn local<T>(
         &self,
@@ -399,7 +399,7 @@ impl Flow {
         }
     }
 
-    /// Adds the parts of the clusters and the uncertainty after a departure.
+    /// Adds the contributions of the clusters and the error after a departure.
     #[cold]
     fn add_clusters(&self, mut local: Local, regime: &Regime, place: usize, step: &Step) -> Local {
         if let Some([value, rate]) = self.evaluations[place].slack {
@@ -416,7 +416,7 @@ impl Flow {
         local
     }
 
-    /// The state here.
+    /// Writes the state at the current time.
     #[inline(always)]
     pub fn state<S: Simd>(&mut self, simd: S, regime: &Regime, out: &mut [f64]) {
         let modes = self.now.len();

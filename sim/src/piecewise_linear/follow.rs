@@ -1,4 +1,4 @@
-//! Following a motion to a given time, and taking samples on the way.
+//! Propagation of a motion to a given time, with samples on the way.
 
 use super::error::ExactError;
 use super::flow::Flow;
@@ -7,7 +7,7 @@ use crate::inputs::HeldInputs;
 use crate::ode::SolveError;
 
 impl Propagator {
-    /// Goes on to a time, s, through all switches before it.
+    /// Propagates the motion to a time, s, through all switches before it.
     pub(super) fn follow_until(
         &mut self,
         motion: &mut Motion,
@@ -23,14 +23,14 @@ impl Propagator {
 /// States at given times.
 pub(super) struct Samples<'s> {
     wanted: &'s [f64],
-    /// The times that were passed so far, s.
+    /// Times of the samples stored so far, s.
     pub times: Vec<f64>,
-    /// The state at each.
+    /// State at each of these times.
     pub states: Vec<Vec<f64>>,
 }
 
 impl<'s> Samples<'s> {
-    /// Samples at `wanted`, s, which must ascend within the span (begin, end; s).
+    /// Creates samples at the times `wanted`, s, which must ascend within the span (begin, end; s).
     pub fn new((begin, end): (f64, f64), wanted: &'s [f64]) -> Result<Self, SolveError> {
         let ascending = wanted.windows(2).all(|pair| pair[0] <= pair[1]);
         let inside = wanted.iter().all(|t| (begin..=end).contains(t));
@@ -48,7 +48,7 @@ impl<'s> Samples<'s> {
         })
     }
 
-    /// Takes the samples until a time at which the state is known.
+    /// Stores the samples until a time at which the state is known.
     pub fn take_until(&mut self, t: f64, state: &[f64]) {
         while let Some(sample) = self.next().filter(|sample| *sample <= t) {
             self.times.push(sample);
@@ -56,14 +56,13 @@ impl<'s> Samples<'s> {
         }
     }
 
-    /// Returns the time from the segment's start to the next sample, s, if it is within the
-    /// segment.
+    /// Returns the time from the start of a segment to the next sample, s, if it is within the segment.
     pub fn next_in(&self, segment: &Segment<'_>) -> Option<f64> {
         let after = segment.start.time_until(self.next()?);
         (after <= segment.tau).then_some(after)
     }
 
-    /// Takes the next sample, so long after the segment's beginning.
+    /// Stores the next sample, `after` s after the start of a segment.
     pub fn take_in(&mut self, segment: &Segment<'_>, after: f64, flow: &mut Flow) {
         let Some(sample) = self.next() else { return };
         let mut state = vec![0.0; segment.state.len()];

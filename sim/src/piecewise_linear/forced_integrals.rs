@@ -1,10 +1,10 @@
-//! The integrals that force a polynomial:
-//! I_k(nu, tau) = integral from 0 to tau of (tau - s)^k / k! exp(nu s) ds.
+//! Integrals of polynomial times exponential functions, the response to a force exp(nu s): I_k(nu, tau) =
+//! integral from 0 to tau of (tau - s)^k / k! exp(nu s) ds.
 //!
-//! With phi_k(z) = sum over j of z^j / (j + k)!, I_k = tau^(k+1) phi_(k+1)(nu tau) and
-//! phi_k(z) = z phi_(k+1)(z) + 1/k!. Towards smaller k the recursion is stable for small z,
-//! towards larger k for large z. No difference of nearly equal numbers is formed, so that
-//! a frequency of zero and one that meets an eigenvalue are no special cases.
+//! With phi_k(z) = sum over j of z^j / (j + k)!, I_k = tau^(k+1) phi_(k+1)(nu tau) and phi_k(z) = z
+//! phi_(k+1)(z) + 1/k!. The recursion towards smaller k is stable for small z, the recursion towards larger k
+//! for large z. No difference of nearly equal numbers is formed. Therefore a frequency of zero, or one equal to
+//! an eigenvalue, is no special case.
 
 use nalgebra::Complex;
 
@@ -28,8 +28,8 @@ const RECIPROCALS: [f64; 64] = {
     all
 };
 
-/// Writes I_k(nu, tau) for k = -4 .. orders - 1 to `out`, where I_(k-1) is the derivative of
-/// I_k by tau for k >= 0, I_(-1) = exp(nu tau) and I_(k-1) = nu I_k below.
+/// Computes I_k(nu, tau) for k = -4 .. orders - 1 to `out`, where I_(k-1) is the derivative of I_k by tau for k
+/// >= 0, I_(-1) = exp(nu tau) and I_(k-1) = nu I_k below.
 ///
 /// `exponential` is exp(nu tau).
 pub(super) fn integrals(
@@ -51,7 +51,7 @@ pub(super) fn integrals(
     if z.norm_sqr() < 1.0 {
         let mut phi = series(z, orders);
         for k in (0..orders).rev() {
-            // Here phi is phi_(k+1).
+            // At this point, phi is phi_(k+1).
             values[k] = phi;
             phi = z * phi + inverse_factorial(k);
         }
@@ -69,7 +69,7 @@ pub(super) fn integrals(
     }
 }
 
-/// phi_k(z) for |z| < 1.
+/// Returns phi_k(z) for |z| < 1.
 fn series(z: Complex<f64>, k: usize) -> Complex<f64> {
     let terms = if z.norm_sqr() < 1.0 / 64.0 {
         FEW_TERMS
@@ -78,23 +78,23 @@ fn series(z: Complex<f64>, k: usize) -> Complex<f64> {
     };
     let mut sum = Complex::new(1.0, 0.0);
     for j in (0..terms).rev() {
-        // Horner's scheme of sum z^j k!/(j + k)!.
+        // Horner's scheme for the sum of z^j k!/(j + k)!.
         sum = sum * z * reciprocal(j + k + 1) + 1.0;
     }
     sum * inverse_factorial(k)
 }
 
-/// 1 / n.
+/// Returns 1 / n.
 pub(super) fn reciprocal(n: usize) -> f64 {
     RECIPROCALS.get(n).copied().unwrap_or(1.0 / n as f64)
 }
 
-/// 1 / k!.
+/// Returns 1 / k!.
 fn inverse_factorial(k: usize) -> f64 {
     (1..=k).fold(1.0, |product, i| product * reciprocal(i))
 }
 
-/// k! as a floating-point number.
+/// Returns k! as a floating-point number.
 pub(super) fn factorial(k: usize) -> f64 {
     (1..=k).fold(1.0, |product, i| product * i as f64)
 }

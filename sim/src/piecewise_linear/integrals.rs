@@ -1,10 +1,10 @@
-//! The part of a regime with eigenvalues near zero, as a Taylor series in time.
+//! Integrals: the part of a regime with eigenvalues near zero, as a Taylor series in time.
 //!
-//! Its coordinates obey z' = N z + f(t), where N is nearly nilpotent and f is constant or slowly
-//! sinusoidal. The causes c of z' are coordinates, constants and sinusoids, and obey c' = G c.
-//! Hence z changes by the sum over k of tau^k / k! H G^(k-1) c. The terms soon vanish, and all
-//! factors but c are known before the motion. A sinusoid with many periods within the range of the
-//! series has a sinusoid as response instead.
+//! Its coordinates z obey z' = N z + f(t), where N is nearly nilpotent and f is constant or slowly sinusoidal.
+//! The causes c of z' are coordinates, constants and sinusoids, and obey c' = G c. Hence z changes by the sum
+//! over k of tau^k / k! H G^(k-1) c. The terms soon vanish, and all factors except c are known before the
+//! motion. If a sinusoid has many periods within the range of the series, its response is computed as a
+//! sinusoid instead.
 
 use fearless_simd::Simd;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -15,74 +15,73 @@ use super::kernels;
 use super::modes::Forcing;
 use super::simd_vectors::{SimdVector, numbers, pack, simd_vectors};
 
-/// Angle of a sinusoid within the range of the series above which it is fast, rad.
+/// Smallest angle of a fast sinusoid within the range of the series, rad.
 const FAST_TURN_RAD: f64 = 4.0;
 
 /// Largest angle of a slow sinusoid, rad; it limits the range of the series.
 const MAX_SLOW_TURN_RAD: f64 = 1.0;
 
-/// Terms of the series that are below this part of the largest are left out.
+/// Terms of the series below this fraction of the largest are omitted.
 const REMAINDER: f64 = 1e-19;
 
-/// Fraction of the window that is near. Fewer powers of time are needed there.
+/// Near times, as a fraction of the window. Fewer powers of time are needed there.
 const NEAR_FRACTION: f64 = 1.0 / 32.0;
 
-/// More are never needed: arguments are below 1.
+/// Maximum number of terms of a series with an argument below 1.
 const MOST_TERMS: usize = 24;
 
-/// The coefficients of a function's polynomial in time per unit of each cause.
+/// Coefficients of a function's polynomial in time per unit of each cause.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Polynomial {
-    /// For each cause SIMD vectors of coefficients of the powers of time, from the power 0 on,
-    /// whose is zero.
+    /// SIMD vectors of the coefficients of the powers of time, for each cause. The coefficient of the power 0
+    /// is zero.
     columns: Vec<Vec<SimdVector>>,
     /// Number of powers needed at near times.
     near_powers: usize,
-    /// The magnitudes of the first coefficients.
+    /// Magnitudes of the first coefficients.
     rates: Vec<f64>,
-    /// For each power k what the coefficients of the powers k to k + 3 are multiplied by as
-    /// those of the power k in the derivatives of order 0 to 3.
+    /// For each power k, factors from the coefficients of the powers k to k + 3 to those of the power k in the
+    /// derivatives of order 0 to 3.
     factors: Vec<SimdVector>,
-    /// For each SIMD vector of coefficients what their magnitudes add to a bound of the fourth
-    /// derivative.
+    /// For each SIMD vector of coefficients, factors of their magnitudes in a bound of the fourth derivative.
     fourth: Vec<SimdVector>,
 }
 
-/// The integrals of a regime.
+/// Integrals of a regime.
 ///
-/// Their *causes* are the coordinates that others feel, a unit constant, the inputs, and sine
-/// and cosine of each slow sinusoid.
+/// Their *causes* are the coordinates that affect others, a unit constant, the inputs, and sine and cosine of
+/// each slow sinusoid.
 #[derive(Clone, Debug)]
 pub(super) struct Integrals {
     /// Number of coordinates.
     pub size: usize,
-    /// Number of coordinates that affect no other one; they are the first ones.
+    /// Number of coordinates that affect no other coordinate; they are the first ones.
     pure: usize,
-    /// The rates of all coordinates per unit of each cause, 1/s.
+    /// Rates of all coordinates per unit of each cause, 1/s.
     rates: DMatrix<f64>,
-    /// The rates of the causes per unit of each cause, 1/s.
+    /// Rates of the causes per unit of each cause, 1/s.
     generator: DMatrix<f64>,
-    /// The order of the last derivative that counts.
+    /// Order of the highest derivative that matters.
     orders: usize,
-    /// For each cause how a unit of it moves the coordinates: SIMD vectors of factors for each
-    /// power of time from the first on, as far as they count.
+    /// SIMD vectors of the coordinates' coefficients per unit of each cause, for each power of time from the
+    /// first on.
     by_cause: Vec<Vec<SimdVector>>,
-    /// Number of powers needed at near times for each cause; length of near times, s.
+    /// Number of powers needed at near times for each cause, and upper bound of near times, s.
     near_powers: Vec<usize>,
     near: f64,
     /// size x states.
     pub rows: DMatrix<f64>,
     /// states x size.
     pub columns: DMatrix<f64>,
-    /// The slow sinusoids, by phase.
+    /// Phases of the slow sinusoids.
     sinusoids: Vec<usize>,
-    /// For each phase the coordinates per sine and per cosine that it forces, if it is fast.
+    /// Response of the coordinates per unit sine and per unit cosine of each phase, if its sinusoid is fast.
     pub forced: Vec<[DVector<f64>; 2]>,
 }
 
 impl Integrals {
-    /// The integrals with a series that reaches as far as `window`, s, or less: returns how
-    /// far.
+    /// Prepares the integrals, with a series that is valid up to `window`, s, or less. Returns this time as
+    /// well.
     pub fn new(
         found: decomposition::Integrals,
         forcing: &Forcing,
@@ -131,7 +130,7 @@ impl Integrals {
             rates,
             size,
             pure,
-            // The matrix is nilpotent but for its radius.
+            // The matrix is nilpotent up to `radius`.
             orders: 1 + inner + terms(fastest * window),
             by_cause: Vec::new(),
             near_powers: Vec::new(),
@@ -150,13 +149,13 @@ impl Integrals {
         simd_vectors(self.size)
     }
 
-    /// Returns true if a time after the start, s, is near: fewer powers of it count.
+    /// Returns true if a time since the start, s, is near, so that fewer powers are needed.
     pub fn is_near(&self, tau: f64) -> bool {
         tau <= self.near
     }
 
-    /// Writes the causes of a motion from coordinates `zeta`, given a unit constant and the
-    /// inputs, and exp(i theta) of the phases.
+    /// Writes the causes of a motion with the coordinates `zeta`, given a unit constant and the inputs, and
+    /// exp(i theta) of the phases.
     pub fn causes(
         &self,
         zeta: &[SimdVector],
@@ -179,13 +178,13 @@ impl Integrals {
         self.size - self.pure
     }
 
-    /// The causes of a free motion from coordinates `zeta`.
+    /// Returns the causes of a free motion with the coordinates `zeta`.
     pub fn free_causes<'z>(&self, zeta: &'z [SimdVector]) -> &'z [f64] {
         &numbers(zeta)[self.pure..self.size]
     }
 
-    /// Writes how the coordinates move, given their causes: SIMD vectors of coefficients for each
-    /// power of time from the first on.
+    /// Writes the motion of the coordinates, given their causes: SIMD vectors of coefficients for each power of
+    /// time from the first on.
     #[inline(always)]
     pub fn motion<S: Simd>(&self, simd: S, causes: &[f64], out: &mut Vec<SimdVector>) {
         let longest = self.by_cause.iter().map(Vec::len).max().unwrap_or(0);
@@ -194,7 +193,7 @@ impl Integrals {
         kernels::add_multiples(simd, self.by_cause.iter().map(Vec::as_slice), causes, out);
     }
 
-    /// Writes how far the coordinates have moved in `tau` s, given how they move.
+    /// Writes the displacement of the coordinates after `tau` s, given the coefficients of their motion.
     #[inline(always)]
     pub fn moved_by<S: Simd>(
         &self,
@@ -216,8 +215,8 @@ impl Integrals {
         kernels::sum_powers(simd, column, width, tau, out);
     }
 
-    /// Writes, for as many of the causes as are asked for, how far a unit of each moves the
-    /// coordinates in `tau` s: a column in SIMD vectors each.
+    /// Writes the displacement of the coordinates after `tau` s per unit of each of the first `causes` causes:
+    /// one column in SIMD vectors each.
     #[inline(always)]
     pub fn transition<S: Simd>(&self, simd: S, tau: f64, causes: usize, out: &mut Vec<SimdVector>) {
         let width = self.simd_vectors();
@@ -233,7 +232,7 @@ impl Integrals {
         }
     }
 
-    /// Writes how far the coordinates have moved, given their causes and the transition.
+    /// Writes the displacement of the coordinates, given their causes and the transition.
     #[inline(always)]
     pub fn moved<S: Simd>(
         &self,
@@ -247,7 +246,7 @@ impl Integrals {
         kernels::add_multiples(simd, columns, causes, out);
     }
 
-    /// The polynomial of a function with these weights of the coordinates, within `window` s.
+    /// Returns the polynomial of a function with these weights of the coordinates, valid within `window` s.
     pub fn polynomial(&self, weights: &[f64], window: f64) -> Polynomial {
         let mut row = DVector::from_column_slice(weights).transpose() * &self.rates;
         let rates = row.iter().map(|entry| entry.abs()).collect();
@@ -273,7 +272,7 @@ impl Integrals {
         });
         let fourth: Vec<f64> = (0..powers)
             .map(|k| match k {
-                // The fourth derivative of tau^k.
+                // Fourth derivative of tau^k.
                 4.. => falling(k, 4) * window.powi(k as i32 - 4),
                 _ => 0.0,
             })
@@ -287,8 +286,8 @@ impl Integrals {
         }
     }
 
-    /// Returns for each cause the weighted sum of the magnitudes of its contributions to the
-    /// coordinates' rates.
+    /// Returns for each cause the weighted sum of the magnitudes of its contributions to the coordinates'
+    /// rates.
     fn rate_sizes(&self, weights: &[f64]) -> Vec<f64> {
         let size = |column: usize| {
             let terms = self.rates.column(column);
@@ -298,8 +297,8 @@ impl Integrals {
         (0..self.rates.ncols()).map(size).collect()
     }
 
-    /// Returns the same for each known quantity at a motion's start: the state, a unit constant and
-    /// the inputs (`units`), and sine and cosine of each phase.
+    /// Returns the weighted sums of [`Integrals::rate_sizes`] for each initial value: the state, a unit
+    /// constant and the inputs (`units`), and sine and cosine of each phase.
     pub fn rate_sizes_by_start(&self, weights: &[f64], units: usize) -> Vec<f64> {
         let (states, felt) = (self.rows.ncols(), self.cause_count());
         let by_cause = self.rate_sizes(weights);
@@ -325,7 +324,7 @@ impl Integrals {
         sizes
     }
 
-    /// The factors of the coordinates in a linear function of the state.
+    /// Returns the factors of the coordinates in a linear function of the state.
     pub fn weights(&self, row: &DVector<f64>) -> Vec<f64> {
         (self.columns.transpose() * row).as_slice().to_vec()
     }
@@ -350,14 +349,13 @@ impl Integrals {
 }
 
 impl Polynomial {
-    /// Returns the number of powers of time needed, from the power 0 on: at near times and at all
-    /// times.
+    /// Returns the number of powers of time needed, from the power 0 on: at near times and at all times.
     pub fn powers(&self) -> [usize; 2] {
         [self.near_powers, self.factors.len()]
     }
 
-    /// Writes for some causes what each power of time adds to the value and the derivatives of
-    /// order 1 to 3, and returns a bound of the fourth one.
+    /// Writes the contribution of some causes to the value and the derivatives of order 1 to 3, for each power
+    /// of time. Returns a bound of the fourth derivative.
     #[inline(always)]
     pub fn terms<S: Simd>(
         &self,
@@ -366,7 +364,8 @@ impl Polynomial {
         coefficients: &mut Vec<SimdVector>,
         terms: &mut Vec<SimdVector>,
     ) -> f64 {
-        // With zeros beyond the last ones.
+        // One zero vector follows the last coefficient, because `shift_powers` reads four coefficients from
+        // each power on.
         coefficients.clear();
         coefficients.resize(self.fourth.len() + 1, SimdVector::ZERO);
         let columns = self.columns.iter().map(Vec::as_slice);
@@ -376,15 +375,15 @@ impl Polynomial {
         kernels::sum_magnitudes(simd, coefficients, &self.fourth)
     }
 
-    /// The sum of the magnitudes of the first coefficient's terms, which may cancel.
+    /// Returns the sum of the magnitudes of the first coefficient's terms, which may cancel.
     pub fn rate_size(&self, causes: &[f64]) -> f64 {
         let terms = self.rates.iter().zip(causes);
         terms.fold(0.0, |sum, (size, cause)| sum + size * cause.abs())
     }
 }
 
-/// The rates of the causes per unit of each: the felt coordinates' from those of all, inputs
-/// and constant none, and sine and cosine turn into each other.
+/// Returns the rates of the causes per unit of each cause. The rates of coordinates are rows of `rates`, inputs
+/// and constant are constant, and sine and cosine are the derivatives of each other.
 fn generator(rates: &DMatrix<f64>, pure: usize, frequencies: &[f64]) -> DMatrix<f64> {
     let count = rates.ncols();
     let inner = rates.nrows() - pure;
@@ -401,15 +400,15 @@ fn generator(rates: &DMatrix<f64>, pure: usize, frequencies: &[f64]) -> DMatrix<
     generator
 }
 
-/// k (k - 1) ..., so many factors.
+/// Returns the falling factorial k (k - 1) ... with `factors` factors.
 fn falling(k: usize, factors: usize) -> f64 {
     (0..factors)
         .map(|factor| k as f64 - factor as f64)
         .product()
 }
 
-/// Returns the number of coefficients of these magnitudes needed within a window, from the first
-/// power of time on.
+/// Returns the number of coefficients of these magnitudes needed within a window, from the first power of time
+/// on.
 fn terms_needed(sizes: &[f64], window: f64) -> usize {
     let (mut power, mut largest, mut needed) = (1.0, 0.0_f64, 0);
     for (order, size) in sizes.iter().enumerate() {
@@ -423,8 +422,7 @@ fn terms_needed(sizes: &[f64], window: f64) -> usize {
     needed
 }
 
-/// Z of the answer Im(Z exp(i theta)) to a force beta sin + gamma cos: its real and its
-/// imaginary part.
+/// Returns real and imaginary part of Z, for the response Im(Z exp(i theta)) to a force beta sin + gamma cos.
 fn forced_coordinates(
     matrix: &DMatrix<f64>,
     [beta, gamma]: &[DVector<f64>; 2],
@@ -436,7 +434,7 @@ fn forced_coordinates(
         system[(place, place)] += Complex::new(0.0, omega);
     }
     let force = beta.zip_map(gamma, Complex::new);
-    // Regular: the frequency is far above every eigenvalue of the matrix.
+    // The matrix is nonsingular, because the frequency is far above every eigenvalue.
     let answer = system.lu().solve(&force);
     let answer = answer.unwrap_or_else(|| DVector::from_element(size, Complex::new(f64::NAN, 0.0)));
     [answer.map(|z| z.re), answer.map(|z| z.im)]

@@ -1,5 +1,4 @@
-//! The invariant subspaces of a matrix for one grouping of its eigenvalues, refined, and taken
-//! to the full state.
+//! Invariant subspaces of a matrix for one grouping of its eigenvalues, refined and extended to the full state.
 
 use std::ops::Range;
 
@@ -11,23 +10,23 @@ use super::decomposition::{Decomposition, Integrals, Part};
 use super::refine::{Refinement, Subspaces};
 use super::schur::SchurForm;
 
-/// Parts found with one grouping, in the balanced inner state.
+/// Subspaces for one grouping of the eigenvalues, in the balanced inner state.
 pub(super) struct Found {
     subspaces: Subspaces,
-    /// Dimension of the subspace near zero, which is the first one.
+    /// Dimension of the subspace of the eigenvalues near zero, which is the first subspace.
     zeros: usize,
-    /// The largest magnitude of the eigenvalues near zero, 1/s.
+    /// Largest magnitude of the eigenvalues near zero, 1/s.
     radius: f64,
     scale: Vec<f64>,
-    /// The sensitivity of each eigenvalue, in the order of the Schur form.
+    /// Sensitivity of each eigenvalue, in the order of the Schur form.
     pub sensitivity: Vec<f64>,
-    /// The cluster of each, in the same order.
+    /// Cluster number of each eigenvalue, in the order of the Schur form.
     numbers: Vec<usize>,
 }
 
 impl Found {
-    /// `numbers`: the cluster of each eigenvalue, 0 for those near zero, in the order of the
-    /// Schur form.
+    /// Computes the subspaces for the cluster `numbers` of the eigenvalues, 0 for those near zero, in the order
+    /// of the Schur form.
     pub fn with_clusters(schur: &SchurForm, zeros: usize, numbers: Vec<usize>) -> Self {
         let mut order: Vec<usize> = (0..numbers.len()).collect();
         order.sort_by_key(|place| numbers[*place]);
@@ -64,8 +63,8 @@ impl Found {
         }
     }
 
-    /// The same with these pairs of blocks made one; nothing if there are none, or if what is
-    /// near zero would have to join.
+    /// Computes the subspaces with these pairs of blocks merged. Returns `None` if there are no pairs, or if a
+    /// pair includes the eigenvalues near zero.
     pub fn merge(self, schur: &SchurForm, pairs: &[(usize, usize)]) -> Option<Self> {
         let mut sorted = self.numbers.clone();
         sorted.sort_unstable();
@@ -86,7 +85,7 @@ impl Found {
         found.then(|| Self::with_clusters(schur, self.zeros, numbers))
     }
 
-    /// Makes the parts exact, those near zero in a real basis.
+    /// Refines the subspaces to double precision; the subspace near zero gets a real basis.
     pub fn refine(&mut self, inner: &DMatrix<f64>) -> Refinement {
         let balanced = DMatrix::from_fn(inner.nrows(), inner.ncols(), |i, j| {
             inner[(i, j)] * self.scale[j] / self.scale[i]
@@ -114,7 +113,7 @@ impl Found {
         self.subspaces.refine(&balanced)
     }
 
-    /// The sensitivity of the most sensitive eigenvalue.
+    /// Returns the sensitivity of the most sensitive eigenvalue.
     pub fn condition(&self) -> f64 {
         self.sensitivity.iter().fold(0.0, |largest: f64, s| {
             if s.is_finite() {
@@ -125,7 +124,7 @@ impl Found {
         })
     }
 
-    /// The parts in the whole state, where `pure` states integrate `outer` times the inner.
+    /// Returns the parts in the full state. The rates of the `pure` states are `outer` times the inner state.
     pub fn in_full_state(
         self,
         outer: &DMatrix<f64>,
@@ -148,7 +147,7 @@ impl Found {
         let outer_complex = outer.map(|entry| Complex::new(entry, 0.0));
         let states = pure.len() + felt.len();
         let mut parts = Vec::new();
-        // Contribution of the moving parts to the pure integrals, to be subtracted.
+        // Contribution of the other parts to the pure integrals, which is subtracted.
         let mut carried = DMatrix::<f64>::zeros(pure.len(), felt.len());
         let simple = self.weights();
         for (block, weight) in self.subspaces.blocks.iter().zip(simple) {
@@ -180,7 +179,7 @@ impl Found {
         Decomposition { integrals, parts }
     }
 
-    /// Returns a weight for each block: 2 or 1, or 0 for the conjugate of another block.
+    /// Returns the weight of each block: 2 or 1, or 0 for the conjugate of another block.
     fn weights(&self) -> Vec<f64> {
         let matrix = &self.subspaces.matrix;
         let imaginary = |block: &Range<usize>| -> (f64, f64) {
@@ -209,7 +208,7 @@ impl Found {
         bounds.iter().map(weight).collect()
     }
 
-    /// The part near zero together with the pure integrals, in a real basis.
+    /// Returns the part near zero together with the pure integrals, in a real basis.
     fn integrals(
         &self,
         outer: &DMatrix<f64>,
@@ -263,7 +262,7 @@ impl Found {
     }
 }
 
-/// X of X A = B.
+/// Returns X of X A = B.
 fn divide_from_right(b: DMatrix<Complex<f64>>, a: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
     let (rows, columns) = b.shape();
     if columns == 1 {
@@ -276,7 +275,7 @@ fn divide_from_right(b: DMatrix<Complex<f64>>, a: &DMatrix<Complex<f64>>) -> DMa
     )
 }
 
-/// A matrix of `states` rows with the rows of others at the given places.
+/// Returns a matrix with `states` rows, with the rows of another matrix at the given indices.
 fn scatter_rows(
     states: usize,
     pieces: &[(&[usize], &DMatrix<Complex<f64>>)],
@@ -291,8 +290,8 @@ fn scatter_rows(
     whole
 }
 
-/// Returns an orthonormal real basis of the span of complex columns, which must equal its
-/// conjugate: Gram-Schmidt with the largest remainder next.
+/// Returns an orthonormal real basis of the span of complex columns, which must equal its conjugate.
+/// Gram-Schmidt with pivoting: the largest remainder is next.
 fn real_basis(columns: &DMatrix<Complex<f64>>) -> DMatrix<f64> {
     let (rows, size) = columns.shape();
     let mut candidates = DMatrix::from_fn(rows, 2 * size, |i, j| {
@@ -308,7 +307,7 @@ fn real_basis(columns: &DMatrix<Complex<f64>>) -> DMatrix<f64> {
             })
             .unwrap_or(0);
         let mut direction = candidates.column(largest).into_owned();
-        // Once more, against what rounding leaves.
+        // Repeats the orthogonalisation to remove rounding errors.
         for before in 0..found {
             let earlier = basis.column(before).into_owned();
             direction -= &earlier * earlier.dot(&direction);

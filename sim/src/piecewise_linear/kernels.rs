@@ -1,19 +1,19 @@
-//! Inner loops over SIMD vectors. They and their callers are compiled for several instruction sets;
-//! the set is selected at run time. All sets perform the same operations in the same order without
-//! fused ones, so no bit depends on the set.
+//! Inner loops over SIMD vectors. These loops and their callers are compiled for several instruction sets, one
+//! of which is selected at run time. All sets perform the same operations in the same order without fused
+//! multiply-add, so the results are bit-identical.
 
 use fearless_simd::{Simd, SimdBase, SimdFloat, SimdFrom, f64x4};
 
 use super::event_function::{ValueWeights, Weights};
 use super::simd_vectors::{SimdVector, SplitComplex, numbers};
 
-/// Sums of a function.
+/// Results of the evaluation of a function.
 pub(super) struct Summed {
     /// Change of the value since the start.
     pub value: f64,
     /// Sum of the magnitudes of the terms of that change.
     pub size: f64,
-    /// The derivatives of order 1 to 3 at the places of their orders.
+    /// Derivatives of order 1 to 3, each at the index of its order.
     pub derivatives: SimdVector,
     /// Contribution of the polynomial to the first derivative.
     pub polynomial_rate: f64,
@@ -49,7 +49,7 @@ pub(super) fn add_product<S: Simd>(
     }
 }
 
-/// Adds multiples of columns, which may be shorter than the whole.
+/// Adds multiples of columns, which may be shorter than `out`.
 #[inline(always)]
 pub(super) fn add_multiples<'a, S: Simd>(
     simd: S,
@@ -64,8 +64,8 @@ pub(super) fn add_multiples<'a, S: Simd>(
     }
 }
 
-/// The amplitudes of modes in SIMD vectors, the real parts first: at the start, how far they have
-/// moved since, and now.
+/// Amplitudes of modes in SIMD vectors, first the real parts: at the start, their displacement since then, and
+/// at the current time.
 pub(super) struct Amplitudes<'a> {
     pub start: &'a [SimdVector],
     pub moved: &'a mut [SimdVector],
@@ -73,7 +73,7 @@ pub(super) struct Amplitudes<'a> {
 }
 
 impl Amplitudes<'_> {
-    /// Advances one of so many SIMD vectors by its expm1.
+    /// Advances the SIMD vector of real parts at index `re`, and that of the imaginary parts, by its expm1.
     #[inline(always)]
     fn advance<S: Simd>(&mut self, re: usize, vectors: usize, (c, d): (f64x4<S>, f64x4<S>)) {
         let (im, simd) = (vectors + re, c.simd);
@@ -86,7 +86,7 @@ impl Amplitudes<'_> {
     }
 }
 
-/// Advances modes by their expm1 over some time.
+/// Advances modes, given their expm1 over the duration.
 #[inline(always)]
 pub(super) fn advance<S: Simd>(simd: S, expm1: &SplitComplex, mut amplitudes: Amplitudes<'_>) {
     let vectors = expm1.re.len();
@@ -99,7 +99,7 @@ pub(super) fn advance<S: Simd>(simd: S, expm1: &SplitComplex, mut amplitudes: Am
     }
 }
 
-/// Of 20 to 2.
+/// Reciprocals of 20 to 2.
 const RECIPROCALS: [f64; 19] = {
     let (mut reciprocals, mut place) = ([0.0; 19], 0);
     while place < 19 {
@@ -109,8 +109,7 @@ const RECIPROCALS: [f64; 19] = {
     reciprocals
 };
 
-/// Advances modes of these rates by so little, s, that one more than so many terms of a
-/// series give the expm1.
+/// Advances modes of these rates by a short time, s. The expm1 is a series with `terms` + 1 terms.
 #[inline(always)]
 pub(super) fn advance_little<S: Simd>(
     simd: S,
@@ -134,20 +133,20 @@ pub(super) fn advance_little<S: Simd>(
     }
 }
 
-/// The factors of a function.
+/// Factors of a function.
 #[derive(Clone, Copy)]
 pub(super) struct Factors<'a> {
-    /// Mode by mode.
+    /// Factors of each mode.
     pub weights: &'a [Weights],
-    /// SIMD vector by SIMD vector, in the value.
+    /// Factors of each SIMD vector of modes, in the value.
     pub value_weights: &'a [ValueWeights],
-    /// For each power of time what it adds to the value and the derivatives of order 1 to 3.
+    /// For each power of time its contribution to the value and the derivatives of order 1 to 3.
     pub terms: &'a [SimdVector],
 }
 
-/// Sums up a function, given the amplitudes, how far they have moved, and the powers of time.
-/// `before` becomes the sums over the modes before each and over all: of the amplitudes, and
-/// for the derivatives of order 1 to 3.
+/// Evaluates a function, given the amplitudes, their displacements, and the powers of the time. Writes the
+/// cumulative sums over the modes to `before`: contributions of the amplitudes to the value and to the
+/// derivatives of order 1 to 3.
 #[inline(always)]
 pub(super) fn sum_up<S: Simd>(
     simd: S,
@@ -167,7 +166,7 @@ pub(super) fn sum_up<S: Simd>(
         sums += load(simd, weights.re) * *re - load(simd, weights.im) * *im;
     }
     all[0] = store(sums);
-    // Even and odd powers apart: no sum waits for the other.
+    // Even and odd powers have separate sums, so that consecutive additions do not depend on each other.
     let ([mut even, mut odd], mut sizes) = ([zero; 2], zero);
     let count = factors.terms.len().min(powers.len());
     let mut terms = factors.terms[..count].chunks_exact(2);
@@ -201,8 +200,8 @@ pub(super) fn sum_up<S: Simd>(
     }
 }
 
-/// Sums up the magnitudes of a function's modes, given those of their amplitudes: `before`
-/// becomes the sums over the modes before each and over all.
+/// Sums the magnitudes of a function's modes, given the magnitudes of their amplitudes. Writes the cumulative
+/// sums over the modes to `before`.
 #[inline(always)]
 pub(super) fn sum_sizes<S: Simd>(
     simd: S,
@@ -234,7 +233,7 @@ pub(super) fn shift_powers<S: Simd>(
     }
 }
 
-/// The sum of the magnitudes of numbers in SIMD vectors, each with its factor.
+/// Returns the sum of the magnitudes of numbers in SIMD vectors, each times its factor.
 #[inline(always)]
 pub(super) fn sum_magnitudes<S: Simd>(simd: S, of: &[SimdVector], factors: &[SimdVector]) -> f64 {
     let mut sum = f64x4::splat(simd, 0.0);
@@ -244,7 +243,7 @@ pub(super) fn sum_magnitudes<S: Simd>(simd: S, of: &[SimdVector], factors: &[Sim
     store(sum).total()
 }
 
-/// The magnitudes of amplitudes in SIMD vectors.
+/// Writes the magnitudes of amplitudes in SIMD vectors.
 #[inline(always)]
 pub(super) fn magnitudes<S: Simd>(
     simd: S,
@@ -258,8 +257,8 @@ pub(super) fn magnitudes<S: Simd>(
     }
 }
 
-/// For each of these columns, power by power in SIMD vectors of a width, the sum over the powers of
-/// a time from the first on.
+/// Adds the power series in time of each column, from the first power on. A column has one SIMD-packed
+/// coefficient vector per power.
 #[inline(always)]
 pub(super) fn sum_powers<'a, S: Simd>(
     simd: S,

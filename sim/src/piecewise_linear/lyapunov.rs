@@ -1,8 +1,8 @@
-//! Lyapunov exponents: the growth of tangent vectors, which are propagated exactly (Benettin,
-//! Galgani, Giorgilli and Strelcyn 1980).
+//! Lyapunov exponents: growth rates of tangent vectors, which are propagated exactly (Benettin, Galgani,
+//! Giorgilli and Strelcyn 1980).
 //!
-//! Coordinates on which no rate and no switching function depends, such as an unrestrained
-//! rotation angle, have exponents of zero by construction; they are left out.
+//! Coordinates on which no rate and no switching function depends, such as an unrestrained rotation angle, have
+//! exponents of zero by construction; they are omitted.
 
 use super::error::ExactError;
 use super::flow::Flow;
@@ -38,7 +38,7 @@ pub struct LyapunovGrowth {
     pub switches: u64,
 }
 
-/// A motion with tangent vectors, which can be continued.
+/// A motion with tangent vectors that can be continued.
 pub struct MotionWithTangents {
     motion: Motion,
     frame: Frame,
@@ -102,8 +102,8 @@ impl Propagator {
         Ok(())
     }
 
-    /// Measures the growth of tangent vectors from `initial` at time `t` (s). The number of
-    /// exponents is limited to the number of states with an influence.
+    /// Measures the growth of tangent vectors from `initial` at time `t` (s). The number of exponents is
+    /// limited to the number of states that affect a rate or a switching function.
     ///
     /// # Errors
     /// Same as [`Propagator::simulate`], or an invalid request.
@@ -174,14 +174,14 @@ impl LyapunovRequest {
 /// Tangent vectors that are kept orthonormal.
 struct Frame {
     tangents: Tangents,
-    /// The squared weight of each state in a length.
+    /// Square of the weight of each state in a length.
     metric: Vec<f64>,
     /// Logarithm of the growth of each vector.
     growth: Vec<f64>,
 }
 
 impl Frame {
-    /// The first unit vectors, turned a little against each other.
+    /// Creates unit vectors of the first states with a weight, with small components of the other states.
     fn new(weights: &[f64], count: usize) -> Self {
         let felt = weights
             .iter()
@@ -212,7 +212,7 @@ impl Frame {
         frame
     }
 
-    /// Gram-Schmidt; the lengths go to the growth.
+    /// Orthonormalises the tangent vectors (Gram-Schmidt) and adds the logarithms of their lengths to `growth`.
     fn orthonormalise(&mut self) {
         let vectors = &mut self.tangents.vectors;
         for index in 0..vectors.len() {
@@ -245,7 +245,7 @@ fn product(metric: &[f64], a: &[f64], b: &[f64]) -> f64 {
 impl Follow for Frame {
     fn observe_segment(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
         self.tangents.observe_segment(segment, flow);
-        // Vectors that shrink fast would turn into the first one.
+        // Without this, fast decaying vectors would align with the first one by rounding.
         if self.tangents.vectors.len() > 1 {
             self.orthonormalise();
         }

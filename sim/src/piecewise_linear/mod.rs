@@ -1,8 +1,7 @@
 //! Exact simulation of piecewise-linear models.
 //!
-//! Within a regime the motion is a sum of exponentials, a polynomial and the response to constant
-//! and sinusoidal forces. It is propagated from event to event with rounding errors only. The
-//! files:
+//! Within a regime the motion is a sum of exponentials, a polynomial and the response to constant and
+//! sinusoidal forces. It is propagated from event to event with rounding errors only. Files:
 //!
 //! | task | files |
 //! | --- | --- |
@@ -11,12 +10,12 @@
 //! `invariant`, `refine`, `decomposition` |
 //! | preparation of a regime | `modes`, `integrals`, `regime`, `event_function`, `step_table` |
 //! | SIMD | `simd_vectors`, `kernels` |
-//! | motion in a regime | `forced`, `flow`, `event_evaluation`, `cluster_flow` |
+//! | motion in a regime | `forced_integrals`, `flow`, `event_evaluation`, `cluster_flow` |
 //! | search for the next event, which cannot be missed | `bounds`, `search` |
 //! | time with two parts | `clock`, `error_free` |
-//! | regimes and their neighbours | `visited_regimes`, `adjacent` |
+//! | regimes and their neighbours | `visited_regimes`, `adjacent_regimes` |
 //! | surfaces that depend on other surfaces | `outline`, `coincidence`, `dependents`,
-//! `transition`, `standing_on`, `switching`, `departure` |
+//! `transition`, `simultaneous_surfaces`, `switching`, `departure` |
 //! | simulation | [`propagator`], `follow`, `simulate` |
 //! | tangent vectors | `saltation`, `tangent`, [`neighbours`], [`lyapunov`] |
 //!

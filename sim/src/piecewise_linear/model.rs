@@ -11,11 +11,11 @@ use eomgen_model_spec::model::{Model, ParameterValue};
 use super::error::ExactError;
 use super::propagator::Propagator;
 
-/// A piecewise-linear model at one truncation order: a program that computes the coefficients of
-/// its equations from the parameters. Threads may share it; each makes its own [`Propagator`]s.
+/// A piecewise-linear model at one truncation order: a program that computes the coefficients of its equations
+/// from the parameters. Threads may share it; each thread creates its own [`Propagator`]s.
 pub struct PiecewiseLinear {
     program: AffineProgram,
-    /// Names of the guards' formulas are the caller's business; these are the parameters'.
+    /// Names of the independent parameters.
     independent: Vec<String>,
 }
 
@@ -32,8 +32,7 @@ impl PiecewiseLinear {
 
     /// Derives the coefficients of a model from its equations of motion.
     ///
-    /// # Errors
-    /// As [`PiecewiseLinear::derive`].
+    /// # Errors Same as [`PiecewiseLinear::derive`].
     pub fn from_equations(model: &Model, equations: &Equations) -> Result<Self, ExactError> {
         match linearity(equations) {
             Linearity::Linear | Linearity::PiecewiseLinear => {}
@@ -62,8 +61,8 @@ impl PiecewiseLinear {
         })
     }
 
-    /// Returns a propagator at the parameters of `model`, which may differ from the derived model
-    /// in values only.
+    /// Returns a propagator at the parameters of `model`, which may differ from the derived model only in
+    /// values.
     ///
     /// # Errors
     /// Other independent parameters, or matrices that are not finite.
@@ -107,7 +106,7 @@ impl PiecewiseLinear {
     }
 }
 
-/// The independent parameters with their places among all.
+/// Returns the names of the independent parameters with their indices among all parameters.
 fn independent(model: &Model) -> impl Iterator<Item = (&str, usize)> {
     model
         .parameters

@@ -1,5 +1,5 @@
-//! Modes of a regime: the single eigenvalues, and one mode per sinusoid for its forced response.
-//! Responses of the modes to constant and sinusoidal forces.
+//! Modes of a regime: separate eigenvalues, and one mode per sinusoid for its forced response. The modes
+//! respond to constant and sinusoidal forces.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -9,40 +9,39 @@ use super::simd_vectors::{SplitComplex, simd_vectors};
 
 /// Forces on the rates of the state.
 pub(super) struct Forcing {
-    /// For each phase the factors of its sine and of its cosine.
+    /// Factors of sine and cosine of each phase.
     pub sinusoids: Vec<[DVector<f64>; 2]>,
-    /// Constant, then per unit of each input.
+    /// Constant rates, then rates per unit of each input.
     pub constants: Vec<DVector<f64>>,
 }
 
-/// The modes of a regime and its sinusoids, in ascending order of the magnitude of their
-/// rates.
+/// Modes of a regime and of its sinusoids, in ascending order of the magnitude of their eigenvalues.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Modes {
     /// Eigenvalue, or i times the frequency of a sinusoid, 1/s.
     pub rate: Vec<Complex<f64>>,
-    /// Their magnitudes, 1/s.
+    /// Magnitude of `rate`, 1/s.
     pub magnitude: Vec<f64>,
-    /// The rate of the fastest decay; infinite if any mode grows, 1/s.
+    /// Rate of the fastest decay, 1/s; infinite if any mode grows.
     pub damping: f64,
-    /// Phase of a sinusoid; `None` for a mode.
+    /// Index of the sinusoid's phase; `None` for a mode of the matrix.
     pub phase: Vec<Option<usize>>,
-    /// The same rates in SIMD vectors.
+    /// `rate`, packed in SIMD vectors.
     pub rates: SplitComplex,
-    /// modes x states: amplitudes without forces.
+    /// Map from the state to the amplitudes without forces, modes x states.
     pub rows: DMatrix<Complex<f64>>,
-    /// states x modes: what an amplitude adds to the state, with the weight of the conjugate.
+    /// Map from the amplitudes to the state, states x modes; complex pairs count twice.
     pub columns: DMatrix<Complex<f64>>,
-    /// The amplitudes that a unit constant and unit inputs hold.
+    /// Steady-state amplitudes per unit constant force and per unit of each input.
     pub rest: Vec<DVector<Complex<f64>>>,
-    /// For each phase the amplitudes per sine and per cosine that it forces.
+    /// Amplitudes of the response per unit sine and per unit cosine of each phase.
     pub forced: Vec<[DVector<Complex<f64>>; 2]>,
 }
 
 impl Modes {
-    /// Returns the sum of the magnitudes of the terms of the rate of a function with these weights
-    /// of the modes, for each known quantity at a motion's start: the state, a unit constant and
-    /// the inputs, and sine and cosine of each phase.
+    /// Returns the sum of the magnitudes of the terms of the rate of a function with these weights of the
+    /// modes. The result has an entry for each initial value: the state, a unit constant and the inputs, and
+    /// sine and cosine of each phase.
     pub fn rate_sizes_by_start(&self, weights: &[Complex<f64>]) -> Vec<f64> {
         let own = |mode: usize, phase: usize| f64::from(self.phase[mode] == Some(phase));
         let of = |amplitude: &dyn Fn(usize) -> f64| -> f64 {
@@ -61,7 +60,7 @@ impl Modes {
         states.chain(units).chain(phases).collect()
     }
 
-    /// The modes of simple parts and the sinusoids of these frequencies, rad/s.
+    /// Creates the modes of parts with one eigenvalue, and of sinusoids with these frequencies, rad/s.
     pub fn new(simple: &[Part], forcing: &Forcing, frequencies: &[f64], states: usize) -> Self {
         let mut all: Vec<(Complex<f64>, Option<usize>)> = Vec::new();
         all.extend(simple.iter().map(|part| (part.centre, None)));
@@ -118,7 +117,7 @@ impl Modes {
         }
     }
 
-    /// Adds what the integrals answer to fast sinusoids.
+    /// Adds the response of the integrals to fast sinusoids.
     pub fn add_forced(&mut self, integrals: &Integrals) {
         for (mode, phase) in self.phase.iter().enumerate() {
             let Some(phase) = phase else { continue };
@@ -136,13 +135,13 @@ impl Modes {
         self.rate.len()
     }
 
-    /// Returns the number of SIMD vectors that hold them.
+    /// Returns the number of SIMD vectors that hold the modes.
     pub fn simd_vectors(&self) -> usize {
         simd_vectors(self.count())
     }
 }
 
-/// A vector in the coordinates of a part.
+/// Returns a vector in the coordinates of a part.
 pub(super) fn project(
     rows: &DMatrix<Complex<f64>>,
     vector: &DVector<f64>,
@@ -150,9 +149,8 @@ pub(super) fn project(
     rows * vector.map(|entry| Complex::new(entry, 0.0))
 }
 
-/// The amplitudes per sine and per cosine with which a mode answers the force
-/// beta sin theta + gamma cos theta:
-/// -(beta (rate sin + omega cos) + gamma (rate cos - omega sin)) / (rate^2 + omega^2).
+/// Returns the amplitudes of a mode's response per unit sine and per unit cosine, for the force beta sin theta
+/// + gamma cos theta: -(beta (rate sin + omega cos) + gamma (rate cos - omega sin)) / (rate^2 + omega^2).
 fn answer(part: &Part, sinusoid: &[DVector<f64>; 2], omega: f64) -> [Complex<f64>; 2] {
     let rate = part.centre;
     let [beta, gamma] = [0, 1].map(|kind| project(&part.rows, &sinusoid[kind])[0]);
@@ -163,7 +161,7 @@ fn answer(part: &Part, sinusoid: &[DVector<f64>; 2], omega: f64) -> [Complex<f64
     ]
 }
 
-/// The factor of exp(i theta) in the response of the modes to a sinusoid.
+/// Returns the factor of exp(i theta) in the response of the modes to a sinusoid.
 fn forced_response(
     simple: &[Part],
     sinusoid: &[DVector<f64>; 2],

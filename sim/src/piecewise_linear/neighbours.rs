@@ -20,8 +20,8 @@ pub struct Sensitivities {
 }
 
 impl Propagator {
-    /// Simulates from `initial` over `span` (begin, end; s) with these directions of the initial
-    /// state. Returns states and derivatives at `samples` (s, ascending).
+    /// Simulates from `initial` over `span` (begin, end; s). `directions` are changes of the initial state.
+    /// Returns states and derivatives at `samples` (s, ascending).
     ///
     /// # Errors
     /// Same as [`Propagator::simulate`].
@@ -52,17 +52,17 @@ impl Propagator {
     }
 }
 
-/// Carries directions along and takes them at samples.
+/// Propagates directions and stores them at samples.
 struct Carrier<'s> {
     samples: Samples<'s>,
     tangents: Tangents,
-    /// Scratch: the directions at a sample within a segment.
+    /// Scratch memory: directions at a sample within a segment.
     at_sample: Tangents,
     derivatives: Vec<Vec<Vec<f64>>>,
 }
 
 impl Carrier<'_> {
-    /// Takes the samples until a time at which state and directions are known.
+    /// Stores the samples until a time at which state and directions are known.
     fn take_until(&mut self, t: f64, state: &[f64]) {
         self.samples.take_until(t, state);
         let taken = self.samples.times.len();
@@ -73,7 +73,7 @@ impl Carrier<'_> {
 
 impl Follow for Carrier<'_> {
     fn observe_segment(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
-        // Inputs change at samples: the last sample of a segment is usually at its end.
+        // Inputs change at samples, so the last sample of a segment is usually at its end.
         let mut at_end = false;
         while let Some(after) = self.samples.next_in(segment) {
             self.samples.take_in(segment, after, flow);

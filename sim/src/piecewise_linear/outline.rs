@@ -1,5 +1,5 @@
-//! A regime in outline: its equations without what is prepared for stepping, to decide whether
-//! it is the one to be visited.
+//! Outline of a regime: its equations without the preparation for stepping. It suffices to determine the regime
+//! that a motion enters.
 
 use eomgen_codegen::program::affine::AffineSystem;
 
@@ -11,20 +11,20 @@ use super::propagator::Propagator;
 use super::regime::rates;
 use super::sliding::slide;
 
-/// The roundings of a sum of products of size 1.
+/// Rounding error of a sum of products of magnitude 1.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// The equations with the families at some cells.
+/// Equations for given cells of the families.
 pub(super) struct Outline {
     system: AffineSystem,
-    /// Each family's function.
+    /// Function of each family.
     pub functions: Vec<Linear>,
-    /// Each family's thresholds, by rank.
+    /// Thresholds of each family, by rank.
     pub thresholds: Vec<Vec<f64>>,
 }
 
 impl Propagator {
-    /// The outline with these cells, made if it is new.
+    /// Returns the index of the outline with these cells; creates it if necessary.
     pub(super) fn outline(&mut self, cells: &[Cell]) -> usize {
         if let Some(&known) = self.outlined.get(cells) {
             return known;
@@ -57,7 +57,7 @@ impl Propagator {
 }
 
 impl Outline {
-    /// The cell of a family whose function has one value while the inputs are held.
+    /// Returns the cell of a family whose function is constant while the inputs are held; `None` if it varies.
     pub fn resting(&self, family: usize, inputs: &[f64]) -> Option<Cell> {
         let function = &self.functions[family];
         function
@@ -65,19 +65,19 @@ impl Outline {
             .then(|| self.cell_at(family, function.value(&[], inputs, &[])))
     }
 
-    /// The cell of a family whose function has this value: not above a threshold that it equals.
+    /// Returns the cell for a value of the family's function. A value equal to a threshold counts as below it.
     pub fn cell_at(&self, family: usize, value: f64) -> Cell {
         let thresholds = self.thresholds[family].iter();
         Cell::Between(thresholds.filter(|threshold| value > **threshold).count())
     }
 
-    /// Returns true if a family's function and thresholds are those of another outline.
+    /// Returns true if a family has the same function and thresholds as in another outline.
     pub fn same_function(&self, other: &Self, family: usize) -> bool {
         self.functions[family] == other.functions[family]
             && self.thresholds[family] == other.thresholds[family]
     }
 
-    /// Returns the rate of a function due to the rates of the state, and its rounding error.
+    /// Returns the rate of a function due to the rates of the state, and the rounding error of this rate.
     pub fn rate(&self, function: &Linear, standing: StateAt<'_>) -> (f64, f64) {
         let Rates { values, sizes } = self.rates(standing);
         let factors = function.state.iter();
@@ -86,7 +86,7 @@ impl Outline {
         (rate, ROUNDING * size)
     }
 
-    /// The rates of the state.
+    /// Returns the rates of the state.
     pub fn rates(&self, standing: StateAt<'_>) -> Rates {
         let StateAt {
             state,

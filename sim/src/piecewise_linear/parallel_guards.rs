@@ -1,33 +1,34 @@
-//! Families of parallel switching surfaces, and the cell of a motion in each.
+//! Families of parallel switching surfaces, and the position (cell) of a motion relative to the surfaces of
+//! each family.
 
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
 
 use super::event_function::{Limits, Linear};
 use crate::ode::{Event, SurfaceMode};
 
-/// Parallel switching surfaces: thresholds of one linear function.
+/// Family of parallel switching surfaces: thresholds of one linear function.
 #[derive(Clone, Debug)]
 pub(super) struct ParallelGuards {
-    /// The first surface: the others differ from it by constants.
+    /// First surface; the functions of the others differ from its function by constants.
     pub first: usize,
-    /// The surfaces at each distinct threshold, in ascending order of the thresholds.
+    /// Indices of the surfaces at each distinct threshold, in ascending order of the thresholds (rank).
     pub ranks: Vec<Vec<usize>>,
 }
 
-/// Cell of a motion within a family.
+/// Position of a motion relative to the thresholds of a family.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) enum Cell {
-    /// Above as many thresholds as the number says, below the others.
+    /// Above this number of thresholds, below the others.
     Between(usize),
     /// Held on the threshold of this rank.
     On(usize),
-    /// On the threshold of this rank, where others hold the motion, and on its upper side or not: it bears all it
-    /// can.
+    /// On the threshold of this rank, where other surfaces hold the motion; true on its upper side. The surface
+    /// exerts its maximum force.
     Bearing(usize, bool),
 }
 
 impl Cell {
-    /// The cell beyond a limit, the upper or the lower one.
+    /// Returns the cell beyond the upper or the lower limit of this cell.
     pub fn adjacent(self, upper: bool) -> Self {
         match (self, upper) {
             (Self::Between(above), true) => Self::Between(above + 1),
@@ -46,7 +47,7 @@ impl Cell {
     }
 }
 
-/// The families of a model's surfaces at its present parameters.
+/// Finds the families of a model's surfaces at its current parameters.
 pub(super) fn families(evaluator: &AffineEvaluator, system: &AffineSystem) -> Vec<ParallelGuards> {
     let mut families: Vec<ParallelGuards> = Vec::new();
     for (guard, &first) in evaluator.guard_groups().iter().enumerate() {
@@ -75,7 +76,8 @@ pub(super) fn families(evaluator: &AffineEvaluator, system: &AffineSystem) -> Ve
 }
 
 impl ParallelGuards {
-    /// Writes the sides of the family's surfaces; `held` is that of those it is held on.
+    /// Writes the sides of the family's surfaces: 0 below, 1 above. A surface that holds the motion gets
+    /// `held`.
     pub fn write_sides(&self, cell: Cell, held: f64, sides: &mut [f64]) {
         for (rank, guards) in self.ranks.iter().enumerate() {
             let side = match cell {
@@ -100,7 +102,7 @@ impl ParallelGuards {
         SurfaceMode::from_side(if is_positive { 1.0 } else { -1.0 })
     }
 
-    /// Returns the surfaces whose mode differs between two cells at a time (s), with the modes in both.
+    /// Returns the surfaces whose mode differs between two cells, as events at a time (s).
     pub fn mode_changes(&self, from: Cell, to: Cell, t: f64) -> impl Iterator<Item = Event> {
         let guards = self.ranks.iter().enumerate();
         let guards =
@@ -114,14 +116,14 @@ impl ParallelGuards {
         events.filter(|event| event.from != event.to)
     }
 
-    /// The function whose thresholds the surfaces are.
+    /// Returns the common function of the surfaces, without its constant.
     pub fn function(&self, system: &AffineSystem) -> Linear {
         let mut linear = Linear::row(&system.guards, self.first);
         linear.constant = 0.0;
         linear
     }
 
-    /// The threshold of a rank.
+    /// Returns the threshold of a rank.
     pub fn threshold(&self, system: &AffineSystem, rank: usize) -> f64 {
         -system.guards.constant[self.ranks[rank][0]]
     }

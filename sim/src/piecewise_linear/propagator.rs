@@ -1,5 +1,5 @@
-//! From switch to switch. Which regimes there are is in `visited_regimes`, which of them border on each
-//! other in `adjacent`.
+//! Propagation from switch to switch. `visited_regimes` creates the regimes, `adjacent_regimes` finds the
+//! regimes beyond their limits.
 
 use std::collections::HashMap;
 
@@ -24,17 +24,17 @@ use super::visited_regimes::VisitedRegime;
 use crate::inputs::HeldInputs;
 use crate::ode::SolveError;
 
-/// Switches in one instant before the motion is moved on by the shortest step.
+/// Number of switches at one time after which the motion is advanced by the shortest step.
 const AT_ONCE: u32 = 16;
 
-/// Decays slower than the switching by this factor are treated as polynomials: as modes they would
-/// have large amplitudes that cancel.
+/// Decays slower than the switching by this factor are treated as polynomials: as modes they would have large
+/// amplitudes that cancel.
 const SLOW_DECAY_RATIO: f64 = 1e-2;
 
-/// A motion that would need more steps than this, hours of them, is not begun.
+/// Largest number of steps of a motion, equivalent to hours; a longer motion is rejected.
 const MOST_STEPS: f64 = 1e8;
 
-/// Over this many switches their rate is averaged.
+/// Number of switches over which their rate is averaged.
 const SWITCHES_AVERAGED: u64 = 1024;
 
 /// Exact propagator at fixed parameters.
@@ -47,39 +47,39 @@ pub struct Propagator {
     pub(super) dependent: Vec<bool>,
     pub(super) outlines: Vec<Outline>,
     pub(super) outlined: HashMap<Vec<Cell>, usize>,
-    /// Index of the saltation matrix, if it is constant, by the regime before, the function and its
-    /// limit, and the regime after.
+    /// Index of the saltation matrix, `None` if it is not constant. The key is the regime before, the index of
+    /// the function, true for its upper limit, and the regime after.
     pub(super) saltation_of: HashMap<(usize, usize, bool, usize), Option<usize>>,
     flow: Flow,
     pub(super) inputs: usize,
     pub(super) states: usize,
     pub(super) phases: Vec<[f64; 2]>,
     pub(super) saltations: Vec<DVector<f64>>,
-    /// Decays up to this rate are slow compared with the switching, 1/s.
+    /// Largest rate of decays that are slow compared with the switching, 1/s.
     pub(super) slow: f64,
     /// Maximum average number of events per second; the simulation stops if it is exceeded.
     pub max_switch_rate: f64,
 }
 
-/// State of a motion in progress.
+/// A motion in progress.
 #[derive(Clone, Debug)]
 pub struct Motion {
     pub(super) clock: Clock,
     pub(super) state: Vec<f64>,
     pub(super) regime: usize,
     at_once: u32,
-    /// Functions that may have jumped beyond their limits, if any.
+    /// Families whose functions may have jumped beyond their limits.
     jumped: Option<Jumped>,
-    /// Switches so far and the time at which the present average began.
+    /// Number of switches so far, and the time at which the current average started.
     switches: u64,
     averaged_from: f64,
-    /// The functions that are leaving a surface that held the motion.
+    /// Functions that are leaving a surface that held the motion.
     pub(super) departing: Vec<Departure>,
     /// Work done so far.
     pub(super) effort: Effort,
-    /// The state at the start of the present segment.
+    /// State at the start of the current segment.
     before: Vec<f64>,
-    /// exp(i theta) of the phases now.
+    /// exp(i theta) of the phases at the current time.
     phases: Vec<Complex<f64>>,
 }
 
@@ -87,19 +87,19 @@ pub struct Motion {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Departure {
     pub family: usize,
-    /// Errors of value and rate, once they are known: those of the release, because the distance
-    /// from the surface is no error later.
+    /// Errors of value and rate, once known. They are determined at the release: the distance from the surface
+    /// that grows later is no error.
     pub errors: Option<[f64; 2]>,
 }
 
-/// Whose functions may have jumped beyond their limits.
+/// Families whose functions may have jumped beyond their limits.
 #[derive(Clone, Copy, Debug)]
 enum Jumped {
-    /// Those of any family.
+    /// All families.
     Any,
-    /// Those of any family but this one.
+    /// All families except this one.
     AnyBut(usize),
-    /// A motion held on a surface by a combination of both sides.
+    /// Families whose function is held on a threshold.
     Held,
 }
 
@@ -115,19 +115,19 @@ impl Jumped {
 
 /// Observer of a motion.
 pub(super) trait Follow {
-    /// Called after a segment in one regime. `flow` is at its end and may be moved.
+    /// Observes a segment in one regime. `flow` is at the end of the segment and may be moved.
     fn observe_segment(&mut self, segment: &Segment<'_>, flow: &mut Flow);
 
-    /// The motion changed from one regime to another at a switching surface.
+    /// Observes a change from one regime to another at a switching surface.
     fn observe_switch(&mut self, change: &Change<'_>);
 }
 
-/// A motion within one regime.
+/// Motion within one regime.
 pub(super) struct Segment<'a> {
     pub regime: &'a Regime,
-    /// When it began.
+    /// Time at the start.
     pub start: Clock,
-    /// The state then.
+    /// State at the start.
     pub state: &'a [f64],
     /// Duration, s.
     pub tau: f64,
@@ -139,18 +139,18 @@ pub(super) struct Segment<'a> {
 pub(super) struct Change<'a> {
     pub before: &'a Regime,
     pub after: &'a Regime,
-    /// The function that reached its limit, as the regime before has it.
+    /// Function that reached its limit, in the regime before the change.
     pub function: &'a Linear,
     pub state: &'a [f64],
     pub inputs: &'a [f64],
     pub phases: &'a [Complex<f64>],
-    /// The part of the function's rate that is not due to the state's, 1/s times its unit.
+    /// Part of the function's rate that is due to time, not to the rates of the state, 1/s times its unit.
     pub explicit_rate: f64,
-    /// u of the saltation matrix I + u grad g, if that is constant.
+    /// Vector u of the saltation matrix I + u grad g, if it is constant.
     pub saltation: Option<&'a DVector<f64>>,
     /// Time, s.
     pub t: f64,
-    /// The families of surfaces, and the cell of each in both regimes.
+    /// Families of surfaces, and the cell of each family in both regimes.
     pub families: &'a [ParallelGuards],
     pub cells: (&'a [Cell], &'a [Cell]),
 }
@@ -230,7 +230,7 @@ impl Propagator {
             );
             return Err(SolveError::Request { problem }.into());
         }
-        // The same motion from the same start, whatever was computed before.
+        // The result must not depend on motions computed before.
         for visited in &mut self.regimes {
             visited.step = 0;
         }
@@ -258,8 +258,8 @@ impl Propagator {
             .collect()
     }
 
-    /// Goes on to a time, s, or to the next switch if that comes before; returns whether the
-    /// time was reached.
+    /// Propagates the motion to a time, s, or to the next switch if that is earlier. Returns true if the time
+    /// was reached.
     pub(super) fn advance(
         &mut self,
         motion: &mut Motion,
@@ -336,7 +336,7 @@ impl Propagator {
         Ok(reached)
     }
 
-    /// Refuses a motion so fast, or a time so long, that there would be no end.
+    /// Rejects a motion so fast, or a duration so long, that the simulation would not end.
     fn check_window(&self, motion: &Motion, remaining: f64) -> Result<(), SolveError> {
         let window = self.regimes[motion.regime].regime.step_table.window;
         if remaining <= MOST_STEPS * window {
@@ -351,7 +351,7 @@ impl Propagator {
         })
     }
 
-    /// Follows a change of the inputs at the time reached.
+    /// Applies a change of the inputs at the time reached.
     ///
     /// # Errors
     /// A regime that cannot be prepared.
@@ -364,8 +364,8 @@ impl Propagator {
         self.take_inputs(motion, inputs)
     }
 
-    /// Enters the regime that inputs lead to which have changed, where what they switch has one
-    /// value while they are held.
+    /// Enters the regime after a change of inputs, if functions depend only on inputs or on the sides of other
+    /// surfaces.
     fn take_inputs(&mut self, motion: &mut Motion, inputs: &HeldInputs) -> Result<(), ExactError> {
         if !self.has_dependents() {
             return Ok(());
@@ -433,10 +433,10 @@ impl Propagator {
         motion.regime = after;
         self.release_surfaces(motion, before);
         if by_jump {
-            // A jump may have led over more than one limit.
+            // The jump may exceed more than one limit.
             motion.jumped = Some(Jumped::Any);
         } else if self.has_dependents() {
-            // The others were put where they belong.
+            // The cells of all other families have been determined.
             motion.jumped = Some(Jumped::Held);
         } else if moves_others {
             motion.jumped = Some(Jumped::AnyBut(family));
@@ -457,8 +457,8 @@ impl Propagator {
     }
 }
 
-/// Moves the state on within a regime, for `length` s at most, to the first limit that is
-/// reached: which one it is, and whether a jump led over it.
+/// Advances the state within a regime to the first limit that it reaches, by at most `length` s. Returns this
+/// limit, and true if a jump exceeded it.
 #[inline(always)]
 fn go_on<S: Simd>(
     simd: S,
@@ -469,7 +469,7 @@ fn go_on<S: Simd>(
     step: &mut usize,
 ) -> (Found, bool) {
     flow.start(simd, regime, &motion.state, inputs, &motion.phases);
-    // The functions have the indices of their families.
+    // Functions have the same indices as their families.
     for departure in &motion.departing {
         match departure.errors {
             None => flow.depart(simd, regime, departure.family),
@@ -477,7 +477,7 @@ fn go_on<S: Simd>(
         }
     }
     if motion.at_once > AT_ONCE {
-        // Only rounding errors separate the surfaces: advance the motion first.
+        // Only rounding errors separate the surfaces, so the motion is advanced first.
         if let Some(shortest) = regime.step_table.steps.last() {
             flow.step(simd, regime, shortest);
         }
@@ -505,7 +505,7 @@ fn go_on<S: Simd>(
     (found, jump.is_some())
 }
 
-/// The inputs in force from a time on, as many as the model has.
+/// Returns the inputs of the model that apply from a time on.
 fn held_inputs(inputs: &HeldInputs, t: f64, count: usize) -> &[f64] {
     let all = inputs.last_sample(t);
     &all[..count.min(all.len())]

@@ -1,10 +1,9 @@
 //! Refines a decomposition A X = X D, Y X = 1 to double precision.
 //!
-//! The QR iteration leaves eigenvalues with an error of a rounding of the largest one. The phase of
-//! a slow mode then drifts by 1e-10 of its amplitude within some thousand periods. The corrections
-//! are computed from residuals accumulated in twice the precision, to first order. Two rounds leave
-//! each eigenvalue with an error of its own rounding. The size of the last correction decides
-//! whether the decomposition is reliable.
+//! After the QR iteration, the error of every eigenvalue is a rounding of the largest one. The phase of a slow
+//! mode then drifts by 1e-10 of its amplitude within some thousand periods. First-order corrections are
+//! computed from residuals in twice the precision. After two rounds the error of each eigenvalue is its own
+//! rounding. The size of the last correction decides whether the decomposition is reliable.
 
 use std::ops::Range;
 
@@ -12,40 +11,40 @@ use nalgebra::{Complex, DMatrix};
 
 use super::error_free::{two_product, two_sum};
 
-/// Corrections that are made at most; each squares the relative error.
+/// Maximum number of corrections; each squares the relative error.
 const ROUNDS: usize = 5;
 
-/// Errors below this fraction of the eigenvalues are rounding and remain: the vectors of nearly
+/// Errors below this fraction of the eigenvalues are rounding and are not corrected. The vectors of nearly
 /// equal eigenvalues cannot be separated, and need not be.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Subspaces are separate, and also corrected by rounding errors, if an error rotates them by at
-/// most this multiple of its fraction of the eigenvalues.
+/// Largest rotation of a subspace by an error, as a multiple of the relative error, for which the subspaces
+/// count as separate. Errors below rounding are then corrected as well.
 const MAX_ROTATION_PER_ERROR: f64 = 1e3;
 
-/// Larger rotations of a vector exceed first order, and are not applied.
+/// Larger rotations of a vector are not applied, because the corrections are accurate to first order only.
 const MAX_ROTATION: f64 = 0.1;
 
-/// A decomposition with a remaining error above this fraction of the eigenvalues is unreliable.
+/// Remaining error above which a decomposition is unreliable, as a fraction of the eigenvalues.
 const MAX_REMAINING_ERROR: f64 = 1e-9;
 
-/// A matrix by invariant subspaces, D being block-diagonal.
+/// Invariant subspaces of a matrix; D is block diagonal.
 pub(super) struct Subspaces {
-    /// X: a basis of each subspace, one after the other.
+    /// X: basis vectors of all subspaces.
     pub columns: DMatrix<Complex<f64>>,
     /// Y, the inverse of X.
     pub rows: DMatrix<Complex<f64>>,
-    /// D, 1/s; entries outside of its blocks are not read.
+    /// D, 1/s; entries outside its blocks are not read.
     pub matrix: DMatrix<Complex<f64>>,
-    /// The subspaces' places.
+    /// Index range of each subspace.
     pub blocks: Vec<Range<usize>>,
 }
 
 /// Result of a refinement.
 pub(super) struct Refinement {
-    /// True if the subspaces can be relied on.
+    /// True if the subspaces are reliable.
     pub converged: bool,
-    /// SplitComplex of blocks that rounding does not tell apart, if not.
+    /// Pairs of blocks that rounding does not separate, if `converged` is false.
     pub inseparable: Vec<(usize, usize)>,
 }
 
@@ -69,10 +68,9 @@ impl Subspaces {
         }
     }
 
-    /// Corrects X and D by first-order perturbation: with E = Y (A X - X D) the blocks of D
-    /// change by those of E, and X by X F with D_i F_ij - F_ij D_j = -E_ij. Returns how
-    /// large E was, relative to the eigenvalues, and adds the pairs of blocks that it turns
-    /// into each other.
+    /// Corrects X and D to first order. With E = Y (A X - X D), the diagonal blocks of D change by those of E,
+    /// and X changes by X F with D_i F_ij - F_ij D_j = -E_ij. Returns the magnitude of E relative to the
+    /// eigenvalues, and adds the pairs of blocks that E rotates into each other.
     fn refine_columns(&mut self, of: &DMatrix<f64>, inseparable: &mut Vec<(usize, usize)>) -> f64 {
         let error = &self.rows * self.residual(of);
         let size = error.nrows();
@@ -98,7 +96,7 @@ impl Subspaces {
                 }
                 let relative =
                     found.norm() / (magnitudes[i] + magnitudes[j]).max(f64::EPSILON * largest);
-                // Numbers that are none shall not pass for small ones.
+                // NaN must not count as a small error.
                 wrong = if relative.is_nan() {
                     f64::INFINITY
                 } else {
@@ -115,7 +113,7 @@ impl Subspaces {
         }
         let correction = &self.columns * &turn;
         for (entry, correction) in self.columns.iter_mut().zip(correction.iter()) {
-            // Zeros of a subspace stay exact zeros.
+            // Exact zeros of a basis vector remain exact.
             if entry.norm() > 0.0 || correction.norm() > ROUNDING {
                 *entry += correction;
             }
@@ -130,7 +128,7 @@ impl Subspaces {
             .into_owned()
     }
 
-    /// A X - X D.
+    /// Returns A X - X D.
     fn residual(&self, of: &DMatrix<f64>) -> DMatrix<Complex<f64>> {
         let size = of.nrows();
         let felt: Vec<Vec<(usize, f64)>> = (0..size)
@@ -162,7 +160,7 @@ impl Subspaces {
         residual
     }
 
-    /// Y + (1 - Y X) Y.
+    /// Replaces Y by Y + (1 - Y X) Y.
     fn refine_rows(&mut self) {
         let size = self.rows.nrows();
         let rest = DMatrix::from_fn(size, size, |i, j| {
@@ -179,7 +177,7 @@ impl Subspaces {
     }
 }
 
-/// X of A X - X B = -C.
+/// Returns X of A X - X B = -C.
 fn sylvester(
     a: &DMatrix<Complex<f64>>,
     b: &DMatrix<Complex<f64>>,
@@ -209,8 +207,8 @@ fn sylvester(
     )
 }
 
-/// A sum of products in twice the precision (Ogita, Rump and Oishi, Accurate Sum and Dot
-/// Product, SIAM J. Sci. Comput. 26, 2005, algorithm 5.3).
+/// Sum of products in twice the precision (Ogita, Rump and Oishi, Accurate Sum and Dot Product, SIAM J. Sci.
+/// Comput. 26, 2005, algorithm 5.3).
 #[derive(Clone, Copy, Default)]
 struct Accumulator {
     re: [f64; 2],
@@ -230,7 +228,7 @@ impl Accumulator {
     }
 }
 
-/// Adds a product with the roundings of both operations.
+/// Adds a product with the rounding errors of both operations.
 fn add(sum: &mut [f64; 2], a: f64, b: f64) {
     if a == 0.0 || b == 0.0 {
         return;

@@ -1,7 +1,8 @@
 //! One regime: the linear motion between switches, decomposed and prepared for stepping.
 //!
-//! The state moves from where it began by a polynomial (the integrals), by exponentials (the
-//! modes, and one per sinusoid for the response it forces), and in rare cases by clusters: eigenvalues that nearly agree, or that a forcing frequency nearly meets.
+//! The displacement since the start is a sum of a polynomial (the integrals), exponentials (the modes, and one
+//! per sinusoid for its response), and in rare cases clusters: eigenvalues that nearly coincide with each other
+//! or with a forcing frequency.
 
 use eomgen_codegen::program::affine::AffineSystem;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -13,59 +14,59 @@ use super::modes::{Forcing, Modes, project};
 use super::simd_vectors::PackedMatrix;
 use super::step_table::StepTable;
 
-/// A forcing frequency closer to an eigenvalue than this part of it is resonant: the forced
-/// and the free response grow large against each other and would cancel.
+/// Relative distance of a forcing frequency from an eigenvalue below which it is resonant. The forced and the
+/// free response would then be large and cancel each other.
 const RESONANT: f64 = 1e-3;
 
-/// A series is used up to where its argument reaches this.
+/// Largest argument of a series.
 const SERIES: f64 = 0.25;
 
-/// The remainder of a series in powers of a cluster's matrix, relative.
+/// Relative remainder of a series in powers of a cluster's matrix.
 const REMAINDER: f64 = 1e-19;
 
-/// A cluster of eigenvalues away from zero.
+/// Cluster of eigenvalues that are not near zero.
 #[derive(Clone, Debug)]
 pub(super) struct Cluster {
     /// Centre of the eigenvalues, 1/s.
     pub centre: Complex<f64>,
-    /// size x size, 1/s.
+    /// Matrix relative to the centre, size x size, 1/s.
     pub matrix: DMatrix<Complex<f64>>,
-    /// states x size, with the weight of the conjugate.
+    /// Map from the coordinates to the state, states x size; complex pairs count twice.
     pub columns: DMatrix<Complex<f64>>,
-    /// size x states.
+    /// Map from the state to the coordinates, size x states.
     pub rows: DMatrix<Complex<f64>>,
-    /// Powers of the matrix that count.
+    /// Number of powers of the matrix that are needed.
     pub terms: usize,
-    /// For each phase the factors of its sine and of its cosine.
+    /// Factors of sine and cosine of each phase.
     pub sinusoids: Vec<[DVector<Complex<f64>>; 2]>,
-    /// The constant rates, for a unit constant and unit inputs.
+    /// Constant rates per unit constant, then per unit of each input.
     pub constants: Vec<DVector<Complex<f64>>>,
 }
 
 /// A regime.
 ///
-/// Its coordinates share one array of SIMD vectors: the real parts of the modes' amplitudes, the
-/// imaginary parts, the integrals.
+/// All coordinates are in one array of SIMD vectors: real parts of the modes' amplitudes, imaginary parts,
+/// integrals.
 #[derive(Clone, Debug)]
 pub(super) struct Regime {
-    /// Its equations.
+    /// Equations of the regime.
     pub system: AffineSystem,
     pub modes: Modes,
     pub integrals: Integrals,
     pub clusters: Vec<Cluster>,
-    /// Maps a state, a unit constant, the inputs, and sine and cosine of each phase to coordinates;
-    /// in a free motion, a state only.
+    /// Map from the initial values (state, unit constant, inputs, and sine and cosine of each phase) to
+    /// coordinates. For a free motion only the columns of the state are used.
     pub coordinates: PackedMatrix,
-    /// A state from coordinates, without what is constant.
+    /// Map from coordinates to states, with zero rows for constant states.
     pub states: PackedMatrix,
-    /// Functions to evaluate.
+    /// Event functions.
     pub event_functions: Vec<EventFunction>,
     pub step_table: StepTable,
 }
 
 impl Regime {
-    /// Prepares the motion of `system` while the functions stay between their limits. Decays
-    /// up to `slow`, 1/s, are carried as polynomials.
+    /// Prepares the motion of `system` while the functions stay between their limits. Decays up to `slow`, 1/s,
+    /// are treated as polynomials.
     pub fn new(
         system: AffineSystem,
         events: Vec<(Linear, Limits)>,
@@ -98,7 +99,7 @@ impl Regime {
             }
         }
         for part in &clustered {
-            // Keeps exp(-centre tau) far from overflow.
+            // Prevents overflow of exp(-centre tau).
             window = window.min(100.0 / part.centre.norm());
         }
         let (integrals, window) =
@@ -128,13 +129,13 @@ impl Regime {
         })
     }
 
-    /// The rates of the state.
+    /// Writes the rates of the state.
     pub fn rates(&self, state: &[f64], inputs: &[f64], phases: &[Complex<f64>], out: &mut [f64]) {
         rates(&self.system, state, inputs, phases, out);
     }
 }
 
-/// The rates of the state by a system's equations.
+/// Writes the rates of the state by a system's equations.
 pub(super) fn rates(
     system: &AffineSystem,
     state: &[f64],
@@ -159,11 +160,11 @@ pub(super) fn rates(
     }
 }
 
-/// Places of the coordinates in their array.
+/// Positions of the coordinates in their array.
 struct Layout {
-    /// Length of the real parts of the modes' amplitudes.
+    /// Number of SIMD vectors of the real parts of the modes' amplitudes.
     modes: usize,
-    /// Length of the array in SIMD vectors.
+    /// Number of SIMD vectors of the array.
     vectors: usize,
 }
 
@@ -175,7 +176,7 @@ impl Layout {
         }
     }
 
-    /// Amplitudes and integrals in one vector.
+    /// Returns amplitudes and integrals in one vector.
     fn pack(
         &self,
         amplitudes: &DVector<Complex<f64>>,
@@ -192,9 +193,8 @@ impl Layout {
         packed
     }
 
-    /// Returns the map from a state, a unit constant, the inputs, and sines and cosines to
-    /// coordinates. The amplitude of a mode excludes its response to constant and sinusoidal
-    /// forces.
+    /// Returns the map from the initial values (state, unit constant, inputs, and sines and cosines) to
+    /// coordinates. The amplitude of a mode excludes its response to constant and sinusoidal forces.
     fn coordinates(&self, modes: &Modes, integrals: &Integrals) -> PackedMatrix {
         let column = |matrix: &DMatrix<f64>, state: usize| matrix.column(state).clone_owned();
         let mut columns: Vec<Vec<f64>> = (0..modes.rows.ncols())
@@ -224,8 +224,7 @@ impl Layout {
         })
     }
 
-    /// Returns the map from coordinates to states; those that are `still` are constant, without
-    /// rounding errors.
+    /// Returns the map from coordinates to states. States that are `still` are exactly constant.
     fn states(&self, modes: &Modes, integrals: &Integrals, still: &[bool]) -> PackedMatrix {
         let states = modes.columns.nrows();
         let width = 2 * self.modes + integrals.size;
@@ -293,7 +292,7 @@ impl Forcing {
     }
 }
 
-/// Parts of one eigenvalue away from resonance, and all others.
+/// Separates parts with one eigenvalue away from resonance from all other parts.
 fn divide(parts: Vec<Part>, frequencies: &[f64]) -> (Vec<Part>, Vec<Part>) {
     parts.into_iter().partition(|part| {
         let rate = part.centre;
@@ -307,7 +306,7 @@ fn divide(parts: Vec<Part>, frequencies: &[f64]) -> (Vec<Part>, Vec<Part>) {
     })
 }
 
-/// The largest magnitude of a part's eigenvalues relative to its centre, 1/s.
+/// Returns the largest magnitude of a part's eigenvalues relative to its centre, 1/s.
 fn radius(part: &Part) -> f64 {
     part.matrix
         .diagonal()
@@ -316,7 +315,7 @@ fn radius(part: &Part) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Returns the number of powers of a matrix of this size and radius needed within a time.
+/// Returns the number of powers of a matrix of this size and radius that are needed within a time.
 fn terms(size: usize, radius: f64, window: f64) -> usize {
     let argument = radius * window;
     let (mut terms, mut term) = (size, argument);
@@ -346,7 +345,7 @@ impl Cluster {
         }
     }
 
-    /// row columns N^k for every power.
+    /// Returns row columns N^k for every power k.
     pub fn projections(&self, row: &DVector<f64>) -> Vec<DVector<Complex<f64>>> {
         let mut power = self.columns.transpose() * row.map(|entry| Complex::new(entry, 0.0));
         let transposed = self.matrix.transpose();

@@ -1,20 +1,18 @@
-//! Saltation matrix, the effect of a switch on neighbouring motions: I + (f_after - f_before) grad
-//! g / (rate of g).
+//! Saltation matrix, the effect of a switch on tangent vectors: I + (f_after - f_before) grad g / (rate of g).
 //!
-//! The jump of a force can be proportional to the rate of the switching function, as for damping in
-//! a mesh: f_after - f_before = u (rate of g) on the surface. The quotient is then the same for
-//! every crossing and is computed once. A grazing crossing thus needs no quotient of two small
-//! numbers.
+//! The jump of a force can be proportional to the rate of the switching function, as for damping in a gear
+//! mesh: f_after - f_before = u (rate of g) on the surface. The quotient is then the same for every crossing
+//! and is computed once. This also avoids a quotient of two small numbers at a grazing crossing.
 
 use eomgen_codegen::program::affine::{AffineRows, AffineSystem};
 use nalgebra::{DVector, Matrix2, Vector2};
 
 use super::event_function::Linear;
 
-/// Largest residual of a jump that is proportional to the rate, relative.
+/// Largest relative residual of a jump that is proportional to the rate.
 const ROUNDING: f64 = 1e-10;
 
-/// u of the constant saltation matrix I + u grad g, if it is constant.
+/// Returns u of the saltation matrix I + u grad g; `None` if it is not constant.
 pub(super) fn constant(
     before: &AffineSystem,
     after: &AffineSystem,
@@ -66,7 +64,7 @@ pub(super) fn constant(
     Some(factors)
 }
 
-/// row f as a function of the motion.
+/// Returns row f as a function of state, inputs and sinusoids.
 fn along(row: &DVector<f64>, rates: &AffineRows) -> Linear {
     let of = |block: &[f64]| -> Vec<f64> {
         let width = block.len() / row.len().max(1);
@@ -88,7 +86,7 @@ fn along(row: &DVector<f64>, rates: &AffineRows) -> Linear {
     }
 }
 
-/// Row `state` of f_after - f_before.
+/// Returns row `state` of f_after - f_before.
 fn difference(before: &AffineRows, after: &AffineRows, state: usize) -> Linear {
     let (mut a, b) = (Linear::row(after, state), Linear::row(before, state));
     a.state -= b.state;

@@ -1,4 +1,4 @@
-//! The complex Schur form of a real matrix, balanced and in an order of one's choice.
+//! Complex Schur form of a balanced real matrix, with eigenvalues in any required order.
 
 use eomgen_analysis::qr_iteration::schur_form;
 use nalgebra::{Complex, DMatrix};
@@ -7,17 +7,17 @@ use crate::balancing::{MAX_ENTRY_PER_S, balance};
 
 /// A = D Q T Q^H D^-1 with T upper triangular, Q unitary and D diagonal.
 pub(super) struct SchurForm {
-    /// Upper triangular; its diagonal holds the eigenvalues, 1/s.
+    /// Upper triangular matrix T; its diagonal contains the eigenvalues, 1/s.
     pub triangle: DMatrix<Complex<f64>>,
-    /// Unitary.
+    /// Unitary matrix Q.
     pub basis: DMatrix<Complex<f64>>,
-    /// The diagonal of D: powers of two that bring rows and columns to like size.
+    /// Diagonal of D: powers of two that scale rows and columns to similar size.
     pub scale: Vec<f64>,
 }
 
 impl SchurForm {
-    /// The Schur form of a square matrix, or nothing if the iteration does not converge.
-    /// `scale`: a first guess of D, powers of two.
+    /// Computes the Schur form of a square matrix. Returns `None` if the iteration does not converge. `scale`
+    /// is the initial guess of D, powers of two.
     pub fn decompose(matrix: &DMatrix<f64>, scale: Vec<f64>) -> Option<Self> {
         let size = matrix.nrows();
         if size == 0 {
@@ -42,14 +42,14 @@ impl SchurForm {
         })
     }
 
-    /// The eigenvalues in the present order, 1/s.
+    /// Returns the eigenvalues in the current order, 1/s.
     pub fn eigenvalues(&self) -> Vec<Complex<f64>> {
         (0..self.triangle.nrows())
             .map(|place| self.triangle[(place, place)])
             .collect()
     }
 
-    /// Sorts the eigenvalues by `key`, stably.
+    /// Sorts the eigenvalues by `key` (stable sort).
     pub fn sort_by_key(&mut self, mut key: Vec<usize>) {
         for end in (1..key.len()).rev() {
             for place in 0..end {
@@ -61,8 +61,8 @@ impl SchurForm {
         }
     }
 
-    /// Exchanges eigenvalues `place` and `place` + 1 by a rotation (Golub and Van Loan,
-    /// Matrix Computations, 7.6.2).
+    /// Exchanges the eigenvalues `place` and `place` + 1 by a rotation (Golub and Van Loan, Matrix
+    /// Computations, 7.6.2).
     fn swap(&mut self, place: usize) {
         let (p, q) = (place, place + 1);
         let difference = self.triangle[(q, q)] - self.triangle[(p, p)];

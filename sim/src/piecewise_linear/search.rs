@@ -1,12 +1,12 @@
 //! Search for the first time at which a function of a regime reaches one of its limits.
 //!
-//! `bounds` classifies each function within a step. If the step contains no crossing, it is made.
-//! If it contains exactly one, Newton's method refines it. Otherwise the step is halved. The search
+//! `bounds` classifies each function within a step. If the step contains no crossing, it is made. If it
+//! contains exactly one crossing, Newton's method locates it. Otherwise the step is halved. The search
 //! evaluates bounds instead of samples, so it misses no crossing.
 //!
-//! Modes too fast for a step are bounded by their amplitudes. A function at its limit up to
-//! rounding crosses it only if its rate leads outward. Otherwise two surfaces within 1e-11 s of
-//! each other would be entered and left for ever.
+//! Modes too fast for a step are bounded by their amplitudes. A function within rounding of its limit crosses
+//! it only if its rate points outward. Otherwise two surfaces within 1e-11 s of each other would be entered and
+//! left endlessly.
 
 use fearless_simd::Simd;
 
@@ -18,24 +18,24 @@ use super::event_function::Limits;
 use super::flow::Flow;
 use super::regime::Regime;
 
-/// Maximum Newton steps to a crossing. Two or three are usual.
+/// Maximum number of Newton steps to a crossing. Usually two or three are needed.
 const MAX_NEWTON_STEPS: usize = 60;
 
-/// Largest error of a step to the zero of a cubic, relative to the bound on the rounding error of
-/// the function, which is mostly pessimistic.
+/// Largest error of a step to the zero of a cubic, relative to the bound on the rounding error of the function.
+/// This bound is usually pessimistic.
 const ROOT_TOLERANCE_ROUNDINGS: f64 = 1e-3;
 
-/// A function that is beyond its limit by more than this many times its rounding has jumped.
+/// Distance beyond a limit, in rounding errors, above which a function has jumped.
 const JUMP: f64 = 64.0;
 
 /// Result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Found {
-    /// The flow is at the time at which this function has reached its upper or lower limit.
+    /// The flow is at the time at which this function reaches its upper or lower limit.
     Limit {
-        /// The index of the function.
+        /// Index of the function.
         event_function: usize,
-        /// True if it is the upper limit.
+        /// True for the upper limit.
         upper: bool,
     },
     /// No function reaches a limit before the end of the search.
@@ -45,16 +45,16 @@ pub(super) enum Found {
 /// Counters of a search and its scratch memory.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Effort {
-    /// Steps made.
+    /// Number of steps.
     pub steps: u64,
-    /// Newton steps made.
+    /// Number of Newton steps.
     pub newton: u64,
-    /// Certain crossings within the present step.
+    /// Certain crossings within the current step.
     crossings: Vec<Crossing>,
 }
 
-/// Searches from the present time of the flow to `end` after its start, s. `first` is the level of
-/// the first step, and becomes that of the last.
+/// Searches from the current time of the flow to `end` after its start, s. `first` is the step-table index of
+/// the first step, and is set to that of the last step.
 #[inline(always)]
 pub(super) fn search<S: Simd>(
     simd: S,
@@ -68,7 +68,7 @@ pub(super) fn search<S: Simd>(
     let last = steps.len() - 1;
     let mut place = (*first).min(last);
     while flow.tau < end {
-        // A step that leads beyond the end need not be longer than the first one that does.
+        // The first step can be the shortest one that extends beyond the end.
         while place < last && steps[place + 1].length >= end - flow.tau {
             place += 1;
         }
@@ -102,19 +102,19 @@ enum Outcome {
     Limit(Found),
 }
 
-/// A crossing that is certain to come.
+/// A crossing that certainly occurs.
 #[derive(Clone, Copy, Debug)]
 struct Crossing {
     event_function: usize,
     upper: bool,
-    /// Between these times after the start of the flow, s.
+    /// Bounds of the crossing time since the start of the flow, s.
     within: [f64; 2],
-    /// The time by the cubic, s.
+    /// Crossing time estimated by the cubic, s.
     guess: f64,
 }
 
-/// Steps shorter than those of the step table, down to where no function moves by more than its
-/// rounding: what grazes a limit there neither reaches nor leaves it.
+/// Searches with steps shorter than those of the step table, down to a length in which no function changes by
+/// more than its rounding. A function that grazes its limit then neither reaches nor leaves it.
 #[cold]
 fn search_grazing(flow: &mut Flow, regime: &Regime, end: f64, effort: &mut Effort) -> Outcome {
     dispatch_registers!(simd => search_grazing_by(simd, flow, regime, end, effort))
@@ -150,7 +150,7 @@ fn search_grazing_by<S: Simd>(
     }
 }
 
-/// Returns true if no function moves by more than its rounding within `length` s.
+/// Returns true if no function changes by more than its rounding within `length` s.
 fn is_still(flow: &Flow, regime: &Regime, length: f64) -> bool {
     let steps = &regime.step_table.steps;
     (0..regime.event_functions.len()).all(|event_function| {
@@ -158,13 +158,13 @@ fn is_still(flow: &Flow, regime: &Regime, length: f64) -> bool {
             let [_, rate, second, third] = local.derivatives.map(f64::abs);
             let fourth = 0.25 * length * local.fourth;
             let moved = length * (rate + 0.5 * length * (second + length * (third + fourth) / 3.0));
-            // A limit without a rounding error is still subject to that of the time.
+            // The rounding of the time limits the accuracy even if the function is exact.
             moved <= local.noise || length <= f64::MIN_POSITIVE
         })
     })
 }
 
-/// Tries a step of `length` s, at most that of the step.
+/// Tries a step of `length` s, at most the length of the step in the table.
 #[inline(always)]
 fn step<S: Simd>(
     simd: S,
@@ -239,8 +239,8 @@ fn step<S: Simd>(
     })
 }
 
-/// Goes to the first of the crossings that are certain: to the one that seems to be, then back
-/// to those of other functions that turn out to come before.
+/// Moves to the first of the certain crossings: to the crossing with the smallest estimate, then back to those
+/// of other functions that turn out to be earlier.
 #[inline(always)]
 fn first_of_all<S: Simd>(
     simd: S,
@@ -272,7 +272,7 @@ fn first_of_all<S: Simd>(
     Some(first)
 }
 
-/// A limit that a function has reached here already.
+/// Returns a limit that a function has already reached at the current time.
 fn find_reached_limit(flow: &Flow, regime: &Regime, event_function: usize) -> Option<Found> {
     let limits = &regime.event_functions[event_function].limits;
     if flow.is_between(event_function, limits.low, limits.high) {
@@ -291,8 +291,8 @@ fn find_reached_limit(flow: &Flow, regime: &Regime, event_function: usize) -> Op
     })
 }
 
-/// A limit that a jump led over: of an input, or of the function itself when another
-/// one switched; of those families that may have jumped.
+/// Returns a limit that a jump exceeded: a jump of an input, or of the function itself at the switch of another
+/// one. Only families that may have jumped are examined.
 #[inline(always)]
 pub(super) fn find_jumped_function<S: Simd>(
     simd: S,
@@ -317,7 +317,7 @@ pub(super) fn find_jumped_function<S: Simd>(
     None
 }
 
-/// The distance of a function to a limit here, summed up anew.
+/// Returns the distance of a function to a limit at the current time, evaluated again.
 #[inline(always)]
 fn distance<S: Simd>(
     simd: S,
@@ -328,7 +328,7 @@ fn distance<S: Simd>(
 ) -> Distance {
     let steps = &regime.step_table.steps;
     flow.sum_up(simd, regime, event_function);
-    // The shortest step has no fast modes.
+    // No mode is fast compared with the shortest step.
     flow.local(
         regime,
         event_function,
@@ -338,7 +338,7 @@ fn distance<S: Simd>(
     )
 }
 
-/// Goes from near a crossing to it, and counts Newton's steps.
+/// Moves from a time near a crossing to the crossing, and counts the Newton steps.
 #[inline(always)]
 fn polish<S: Simd>(
     simd: S,
@@ -351,7 +351,7 @@ fn polish<S: Simd>(
     for _ in 0..MAX_NEWTON_STEPS {
         *newton += 1;
         let here = distance(simd, flow, regime, crossing.event_function, crossing.upper);
-        // A motion that comes nearer no more has not turned back yet.
+        // If the distance grows, the motion has not yet turned towards the limit.
         if here.value > 0.0 || here.rate > 0.0 {
             near = flow.tau;
         } else {
@@ -377,7 +377,7 @@ fn polish<S: Simd>(
     }
 }
 
-/// A distance to a limit with derivatives; the limit is reached where it is zero.
+/// Distance to a limit with its derivatives; the limit is reached at 0.
 #[derive(Clone, Copy, Debug)]
 struct Distance {
     value: f64,
@@ -408,8 +408,8 @@ impl Distance {
         }
     }
 
-    /// Returns true if the limit is reached here and the motion leads beyond it, given what
-    /// rounding at the start may have made of the rate.
+    /// Returns true if the limit is reached at the current time and the motion leads beyond it, given the
+    /// rounding error of the rate at the start.
     fn is_reached(&self, start_rate_noise: f64) -> bool {
         let leads_outward = self.rate < -(self.rate_noise + start_rate_noise);
         let is_beyond = self.value < -4.0 * self.noise && self.rate < 0.0;
@@ -418,8 +418,8 @@ impl Distance {
 
     /// Returns the zero of the cubic through value and derivatives, for a certain crossing.
     fn first_guess(&self, length: f64) -> f64 {
-        // The zero of the parabola, also where the motion starts from rest, and the later one
-        // where it turns back.
+        // Zero of the parabola. It is also valid for a motion from rest; if the distance grows first, it is the
+        // later zero.
         let discriminant = (self.rate * self.rate - 2.0 * self.second * self.value).max(0.0);
         let mut s = if self.rate > 0.0 {
             -(discriminant.sqrt() + self.rate) / self.second
@@ -436,19 +436,19 @@ impl Distance {
         }
     }
 
-    /// The step to the zero of the cubic, from near it.
+    /// Returns the step to a close zero of the cubic.
     fn newton(&self) -> f64 {
         let first = -self.value / self.rate;
         let s = -self.value / (self.rate + 0.5 * first * self.second);
         s - self.cubic(s) / self.slope(s)
     }
 
-    /// The cubic after a time.
+    /// Returns the value of the cubic after a time.
     fn cubic(&self, s: f64) -> f64 {
         self.value + s * (self.rate + s * (0.5 * self.second + s * self.third / 6.0))
     }
 
-    /// Its derivative.
+    /// Returns the derivative of the cubic after a time.
     fn slope(&self, s: f64) -> f64 {
         self.rate + s * (self.second + s * 0.5 * self.third)
     }

@@ -1,6 +1,6 @@
-//! Numbers in SIMD vectors of four, so that sums over modes run side by side: the order of the
-//! additions is fixed, and with it every bit of the result, whatever the processor. The loops
-//! over SIMD vectors are in `kernels`.
+//! Numbers in SIMD vectors of four, so that sums over modes are computed in parallel. The order of the
+//! additions is fixed, so results are bit-identical on all processors. The loops over SIMD vectors are in
+//! `kernels`.
 
 use std::ops::{Add, AddAssign, Mul, MulAssign, Sub, SubAssign};
 
@@ -10,8 +10,8 @@ use nalgebra::Complex;
 
 use super::kernels;
 
-/// Four numbers. An array rather than a register of one instruction set: each kernel is
-/// compiled for several of them.
+/// Four numbers. This is an array instead of a register type because each kernel is compiled for several
+/// instruction sets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C, align(32))]
 pub(super) struct SimdVector([f64; 4]);
@@ -29,7 +29,7 @@ impl SimdVector {
         self.0
     }
 
-    /// The sum of the four.
+    /// Returns the sum of the four numbers.
     #[inline(always)]
     pub fn total(self) -> f64 {
         let [a, b, c, d] = self.0;
@@ -93,7 +93,7 @@ pub(super) fn simd_vectors(count: usize) -> usize {
     count.div_ceil(4)
 }
 
-/// Numbers in SIMD vectors, the last one filled with zeros.
+/// Returns numbers packed in SIMD vectors, the last one padded with zeros.
 pub(super) fn pack(values: &[f64]) -> Vec<SimdVector> {
     let simd_vector = |chunk: &[f64]| {
         let mut simd_vector = [0.0; 4];
@@ -103,26 +103,26 @@ pub(super) fn pack(values: &[f64]) -> Vec<SimdVector> {
     values.chunks(4).map(simd_vector).collect()
 }
 
-/// The numbers of SIMD vectors, one after the other.
+/// Returns the numbers of SIMD vectors in order.
 pub(super) fn numbers(vectors: &[SimdVector]) -> &[f64] {
     bytemuck::cast_slice(vectors)
 }
 
-/// The same, to be written.
+/// Returns the numbers of SIMD vectors in order, mutably.
 pub(super) fn numbers_mut(vectors: &mut [SimdVector]) -> &mut [f64] {
     bytemuck::cast_slice_mut(vectors)
 }
 
-/// A real matrix with rows packed in SIMD vectors, for products with vectors.
+/// Real matrix with rows packed in SIMD vectors, for products with vectors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PackedMatrix {
     columns: usize,
-    /// SIMD vector of rows by SIMD vector of rows, in each the columns one after the other.
+    /// Entries: for each SIMD vector of rows, all columns in order.
     entries: Vec<SimdVector>,
 }
 
 impl PackedMatrix {
-    /// A matrix from its entries.
+    /// Creates a matrix from its entries.
     pub fn new(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
         let entries = (0..simd_vectors(rows)).flat_map(|simd_vector| {
             let entry = &entry;
@@ -147,7 +147,7 @@ impl PackedMatrix {
     }
 }
 
-/// Complex numbers in SIMD vectors, real and imaginary parts apart.
+/// Complex numbers in SIMD vectors, with separate real and imaginary parts.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SplitComplex {
     pub re: Vec<SimdVector>,
@@ -155,7 +155,7 @@ pub(super) struct SplitComplex {
 }
 
 impl SplitComplex {
-    /// Complex numbers in SIMD vectors.
+    /// Packs complex numbers.
     pub fn new(values: &[Complex<f64>]) -> Self {
         let part = |of: fn(&Complex<f64>) -> f64| {
             let parts: Vec<f64> = values.iter().map(of).collect();
@@ -167,14 +167,14 @@ impl SplitComplex {
         }
     }
 
-    /// exp(rate time) - 1 of each rate.
+    /// Returns exp(rate time) - 1 of each rate.
     pub fn expm1(rates: &[Complex<f64>], time: f64) -> Self {
         let expm1: Vec<Complex<f64>> = rates.iter().map(|rate| expm1(rate * time)).collect();
         Self::new(&expm1)
     }
 }
 
-/// exp(z) - 1, as accurate for small z as for large ones.
+/// Returns exp(z) - 1, which is accurate for small and for large z.
 pub(super) fn expm1(z: Complex<f64>) -> Complex<f64> {
     let (sine, cosine) = z.im.sin_cos();
     let grown = z.re.exp_m1();
@@ -182,11 +182,11 @@ pub(super) fn expm1(z: Complex<f64>) -> Complex<f64> {
     Complex::new(grown * cosine - 2.0 * half * half, (grown + 1.0) * sine)
 }
 
-/// The largest argument of [`kernels::advance_little`].
+/// Largest argument of [`kernels::advance_little`].
 pub(super) const MAX_SMALL_ARGUMENT: f64 = 1.0;
 
-/// Returns the number of terms for arguments up to this one: the first omitted term is below 5e-19
-/// of the sum.
+/// Returns the number of terms of the series of expm1 for arguments up to this one: the first omitted term is
+/// below 5e-19 of the sum.
 pub(super) fn terms_of_expm1(argument: f64) -> usize {
     match argument {
         _ if argument <= 1e-4 => 3,
@@ -220,7 +220,7 @@ mod tests {
             -MAX_SMALL_ARGUMENT,
         ] {
             let time = argument / 63.0;
-            // A unit amplitude moves by its expm1.
+            // The change of a unit amplitude is its expm1.
             let start = [SimdVector::new([1.0; 4]), SimdVector::ZERO];
             let (mut moved, mut now) = ([SimdVector::ZERO; 2], start);
             let amplitudes = kernels::Amplitudes {

@@ -1,4 +1,4 @@
-//! Simulation with samples, with the same results as the general solver.
+//! Simulation with samples; the results have the form of those of the general solver.
 
 use super::error::ExactError;
 use super::flow::Flow;
@@ -70,8 +70,8 @@ impl Propagator {
         )
     }
 
-    /// Continues a motion to the time `until` (s), and adds the states at `samples` (s, ascending, after the time
-    /// reached), the events and the work to `trajectory`. The progress and the steps are observed.
+    /// Continues a motion to the time `until` (s). Adds the states at `samples` (s, ascending, after the time
+    /// reached), the events and the statistics to `trajectory`. Reports progress and steps to the observers.
     ///
     /// # Errors
     /// Same as [`Propagator::simulate`].
@@ -108,7 +108,7 @@ impl Propagator {
         }
         let ended = self.follow_until(motion, until, inputs, &mut recorder);
         if ended.is_ok() {
-            // The last switch may be at the end, up to rounding.
+            // The last switch may be at the end of the span, up to rounding.
             recorder.samples.take_until(until, motion.state());
         }
         trajectory.times.append(&mut recorder.samples.times);
@@ -121,7 +121,7 @@ impl Propagator {
     }
 }
 
-/// Takes samples and records events.
+/// Stores samples and records events.
 struct Recorder<'s, 'o> {
     samples: Samples<'s>,
     events: Vec<Event>,

@@ -1,10 +1,9 @@
-//! Several surfaces that hold or change a motion at the same time, such as two bodies that rub on
-//! the ground and on each other. The behaviours of the surfaces depend on each other and are
-//! decided together.
+//! Several surfaces that hold or change a motion at the same time, for example two bodies that rub on the
+//! ground and on each other. The effects of the surfaces depend on each other and are determined together.
 //!
-//! A function that follows from held functions is constant as well. It reaches its threshold with
-//! the last of them and equals it while they hold, whether its own surface sticks or is at its
-//! limit.
+//! A function that is a linear combination of held functions is constant as well. It reaches its threshold
+//! together with the last of them and equals it while they hold, whether its own surface sticks or exerts its
+//! maximum force.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -15,13 +14,13 @@ use super::propagator::Propagator;
 use super::transition::Limit;
 use crate::sliding_modes::{Arrival, Rates, Sharing, Verdict, decide, solve_least_squares};
 
-/// Largest residual of a function that follows from others, and of its threshold, relative.
+/// Largest relative residual of a function that is a combination of others, and of its threshold.
 const DEPENDENCE_TOLERANCE: f64 = 1e-10;
 
-/// Largest residual of rates that are the sum of contributions of the surfaces' sides, relative.
+/// Largest relative residual of rates that are the sum of the contributions of the surfaces.
 const SUPERPOSITION_TOLERANCE: f64 = 1e-9;
 
-/// A surface's contribution to a rate is rounding below this fraction of the rate's terms.
+/// Contributions of a surface to a rate below this fraction of the rate's terms are rounding.
 const ROUNDING: f64 = 1e-12;
 
 /// A surface whose function equals its threshold.
@@ -33,7 +32,7 @@ pub(super) struct SurfaceContact {
 }
 
 impl Propagator {
-    /// Returns the surfaces that a motion is on at a limit.
+    /// Returns the surfaces that a motion at a limit is on.
     pub(super) fn surfaces_at_limit(&self, limit: &Limit) -> Vec<SurfaceContact> {
         let visited = &self.regimes[limit.before];
         let rank = limit.rank(visited.cells[limit.family]);
@@ -107,8 +106,8 @@ impl Propagator {
         met
     }
 
-    /// Returns the cells beyond a limit at which the motion is on several surfaces, or `None` if
-    /// their effect is not the sum of their single effects.
+    /// Returns the cells beyond a limit at which the motion is on several surfaces, or `None` if their combined
+    /// effect is not the sum of their single effects.
     pub(super) fn decide_together(
         &mut self,
         limit: &Limit,
@@ -119,7 +118,8 @@ impl Propagator {
         self.decided_of(&met, cells, standing)
     }
 
-    /// The cells of a motion that begins on the thresholds `tied` of families, in these cells but for them.
+    /// Returns the cells of a motion that starts on the thresholds `tied` (family and rank). The other families
+    /// stay in `cells`.
     pub(super) fn start_together(
         &mut self,
         cells: &[Cell],
@@ -159,7 +159,8 @@ impl Propagator {
         Some(cells)
     }
 
-    /// The rates of the functions of surfaces by their sides, the other families being in these cells.
+    /// Returns the rates of the surfaces' functions by the sides of the surfaces; the other families are in
+    /// these cells.
     fn rates_on(
         &mut self,
         met: &[SurfaceContact],
@@ -226,7 +227,7 @@ fn coefficients(function: &Linear) -> DVector<f64> {
     DVector::from_iterator(function.coefficients().count(), function.coefficients())
 }
 
-/// The factors with which some functions add up to another, if they do.
+/// Returns the factors of a linear combination of functions that equals another function, if it exists.
 fn express_by(functions: &[DVector<f64>], wanted: &DVector<f64>) -> Option<DVector<f64>> {
     let count = functions.len();
     let products = DMatrix::from_fn(count, count, |i, j| functions[i].dot(&functions[j]));

@@ -1,7 +1,7 @@
-//! Motion held on switching surfaces, such as sticking dry friction: the rates lead onto the
-//! surface from both sides, and the motion follows the convex combination of both that stays on the
-//! surface (Filippov). The weight of either side is again a linear function of the motion; the
-//! motion leaves the surface when the weight leaves 0 to 1.
+//! Motion held on switching surfaces, such as sticking under dry friction. The rates on both sides point
+//! towards the surface, and the motion follows their convex combination that stays on the surface (Filippov).
+//! The weight of either side is again a linear function of the motion. The motion leaves the surface when a
+//! weight leaves the interval from 0 to 1.
 
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineRows, AffineSystem};
 use nalgebra::{DMatrix, DVector};
@@ -10,25 +10,25 @@ use super::event_function::Linear;
 use super::parallel_guards::{Cell, ParallelGuards};
 use crate::sliding_modes::{MIN_SINGULAR_VALUE_FRACTION, divide_rows};
 
-/// Largest residual of a jump that is constant on its surface, relative.
+/// Largest relative residual of a jump that is constant on its surface.
 const ROUNDING: f64 = 1e-11;
 
-/// Largest residual of the rate of a held function, relative.
+/// Largest relative residual of the rate of a held function.
 const HELD_RATE_TOLERANCE: f64 = 1e-9;
 
-/// A state is the pivot of a function if its factor is at least this fraction of the function's
-/// largest factor.
+/// Smallest coefficient of a state that may be the pivot of a function, relative to the function's largest
+/// coefficient.
 const MIN_PIVOT_RATIO: f64 = 1e-6;
 
 /// A regime held on surfaces.
 pub(super) struct Sliding {
     /// The equations of motion on the surfaces.
     pub system: AffineSystem,
-    /// For each surface the part of its upper side, 0 to 1.
+    /// Weight of the upper side of each surface, 0 to 1.
     pub parts: Vec<Linear>,
 }
 
-/// The motion with the cells of all families, some of them held; nothing if the jumps are
+/// Returns the motion with the cells of all families, some of which are held. Returns `None` if the jumps are
 /// not constant on the surfaces or the surfaces do not hold the motion.
 pub(super) fn slide(
     evaluator: &mut AffineEvaluator,
@@ -69,7 +69,7 @@ pub(super) fn slide(
     combine(below, &rows, &jumps)
 }
 
-/// The constant jump of the rates across a surface row y = threshold.
+/// Returns the constant jump of the rates across a surface row y = threshold; `None` if it is not constant.
 fn jump(
     below: &AffineRows,
     above: &AffineRows,
@@ -101,7 +101,7 @@ fn jump(
     Some(jump)
 }
 
-/// f = f_below + sum of jumps times parts, with the parts such that every row f = 0.
+/// Returns f = f_below + sum of jumps times parts, with parts such that row f = 0 for every row.
 fn combine(below: AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) -> Option<Sliding> {
     let held = rows.len();
     let projected = DMatrix::from_fn(held, held, |i, j| rows[i].dot(&jumps[j]));
@@ -134,7 +134,7 @@ fn combine(below: AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) -
         })
         .collect();
     if are_dependent {
-        // Of all holding shares, use those with the smallest signs.
+        // Among all weights that hold, those nearest to one half are chosen; they have the smallest signs.
         let halves = &inverse * projected.column_sum() * 0.5;
         for (part, half) in parts.iter_mut().zip(&halves) {
             part.constant += 0.5 - half;
@@ -163,8 +163,8 @@ fn combine(below: AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) -
     Some(Sliding { system, parts })
 }
 
-/// Returns the inverse of the jumps' effect on the held functions and false, or the pseudoinverse
-/// and true if some functions follow from others.
+/// Inverts the effect of the jumps on the held functions. Returns the pseudoinverse and true if the functions
+/// are linearly dependent, otherwise the inverse and false.
 fn invert(projected: &DMatrix<f64>) -> Option<(DMatrix<f64>, bool)> {
     if projected.iter().any(|entry| !entry.is_finite()) {
         return None;
@@ -183,7 +183,7 @@ fn invert(projected: &DMatrix<f64>) -> Option<(DMatrix<f64>, bool)> {
     Some((inverse, are_dependent))
 }
 
-/// Returns true if a function keeps its value, up to rounding.
+/// Returns true if a function is constant up to rounding.
 fn is_held(system: &AffineSystem, below: &AffineSystem, row: &DVector<f64>) -> bool {
     let pairs = blocks(&system.rates).into_iter().zip(blocks(&below.rates));
     let mut pairs = pairs.map(|(block, below)| (block, block.iter().chain(below)));
@@ -209,14 +209,14 @@ fn blocks(rates: &AffineRows) -> [&Vec<f64>; 5] {
     ]
 }
 
-/// Removes rounding errors from held rates. For each function, the rate of one state that the
-/// surfaces move is computed from the others; it is zero if the function has no other state.
+/// Removes rounding errors from held rates. For each function, the rate of one state that the surfaces affect
+/// is computed from the others; it is zero if the function depends on no other state.
 fn hold(system: &mut AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) {
     let states = system.states;
     let moved: Vec<usize> = (0..states)
         .filter(|state| jumps.iter().any(|jump| jump[*state] != 0.0))
         .collect();
-    // Gauss-Jordan elimination: subtract the other rows from each row until it has a pivot.
+    // Gauss-Jordan elimination: subtracts the other rows from each row until it has a pivot.
     let mut left = rows.to_vec();
     let mut own: Vec<(usize, DVector<f64>)> = Vec::new();
     while let Some(row) = left.pop() {

@@ -1,28 +1,28 @@
-//! Steps of fixed lengths, each half as long as the one before, with every mode's expm1 over each
-//! of them: a search advances the modes by multiplications.
+//! Steps of fixed lengths, each half as long as the preceding one, with the expm1 of every mode over each step.
+//! A search then advances the modes by multiplications.
 
 use super::modes::Modes;
 use super::simd_vectors::SplitComplex;
 
-/// The longest step, times the fastest rate.
+/// Length of the longest step, times the fastest rate.
 const LONGEST_STEP: f64 = 1024.0;
 
-/// The shortest step, times the fastest rate.
+/// Length of the shortest step, times the fastest rate.
 const SHORTEST_STEP: f64 = 1.0 / 65536.0;
 
-/// Modes that turn by more within a step are bounded by their amplitudes, rad.
+/// Largest angle of a slow mode in a step, rad. Faster modes are bounded by their amplitudes.
 const MAX_TURN_RAD: f64 = 2.5;
 
 /// A step of one length.
 #[derive(Clone, Debug)]
 pub(super) struct Step {
-    /// Its length, s.
+    /// Length of the step, s.
     pub length: f64,
     /// exp(rate length) - 1 of each mode.
     pub expm1: SplitComplex,
-    /// The largest growth of a mode within the step, at least 1.
+    /// Largest growth of a mode within the step, at least 1.
     pub growth: f64,
-    /// Number of modes that turn little within the step; they are the slowest ones.
+    /// Number of modes that turn little within the step; they are the first ones.
     pub slow: usize,
 }
 
@@ -33,14 +33,14 @@ const MIN_STEPS: usize = 25;
 #[derive(Clone, Debug)]
 pub(super) struct StepTable {
     pub steps: Vec<Step>,
-    /// No step leads further from the start of a regime, s.
+    /// Largest time since the start of a regime that a step may reach, s.
     pub window: f64,
     /// exp(rate window) - 1 of each mode.
     pub through: SplitComplex,
 }
 
 impl StepTable {
-    /// The longest step with this fastest rate, s.
+    /// Returns the length of the longest step for this fastest rate, s.
     pub fn longest(fastest: f64) -> f64 {
         if fastest > 0.0 {
             (LONGEST_STEP / fastest).min(1e6)
@@ -49,9 +49,9 @@ impl StepTable {
         }
     }
 
-    /// The steps for these modes.
+    /// Creates the steps for these modes.
     pub fn new(modes: &Modes, window: f64, fastest: f64) -> Self {
-        // A power of two: sums of steps are then exact.
+        // A power of two makes sums of steps exact.
         let mut length = window.log2().floor().exp2();
         let mut steps = Vec::new();
         while steps.len() < MIN_STEPS || (length * fastest > SHORTEST_STEP && steps.len() < 80) {

@@ -1,10 +1,10 @@
-//! Effects of switching on a model at any state.
+//! Effects of switching on a model, independent of the state.
 
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
 
 use super::propagator::Propagator;
 
-/// No polynomial that anyone writes has a zero at its multiples.
+/// Irrational number whose multiples are used as sides. Polynomials of practical models have no zero there.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 impl Propagator {
@@ -12,7 +12,7 @@ impl Propagator {
     pub(super) fn influential_states(&mut self) -> Vec<bool> {
         let guards = self.evaluator.guard_count();
         let mut felt = vec![false; self.states];
-        // The last case evaluates between the sides, for functions that depend on several of them.
+        // The last case evaluates at values between the sides, for functions that depend on several sides.
         let nested = usize::from(self.has_dependents());
         for case in 0..guards + 2 + nested {
             let side = |guard: usize| match case == guards + 2 {
@@ -33,8 +33,7 @@ impl Propagator {
     }
 }
 
-/// The fastest rate that switching can add, 1/s: the root of the largest change of a
-/// stiffness.
+/// Returns the fastest rate that switching can add, 1/s: the square root of the largest change of a stiffness.
 pub(super) fn switched_rate(evaluator: &mut AffineEvaluator, system: &AffineSystem) -> f64 {
     let (guards, states) = (evaluator.guard_count(), evaluator.states());
     let mut largest: f64 = 0.0;
@@ -45,7 +44,7 @@ pub(super) fn switched_rate(evaluator: &mut AffineEvaluator, system: &AffineSyst
         let other = evaluator.system(&sides);
         let rows = system.rates.state.chunks(states.max(1));
         for (a, b) in rows.zip(other.rates.state.chunks(states.max(1))) {
-            // Degrees of freedom come first in the state.
+            // Positions are first in the state.
             let positions = a.iter().zip(b).take(system.degrees);
             largest = positions.fold(largest, |m, (a, b)| m.max((a - b).abs()));
         }

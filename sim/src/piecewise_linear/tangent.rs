@@ -1,5 +1,5 @@
-//! Neighbouring motions to first order: tangent vectors carried along a motion, through the
-//! flow exactly and through switches by the saltation matrix.
+//! Tangent vectors of a motion: propagated exactly between switches, and transformed by the saltation matrix at
+//! switches.
 
 use fearless_simd::Simd;
 
@@ -15,13 +15,13 @@ use super::simd_vectors::{self, SimdVector, SplitComplex, numbers, numbers_mut};
 /// Tangent vectors of a motion.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tangents {
-    /// One state difference each.
+    /// Differences of the state, one per vector.
     pub vectors: Vec<Vec<f64>>,
     neighbour: Neighbour,
     rates: [Vec<f64>; 2],
 }
 
-/// Memory for one vector on its way.
+/// Memory for the propagation of one vector.
 #[derive(Clone, Debug, Default)]
 struct Neighbour {
     coordinates: Vec<SimdVector>,
@@ -32,7 +32,7 @@ struct Neighbour {
 }
 
 impl Tangents {
-    /// Tangent vectors to be carried along.
+    /// Creates tangent vectors.
     pub fn new(vectors: Vec<Vec<f64>>) -> Self {
         Self {
             vectors,
@@ -40,7 +40,7 @@ impl Tangents {
         }
     }
 
-    /// Carries the vectors on for `tau` s.
+    /// Propagates the vectors over `tau` s.
     pub fn advance(&mut self, regime: &Regime, tau: f64) {
         let expm1 = SplitComplex::expm1(&regime.modes.rate, tau);
         let (neighbour, vectors) = (&mut self.neighbour, &mut self.vectors);
@@ -56,7 +56,7 @@ impl Tangents {
 }
 
 impl Tangents {
-    /// Takes the vectors through a switch.
+    /// Applies the saltation matrix of a switch to the vectors.
     pub fn switch(&mut self, change: &Change<'_>) {
         let row = change.function.state.as_slice();
         let dot = |vector: &[f64]| row.iter().zip(vector).map(|(a, b)| a * b).sum::<f64>();
@@ -97,8 +97,7 @@ impl Follow for Tangents {
 }
 
 impl Neighbour {
-    /// Adds to a state difference what the flow makes of it after `tau` s, given the modes'
-    /// expm1 over that time.
+    /// Propagates a difference of the state over `tau` s, given the modes' expm1 over that time.
     #[inline(always)]
     fn carry<S: Simd>(
         &mut self,
@@ -148,7 +147,7 @@ impl Neighbour {
     }
 }
 
-/// Adds how far a cluster moves a state difference in `tau` s.
+/// Adds the change of a state difference by a cluster in `tau` s.
 fn add_cluster(cluster: &Cluster, tau: f64, vector: &[f64], sum: &mut [f64]) {
     let difference = DVector::from_iterator(
         vector.len(),

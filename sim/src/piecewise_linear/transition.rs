@@ -1,4 +1,4 @@
-//! Through a surface: into the regime beyond it, or onto it where the rates lead back.
+//! Transition at a surface: into the regime beyond it, or onto the surface if the rates beyond it point back.
 
 use super::coincidence::{Crossing, coincident_rank};
 use super::dependents::{DecisionCause, StateAt};
@@ -11,23 +11,23 @@ use super::saltation;
 /// A limit that a motion has reached.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limit {
-    /// The regime it leaves.
+    /// Index of the regime that the motion leaves.
     pub before: usize,
-    /// The function that reached its limit, and its family.
+    /// Index of the function that reached its limit, and of its family.
     pub event_function: usize,
     pub family: usize,
-    /// True if it is the upper limit.
+    /// True for the upper limit.
     pub upper: bool,
-    /// True if a jump led over it.
+    /// True if a jump exceeded the limit.
     pub by_jump: bool,
-    /// When, s.
+    /// Time, s.
     pub t: f64,
 }
 
 /// Continuation of a motion after a limit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Transition {
-    /// The regime it enters.
+    /// Index of the regime that the motion enters.
     pub after: usize,
     /// Index of the saltation matrix, if it is constant.
     pub saltation: Option<usize>,
@@ -36,7 +36,7 @@ pub(super) struct Transition {
 }
 
 impl Limit {
-    /// The rank of the threshold, given the cell of its family.
+    /// Returns the rank of the reached threshold, given the cell of its family.
     pub fn rank(&self, cell: Cell) -> usize {
         match (cell, self.upper) {
             (Cell::Between(above), true) => above,
@@ -91,8 +91,7 @@ impl Propagator {
             } = standing;
             let rate = |index: usize| self.rate(index, family, state, inputs, phases);
             let (here, there) = (rate(before), rate(adjacent.regime));
-            // A motion that has just left the surface, or hardly gets there, has no rate there
-            // but rounding.
+            // A motion that has just left the surface, or barely reaches it, has a rate within rounding.
             let slack = self.rate_rounding(adjacent.regime, family, state);
             if there * limit.outward() < -slack && here * limit.outward() > -slack {
                 let mut cells = self.regimes[before].cells.clone();
@@ -105,7 +104,7 @@ impl Propagator {
         Ok(transition)
     }
 
-    /// The regime beyond a limit where functions feel the sides of others.
+    /// Returns the regime beyond a limit if functions depend on the sides of other surfaces.
     fn adjacent_with_dependents(
         &mut self,
         limit: &Limit,
@@ -139,8 +138,7 @@ impl Propagator {
         self.regime(&after, limit.t)
     }
 
-    /// Returns true if the rates beyond a surface lead back to it, where those before lead onto
-    /// it.
+    /// Returns true if the rates beyond a surface point back to it and the rates before it point towards it.
     fn leads_back(
         &mut self,
         limit: &Limit,
@@ -154,8 +152,8 @@ impl Propagator {
         there * limit.outward() < -slack && here * limit.outward() > -slack
     }
 
-    /// Returns the cells held on the surface whose rates lead back: the crossed one or, of those
-    /// that coincide with it, the outermost one whose side has this effect by itself.
+    /// Returns the cells held on the surface whose rates point back. This is the crossed surface or, among
+    /// coincident surfaces, the outermost one whose side alone has this effect.
     fn find_held_cells(
         &mut self,
         limit: &Limit,

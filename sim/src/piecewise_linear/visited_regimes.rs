@@ -1,5 +1,5 @@
-//! The regimes of a model: made when a motion first enters them, and kept; and which of them a
-//! motion begins in.
+//! Regimes of a model: each is created when a motion first enters it, and kept. Also determines the regime in
+//! which a motion starts.
 
 use nalgebra::Complex;
 
@@ -15,21 +15,20 @@ use super::propagator::Propagator;
 use super::regime::Regime;
 use super::sliding::slide;
 
-/// A regime that a motion has been in: one of a hybrid system's *modes*, a word that here is
-/// for vibration.
+/// A regime that a motion has entered. Hybrid systems theory calls it a *mode*; here modes are vibration modes.
 pub(super) struct VisitedRegime {
     pub cells: Vec<Cell>,
     pub regime: Regime,
-    /// The family's function as the regime has it, for each family.
+    /// Function of each family in this regime.
     pub functions: Vec<Linear>,
-    /// The step of the table at which the last search ended.
+    /// Step-table index at which the last search ended.
     pub step: usize,
-    /// For each function and limit the adjacent regime, once it is known.
+    /// Adjacent regime for each function and limit, once known.
     pub adjacent: Vec<[Option<Adjacent>; 2]>,
 }
 
 impl Propagator {
-    /// The regime with these cells, made if it is new.
+    /// Returns the index of the regime with these cells; creates it if necessary.
     pub(super) fn regime(&mut self, cells: &[Cell], t: f64) -> Result<usize, ExactError> {
         if let Some(&known) = self.known.get(cells) {
             return Ok(known);
@@ -100,8 +99,8 @@ impl Propagator {
         Ok(index)
     }
 
-    /// Returns true if a function keeps its value throughout the regime with these cells, for
-    /// which it was decided: it is still, or in proportion to one that is held.
+    /// Returns true if a function is constant in the regime with these cells: it does not depend on state and
+    /// time, or it is proportional to a held function.
     fn is_at_rest(&self, functions: &[Linear], cells: &[Cell], family: usize) -> bool {
         let held = |(other, cell): (&Linear, &Cell)| {
             matches!(cell, Cell::On(_)) && factor(&functions[family], other).is_some()
@@ -111,8 +110,8 @@ impl Propagator {
             && (self.dependent[family] && functions[family].is_still() || others.any(held))
     }
 
-    /// The cells of all families at a state, below a threshold that is met, and the families
-    /// and ranks of those that are.
+    /// Returns the cells of all families at a state, and the families and ranks of thresholds that are met
+    /// exactly. A value on a threshold counts as below it.
     pub(super) fn cells_at(
         &mut self,
         state: &[f64],
@@ -122,7 +121,7 @@ impl Propagator {
         let mut sides = vec![0.0; self.evaluator.guard_count()];
         let mut cells = vec![Cell::Between(0); self.families.len()];
         let mut tied = Vec::new();
-        // A function may depend on the cells of others: once more until all agree.
+        // A function may depend on the cells of others, so this repeats until all agree.
         for _ in 0..=self.families.len() {
             for (family, cell) in self.families.iter().zip(&cells) {
                 family.write_sides(*cell, 0.0, &mut sides);
@@ -151,7 +150,7 @@ impl Propagator {
         (cells, tied)
     }
 
-    /// The regime of a motion that begins at a state.
+    /// Returns the regime of a motion that starts at a state.
     pub(super) fn regime_at(
         &mut self,
         clock: Clock,
