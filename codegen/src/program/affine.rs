@@ -93,8 +93,9 @@ impl AffineEvaluator {
         }
     }
 
-    /// Makes prescribed motions states, each with its rate and second rate after the other states. `prescribed`:
-    /// their indices among the inputs. The input of a second rate becomes the third rate.
+    /// Turns prescribed motions from inputs into states; each adds its value, rate and second rate after the other
+    /// states. `prescribed` has their indices among the inputs. The input of the second rate then supplies the third
+    /// rate.
     #[must_use]
     pub fn with_prescribed_states(mut self, prescribed: Vec<usize>) -> Self {
         self.prescribed = prescribed;
@@ -111,17 +112,18 @@ impl AffineEvaluator {
         self.layout.guards.len()
     }
 
-    /// Returns the function that switches at each surface.
+    /// Returns the piecewise function that switches at each surface.
     pub fn guard_functions(&self) -> &[Function] {
         &self.layout.guard_functions
     }
 
-    /// Returns, for each switching function, the first one that differs from it only by parameters.
+    /// Returns, for each switching function, the index of the first switching function that differs only by
+    /// parameters.
     pub fn guard_groups(&self) -> &[usize] {
         &self.layout.guard_groups
     }
 
-    /// Returns, for each switching function, true if it can be constant throughout a regime: if it depends on
+    /// Returns, for each switching function, true if it can be constant throughout a regime, because it depends on
     /// the sides of other surfaces or only on inputs.
     pub fn guards_rest(&self) -> &[bool] {
         &self.layout.guards_rest
@@ -156,8 +158,8 @@ impl AffineEvaluator {
         }
     }
 
-    /// Computes the matrices for these sides, one for each switching surface: 1 on the positive side, 0 on
-    /// the other, values between them on the surface.
+    /// Computes the matrices for given sides, one number for each switching surface: 1 if the switching function is
+    /// positive, 0 if it is negative, and a value between them if the motion is held on the surface.
     pub fn system(&mut self, sides: &[f64]) -> AffineSystem {
         let own = self.parameters.len() - self.guard_count();
         for (slot, side) in self.parameters[own..].iter_mut().zip(sides) {
@@ -239,7 +241,7 @@ impl AffineEvaluator {
         AffineRows { state, ..rows }
     }
 
-    /// Adds the rates of prescribed motions.
+    /// Adds the rows with the rates of prescribed motions.
     fn add_prescribed_rates(&self, mut rows: AffineRows) -> AffineRows {
         let (states, inputs) = (self.states(), self.layout.inputs);
         let phases = self.layout.phases.len();
@@ -316,8 +318,8 @@ impl AffineEvaluator {
         }
     }
 
-    /// Returns the factor of mode `column` in element `row` of a matrix; a scalar row has a vector of
-    /// factors.
+    /// Returns the factor of mode `column` in element `row`. The value is a matrix, or a vector of factors for a
+    /// single row.
     fn pair(&self, id: ValueId, row: usize, column: usize) -> f64 {
         match self.evaluator.program().value(id).extent {
             Extent::Scalar => self.evaluator.slice(id)[0],

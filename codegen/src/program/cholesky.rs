@@ -1,19 +1,21 @@
-//! Cholesky factorisation and solution with the factor, written once. The evaluator executes them; machine code and
-//! statements are written from them. All keep the order of operations. The functions are inlined, so that the evaluator
-//! keeps the places of the matrices in registers: it executes half as many instructions (callgrind, 6 and 16 rows).
+//! Cholesky factorisation and solution with the factor, defined once for all backends. The evaluator executes the
+//! loops; machine code and statements are generated from them. The order of operations is the same in all backends.
+//! The functions are inlined, because the evaluator then keeps the addresses of the matrices in registers and
+//! executes half as many instructions (callgrind, 6 and 16 rows).
 
-/// Indices of a loop.
+/// Index range of a loop.
 #[derive(Clone, Debug)]
 pub enum Range<I> {
-    /// 0 to n - 1.
+    /// From 0 to n - 1.
     First(I),
-    /// n - 1 to 0.
+    /// From n - 1 down to 0.
     Reversed(I),
-    /// i + 1 to n - 1, for `After(i, n)`.
+    /// From i + 1 to n - 1, for `After(i, n)`.
     After(I, I),
 }
 
-/// Executor or writer of loops over the elements of matrices. A body is executed for every index, or written once.
+/// Backend for loops over matrix elements. The evaluator executes the body for every index; a code generator emits it
+/// once.
 pub trait MatrixLoops {
     /// Index of a row or column.
     type Index: Clone;
@@ -22,7 +24,7 @@ pub trait MatrixLoops {
     /// Matrix.
     type Matrix;
 
-    /// Loops over indices, with a name for written code.
+    /// Loops over an index range; `name` is the loop variable in generated code.
     fn each(
         &mut self,
         name: &'static str,
@@ -30,7 +32,7 @@ pub trait MatrixLoops {
         body: impl FnMut(&mut Self, &Self::Index),
     );
 
-    /// Returns first - a b - ..., in the order of the indices k, for the factors a and b of each.
+    /// Returns first - a_0 b_0 - a_1 b_1 - ..., in the order of the indices k.
     fn subtract_products(
         &mut self,
         first: Self::Number,
@@ -51,8 +53,8 @@ pub trait MatrixLoops {
     fn root_or_nan(&mut self, a: Self::Number) -> Self::Number;
 }
 
-/// Computes the lower factor L of a symmetric matrix L L^T of n rows, row by row; NaN if it is not positive definite. The
-/// upper part of `factor` is not written.
+/// Computes the lower factor L of a symmetric matrix L L^T of n rows, row by row. The factor contains NaN if the
+/// matrix is not positive definite. The upper part of `factor` is not written.
 #[inline(always)]
 pub fn factorise<L: MatrixLoops>(
     loops: &mut L,
@@ -82,7 +84,7 @@ pub fn factorise<L: MatrixLoops>(
     });
 }
 
-/// Solves L L^T x = right in column j, by forward and backward substitution. `right` can be `x` itself.
+/// Solves L L^T x = right for column j by forward and backward substitution. `right` can be the same matrix as `x`.
 #[inline(always)]
 pub fn solve_column<L: MatrixLoops>(
     loops: &mut L,

@@ -1,19 +1,19 @@
-//! Names of values by their content: the same computation has the same name in every file, whatever is computed before it.
+//! Names of values by their content: a computation has the same name in every file, independent of the other values.
 
 use super::{Argument, Op, Program, ValueId, Variable};
 use crate::stable_hash::StableHash;
 
-/// Largest number of characters of a name that spells its formula.
+/// Largest number of characters of a name that is derived from a formula.
 const MAX_SPELLED_LENGTH: usize = 24;
-/// Largest number of operands of a formula that a name spells.
+/// Largest number of operands in a formula from which a name is derived.
 const MAX_SPELLED_OPERANDS: usize = 4;
-/// Digits of hashes in names: letters and digits without the similar ones.
+/// Digits of hashes in names: letters and digits without characters that look alike.
 const DIGITS: &[u8; 32] = b"abcdefghjkmnpqrstuvwxyz123456789";
-/// Number of digits of a hash in a name. Names that agree in all of them get more.
+/// Number of hash digits in a name. If two names are equal, more digits are used.
 const HASH_LENGTH: usize = 5;
 
-/// Contents of the values of a program. Named operands count by their names, so that a change of a named quantity keeps
-/// the names of the values that use it.
+/// Hashes of the values of a program. A named operand is hashed by its name; therefore a change of a named quantity
+/// does not change the names of the values that use it.
 #[derive(Clone, Debug)]
 pub struct Contents {
     hashes: Vec<u64>,
@@ -35,8 +35,8 @@ impl Contents {
         Self { hashes }
     }
 
-    /// Returns names for a value, best first: its formula if that is short, then hashes of its content with more and more
-    /// digits.
+    /// Returns names for a value, the best first: its formula if the formula is short, then hashes of its content
+    /// with an increasing number of digits.
     pub fn names(&self, program: &Program, id: ValueId) -> impl Iterator<Item = String> {
         let hash = self.hashes[id.index()];
         let digit = move |place: usize| DIGITS[(hash >> (5 * place)) as usize % 32] as char;
@@ -45,7 +45,7 @@ impl Contents {
     }
 }
 
-/// Hash of a content, part by part.
+/// Hash of a value's content, to which the parts are added one by one.
 struct ContentHash(StableHash);
 
 impl ContentHash {
@@ -61,7 +61,7 @@ impl ContentHash {
         Self(self.0.include(text.as_bytes())).number(text.len() as u64)
     }
 
-    /// Returns the hash with its bits mixed, because the low bits of products depend on few bits.
+    /// Returns the hash after mixing its bits, because the low bits of products depend on only few bits.
     fn finish(self) -> u64 {
         let hash = self.0.value();
         let mixed = (hash ^ (hash >> 32)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -131,7 +131,7 @@ fn kind(op: &Op) -> &'static str {
     }
 }
 
-/// Returns the name of a quantity that is given to the program.
+/// Returns the name of a leaf: time, parameter, state, input, argument or table.
 pub(super) fn leaf_name(program: &Program, op: &Op) -> Option<String> {
     let variable = |variable: &Variable| match variable {
         Variable::Time => "t".to_owned(),
@@ -159,7 +159,7 @@ pub(super) fn leaf_name(program: &Program, op: &Op) -> Option<String> {
     })
 }
 
-/// Spells a brief formula as a part of a name: `3*k_sp` as `3_k_sp`, `l/r_s` as `l_per_r_s`.
+/// Writes a short formula as part of a name: `3*k_sp` becomes `3_k_sp`, and `l/r_s` becomes `l_per_r_s`.
 fn spell_formula(program: &Program, id: ValueId) -> Option<String> {
     let mut operands = 0;
     let text = spell(program, id, true, &mut operands)?;

@@ -1,5 +1,5 @@
-//! Sampled controllers of a program: operations on the values of a sample. The evaluation here and the emitted code
-//! compute the same operations in the same order, so that they have the same bits.
+//! Sampled controllers of a program: operations on the values of a sample. The evaluator and the emitted code execute
+//! the same operations in the same order; their results are bit-identical.
 
 use eomgen_elementary::Function as Elementary;
 use eomgen_model_spec::function::Function;
@@ -32,7 +32,7 @@ pub enum ControlOp {
     Divide(usize, usize),
     /// Function of the expression language, of one or two arguments.
     Call(Function, Vec<usize>),
-    /// Elementary function of two arguments that the expression language writes in another form.
+    /// Function of two arguments that has no function name in the expression language.
     Elementary(Elementary, [usize; 2]),
     /// `[a, b, then, otherwise]`: `then` if a > b, else `otherwise`.
     Select([usize; 4]),
@@ -90,20 +90,20 @@ pub struct ProgramController {
     pub driven: Vec<usize>,
     /// Operations, operands first.
     pub values: Vec<ControlOp>,
-    /// Period, offset and delay, s: functions of the parameters.
+    /// Operations that compute period, offset and delay in s from the parameters.
     pub times: [usize; 3],
-    /// Initial states: functions of the parameters.
+    /// Operations that compute the initial states from the parameters.
     pub initial: Vec<usize>,
-    /// States after a sample.
+    /// Operations that compute the states after a sample.
     pub next: Vec<usize>,
-    /// Values of the outputs.
+    /// Operations that compute the outputs.
     pub output_values: Vec<usize>,
 }
 
 /// Values that the operations of a controller read.
 #[derive(Clone, Copy, Debug)]
 pub struct ControlValues<'v> {
-    /// Independent parameters, SI.
+    /// Independent parameters in SI units.
     pub parameters: &'v [f64],
     /// Time between two samples, s.
     pub period: f64,
@@ -114,7 +114,7 @@ pub struct ControlValues<'v> {
 }
 
 impl ProgramController {
-    /// Computes all operations; those without their operands are NaN.
+    /// Computes all operations; operations with missing operands are NaN.
     pub fn evaluate(&self, given: ControlValues<'_>, results: &mut Vec<f64>) {
         results.clear();
         let read = |from: &[f64], place: usize| from.get(place).copied().unwrap_or(f64::NAN);
@@ -145,7 +145,7 @@ impl ProgramController {
         }
     }
 
-    /// Returns period, offset, delay (s) and the initial states at independent parameters, SI.
+    /// Returns period, offset and delay in s, and the initial states, for given independent parameters in SI units.
     pub fn start(&self, parameters: &[f64]) -> ([f64; 3], Vec<f64>) {
         let mut results = Vec::new();
         let given = ControlValues {

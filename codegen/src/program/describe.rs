@@ -3,14 +3,15 @@
 use super::content::leaf_name;
 use crate::program::{Op, Program, ValueId};
 
-/// Largest length of a formula that contains no names of intermediate values, in characters.
+/// Largest length in characters of a formula without names of intermediate values.
 const MAX_FORMULA_LENGTH: usize = 160;
 
-/// Largest depth of such a formula, because shared nodes make a tree exponentially larger than its graph.
+/// Largest depth of a formula without names of intermediate values. The limit is necessary because a tree can be
+/// exponentially larger than its graph.
 const MAX_DEPTH: usize = 8;
 
-/// Returns the formula of a value on one line, in named quantities. A long formula contains the intermediate values of the
-/// preparation, which `intermediate` names.
+/// Returns the formula of a value on one line, in terms of named quantities. In a long formula, intermediate values
+/// of `prepare` appear by the names that `intermediate` returns.
 pub fn describe_value<'n>(
     program: &Program,
     id: ValueId,
@@ -46,14 +47,14 @@ pub fn describe_value<'n>(
 /// Writer of the formulas of a program.
 struct Formula<'f> {
     program: &'f Program,
-    /// Name that replaces the formula of a value.
+    /// Function that returns the name to print in place of a value's formula, if there is one.
     name: &'f dyn Fn(ValueId) -> Option<String>,
-    /// Largest depth.
+    /// Largest depth of the formula.
     depth: usize,
 }
 
 impl Formula<'_> {
-    /// Returns the formula of a value; None beyond the largest depth.
+    /// Returns the formula of a value; `None` if it exceeds the largest depth.
     fn write(&self, id: ValueId, depth: usize) -> Option<String> {
         if depth > self.depth {
             return None;

@@ -1,7 +1,7 @@
-//! Programs as bytes, for hosts that run a derived model without deriving it.
+//! Encoding of programs as bytes, for hosts that run a derived model without deriving it.
 //!
-//! Numbers of lists are written in groups of seven bits, `f64` numbers as their eight bytes. Texts that only reports
-//! and emitted code show are left out: titles, descriptions and the origin of parameters.
+//! Integers are written in groups of seven bits, `f64` numbers as eight bytes. Texts that appear only in reports and
+//! emitted code are left out: titles, descriptions and the origin of parameters.
 
 use eomgen_elementary::Function as Elementary;
 use eomgen_model_spec::function::Function;
@@ -17,16 +17,17 @@ use crate::program::{
     RowValues, ScaledValue, Value, ValueId, Variable,
 };
 
-/// Value that is written as bytes and read back.
+/// Value that can be written as bytes and read back.
 pub trait Encoded: Sized {
     /// Appends the bytes of the value.
     fn encode(&self, bytes: &mut Vec<u8>);
 
-    /// Reads a value from the start of `bytes`, which then begin after it; `None` if they are damaged.
+    /// Reads a value from the start of `bytes` and removes its bytes from the slice; `None` if the bytes are damaged.
     fn decode(bytes: &mut &[u8]) -> Option<Self>;
 }
 
-/// Encodes structures field by field. Fields after the semicolon are left out and read as their defaults.
+/// Implements [`Encoded`] for structures, field by field. Fields after the semicolon are not written; they get their
+/// defaults when read.
 #[macro_export]
 macro_rules! encode_structures {
     ($($of:ty { $($field:ident),* $(; $($default:ident),*)? })*) => {$(
@@ -43,7 +44,7 @@ macro_rules! encode_structures {
     )*};
 }
 
-/// Encodes enumerations as the number of the variant and its fields.
+/// Implements [`Encoded`] for enumerations: the number of the variant, then its fields.
 macro_rules! encode_enumerations {
     ($($of:ty {
         $($number:literal => $variant:ident $(($($place:ident),*))? $({$($field:ident),*})?,)*
@@ -73,7 +74,7 @@ macro_rules! encode_enumerations {
     )*};
 }
 
-/// Encodes indices as numbers.
+/// Implements [`Encoded`] for index types as integers.
 macro_rules! encode_ids {
     ($($id:ty),*) => {$(
         impl Encoded for $id {
@@ -100,7 +101,7 @@ impl Encoded for u8 {
     }
 }
 
-/// Encoded as the place in the list of all functions, to whose end new ones are added.
+/// A function is encoded as its index in the list of all functions; new functions must be appended to this list.
 impl Encoded for Elementary {
     fn encode(&self, bytes: &mut Vec<u8>) {
         bytes.push(*self as u8);

@@ -1,14 +1,16 @@
-//! Intermediate program of one variant: a list of values in static single assignment, and the values of each
-//! output. Backends use nothing else.
+//! Intermediate program of one variant: a list of values in static single assignment, and the values of each output.
+//! It is the only input of the backends.
 //!
-//! Values that depend only on parameters are prepared once; the others are computed in each call. A value is
-//! a number, a vector or a matrix of fixed size; a scalar operand is repeated for every element. Every
-//! operation has one defined result in IEEE double arithmetic, every sum has a fixed order, and nothing is
-//! contracted, so that all backends compute the same bits.
+//! Values that depend only on parameters are prepared once; the others are computed in each call. A value is a
+//! number, a vector or a matrix of fixed size; a scalar operand is repeated for every element. Every operation has
+//! one defined result in IEEE double arithmetic, every sum has a fixed order, and no operations are contracted.
+//! Therefore the results of all backends are bit-identical.
 //!
-//! `value`, `types`, `domain` and `controllers` define programs, `lowering` builds them from the equations of motion, `evaluator` runs
-//! them, `cholesky` factorises matrices for all backends, `encoding` writes them as bytes, `affine` computes the matrices of a piecewise-linear model, `describe` writes formulas of prepared
-//! values, `content` names values by their content, `trace` has their origin, `units` infers their units, and `operation_count` estimates the cost of a call.
+//! `value`, `types`, `domain` and `controllers` define programs. `lowering` builds programs from the equations of
+//! motion, `evaluator` runs them, and `encoding` writes them as bytes. `cholesky` factorises matrices for all
+//! backends, and `affine` computes the matrices of a piecewise-linear model. `describe` writes formulas of prepared
+//! values, and `content` names values by their content. `trace` stores the terms that contribute to each value,
+//! `units` infers units, and `operation_count` estimates the cost of a call.
 
 #[cfg(feature = "derive")]
 pub mod affine;

@@ -3,9 +3,8 @@
 use crate::program::{Extent, Op, Program, RowValues, ValueId};
 
 impl Program {
-    /// Counts the additions, subtractions, multiplications, divisions, sign changes and selections per call
-    /// that `roots` need, element by element. A function counts as one operation, a sum of n elements as n -
-    /// 1.
+    /// Counts the additions, subtractions, multiplications, divisions, sign changes and selections per call that
+    /// `roots` need, element by element. A function call counts as one operation, a sum of n elements as n - 1.
     pub fn operations(&self, roots: &[ValueId]) -> usize {
         self.per_call(roots)
             .into_iter()
@@ -72,7 +71,7 @@ impl Program {
             | Op::Power(..)
             | Op::Call(..)
             | Op::Select { .. } => value.extent.length(),
-            // A selection and a division.
+            // Each element takes a selection and a division.
             Op::PivotReciprocal(_) => 2 * value.extent.length(),
             Op::Total(vector) => length(*vector).saturating_sub(1),
             Op::Apply { matrix, .. } => 2 * length(*matrix),

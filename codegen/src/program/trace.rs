@@ -1,4 +1,4 @@
-//! Origin of the values of a program: terms of the specification, and units.
+//! Units of the values of a program, and the terms of the specification that contribute to them.
 
 use super::ValueId;
 
@@ -8,7 +8,7 @@ use super::ValueId;
 pub struct Trace {
     /// Terms of the specification.
     pub terms: Vec<TraceTerm>,
-    /// Origin of each value.
+    /// Unit and terms of each value.
     pub values: Vec<ValueTrace>,
 }
 
@@ -21,7 +21,7 @@ pub struct TraceTerm {
     pub name: String,
 }
 
-/// Origin of a value.
+/// Unit and terms of a value.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ValueTrace {
     /// SI unit; `None` if it is not known.
@@ -30,7 +30,7 @@ pub struct ValueTrace {
     pub terms: Vec<usize>,
 }
 
-/// Word for all terms of a section with several.
+/// Placeholder for all terms of a section with several terms.
 const ALL: &str = "*";
 
 impl Trace {
@@ -49,7 +49,8 @@ impl Trace {
         })
     }
 
-    /// Returns the words for terms: `section.name`, and `section.*` for all of several.
+    /// Returns the names of terms as `section.name`. If all terms of a section with several terms are included,
+    /// returns `section.*`.
     fn words(&self, terms: &[usize]) -> Vec<String> {
         let mut words = Vec::new();
         let mut rest = terms;

@@ -35,11 +35,11 @@ pub struct ProgramField {
 /// Switching surface.
 #[derive(Clone, Debug)]
 pub struct ProgramGuard {
-    /// Formula of the function that changes sign, as text.
+    /// Formula of the switching function, as text.
     pub formula: String,
-    /// Value of the function.
+    /// Value of the switching function.
     pub value: ValueId,
-    /// True if the energies jump on the surface, so that rates jump there.
+    /// True if an energy jumps on the surface and makes rates jump.
     pub is_corner: bool,
 }
 
@@ -57,9 +57,9 @@ pub struct MassBlocks {
 /// Values by row: coordinates, then the modes of each field.
 #[derive(Clone, Debug, Default)]
 pub struct RowValues {
-    /// One for each coordinate.
+    /// One scalar for each coordinate.
     pub scalars: Vec<ValueId>,
-    /// One for each field: a vector, or a scalar if all entries are equal.
+    /// One value for each field: a vector, or a scalar if all entries are equal.
     pub modal: Vec<ValueId>,
 }
 
@@ -114,17 +114,18 @@ pub struct Program {
     pub guards: Vec<ProgramGuard>,
     /// Impacts.
     pub impacts: Vec<Impact<ValueId, RowValues>>,
-    /// Prepared pivots, which must be positive for the accelerations to exist.
+    /// Prepared pivots; the accelerations are NaN unless all are positive.
     pub pivots: Vec<ValueId>,
     /// Values of the named coefficients of the specification.
     pub coefficient_values: Vec<ValueId>,
-    /// Units, initial state and ranges, for data of emitted files.
+    /// Units, initial state and ranges, for the data in emitted files.
     pub domain: Domain,
     /// Sampled controllers.
     pub controllers: Vec<ProgramController>,
     /// Requested outputs.
     pub outputs: Outputs<ValueId, RowValues>,
-    /// Origin of the values, for comments; empty unless it was computed.
+    /// Units and terms of the values, for comments; empty unless computed by
+    /// [`Variant::add_trace`](crate::variant::Variant::add_trace).
     pub trace: Trace,
 }
 
@@ -135,9 +136,9 @@ pub struct ProgramTable {
     pub doc: String,
     /// Short name.
     pub name: String,
-    /// Extent.
+    /// Size of the table.
     pub extent: Extent,
-    /// Numbers, row by row.
+    /// Elements, row by row.
     pub values: Vec<f64>,
 }
 
@@ -159,7 +160,7 @@ impl Products<ValueId, RowValues> {
     }
 }
 
-/// Reactions of a program.
+/// Reactions in a step of fixed length, as values of a program.
 pub type ProgramReactions = Reactions<ValueId, RowValues>;
 
 impl ProgramReactions {
@@ -199,8 +200,8 @@ impl ProgramReactions {
 }
 
 impl Program {
-    /// Returns the number of functions and distances of the reactions, and of their effects, coefficients and columns;
-    /// zeros without reactions.
+    /// Returns two lengths: of the functions and distances of the reactions, and of their effects, coefficients and
+    /// columns. Both are 0 without reactions.
     pub fn reaction_sizes(&self) -> [usize; 2] {
         let Some(known) = &self.outputs.reactions else {
             return [0; 2];
@@ -258,12 +259,12 @@ impl Program {
                 .sum::<usize>()
     }
 
-    /// Returns the number of components of time, state, inputs and independent parameters.
+    /// Returns the number of components of a point: time, state, inputs and independent parameters.
     pub fn point_length(&self) -> usize {
         1 + self.states() + self.inputs.len() + self.parameters.len()
     }
 
-    /// Returns the index of a variable in a point; for a field, that of its first mode.
+    /// Returns the index of a variable in a point; for a field, the index of its first mode.
     pub fn point_place(&self, variable: Variable) -> usize {
         let before = match variable {
             Variable::Time => 0,
@@ -274,8 +275,8 @@ impl Program {
         before + self.variable_place(variable)
     }
 
-    /// Returns the index of a variable in the state, among the inputs, or among the independent parameters;
-    /// for a field, that of its first mode.
+    /// Returns the index of a variable in the state, among the inputs, or among the independent parameters; for a
+    /// field, the index of its first mode.
     pub fn variable_place(&self, variable: Variable) -> usize {
         match variable {
             Variable::Coordinate(index) => index.index(),
@@ -315,15 +316,15 @@ impl Program {
             .collect()
     }
 
-    /// Returns true if the mass matrix can become indefinite as the state changes. A pivot computed per call
-    /// then makes the accelerations NaN.
+    /// Returns true if the mass matrix can lose its positive definiteness in some states, because a pivot is computed
+    /// in each call. The accelerations are NaN in such states.
     pub fn may_lose_definiteness(&self) -> bool {
         let is_pivot = |op: &Op| matches!(op, Op::PivotReciprocal(_) | Op::Cholesky(_));
         let accelerations = self.per_call(&self.rate_roots());
         accelerations.iter().any(|id| is_pivot(&self.value(*id).op))
     }
 
-    /// Returns the values that `roots` depend on, without the prepared ones.
+    /// Returns the values that `roots` depend on, without prepared values.
     pub fn per_call(&self, roots: &[ValueId]) -> Vec<ValueId> {
         self.reachable(roots)
             .into_iter()

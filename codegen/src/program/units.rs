@@ -1,4 +1,4 @@
-//! SI units of the values of a program, from those of its quantities.
+//! SI units of the values of a program, inferred from the units of its quantities.
 
 use eomgen_model_spec::dimension::{Dimension, Exponent};
 use eomgen_model_spec::function::Function;
@@ -9,11 +9,11 @@ use super::{Argument, Op, Program, ValueId, Variable};
 /// Unit of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueUnit {
-    /// 0, which fits any unit.
+    /// Unit of the value 0, which is compatible with every unit.
     Any,
-    /// Known unit.
+    /// Dimension of a known unit.
     Known(Dimension),
-    /// Not known.
+    /// Unknown unit.
     Unknown,
 }
 
@@ -34,7 +34,7 @@ impl ValueUnit {
         dimension.map_or(Self::Unknown, Self::Known)
     }
 
-    /// Unit of two summands or alternatives.
+    /// Returns the common unit of two summands or branches.
     fn common(self, other: Self) -> Self {
         match (self, other) {
             (Self::Any, unit) | (unit, Self::Any) => unit,
@@ -69,7 +69,7 @@ impl ValueUnit {
 
 const NUMBER: ValueUnit = ValueUnit::Known(Dimension::DIMENSIONLESS);
 
-/// Infers the unit of each value. Values whose operands disagree have none.
+/// Infers the unit of each value. If the units of the operands are inconsistent, the unit is unknown.
 pub fn infer_units(program: &Program) -> Vec<ValueUnit> {
     let mut units: Vec<ValueUnit> = Vec::with_capacity(program.values.len());
     for value in &program.values {
@@ -96,7 +96,7 @@ fn infer(program: &Program, op: &Op, units: &[ValueUnit]) -> ValueUnit {
             variable_unit(program, *variable).divide(second_squared())
         }
         Op::Argument(Argument::Sides, _) => NUMBER,
-        // Directions and weights have the units of the caller.
+        // The units of directions and weights depend on the caller.
         Op::Argument(..) => ValueUnit::Unknown,
         Op::Negate(a) | Op::Total(a) => of(a),
         Op::Add(a, b) | Op::Subtract(a, b) => of(a).common(of(b)),
@@ -157,7 +157,7 @@ fn second_squared() -> ValueUnit {
     ValueUnit::Known(Dimension::TIME).multiply(ValueUnit::Known(Dimension::TIME))
 }
 
-/// Returns the unit of a power, if its exponent is a fraction with a small denominator.
+/// Returns the unit of a power; it is known if the exponent is a fraction with a small denominator.
 fn power(base: ValueUnit, exponent: f64) -> ValueUnit {
     let fraction = (1..=12).find_map(|denominator| {
         let numerator = exponent * f64::from(denominator);

@@ -24,12 +24,12 @@ pub enum Extent {
     Scalar,
     /// One number for each index.
     Vector(usize),
-    /// Rows times columns, row by row.
+    /// Number of rows and columns; elements are stored row by row.
     Matrix(usize, usize),
 }
 
 impl Extent {
-    /// Returns the count of numbers.
+    /// Returns the number of elements.
     pub fn length(self) -> usize {
         match self {
             Self::Scalar => 1,
@@ -47,8 +47,7 @@ impl Extent {
     }
 }
 
-/// Number of partial sums of a long sum: enough to hide the latency of an addition and to fill the widest
-/// SIMD vectors.
+/// Number of partial sums in a long sum. It hides the latency of additions and fills the widest SIMD registers.
 pub const PARTIAL_SUMS: usize = 8;
 
 /// Operation that computes a value.
@@ -103,11 +102,12 @@ pub enum Op {
     },
     /// 1/a if a > 0, else NaN.
     PivotReciprocal(ValueId),
-    /// Sum of the elements, 0 for none. Each of the first [`PARTIAL_SUMS`] elements begins a partial sum, to
-    /// which every eighth element after it is added in order. Then neighbours are added in pairs until one
-    /// number remains; an odd last number moves on to the next round.
+    /// Sum of the elements; 0 for an empty vector. Each of the first [`PARTIAL_SUMS`] elements starts a partial sum,
+    /// to which every eighth following element is added in order. The partial sums are then added by pairwise
+    /// summation; an unpaired last number is kept for the next round.
     Total(ValueId),
-    /// Matrix, or its transpose, times a vector. Each element is summed from 0 in the order of the products.
+    /// Product of a matrix, or its transpose, and a vector. Each element is a sum that starts from 0, in the order of
+    /// the vector's elements.
     Apply {
         /// Matrix.
         matrix: ValueId,
@@ -116,22 +116,22 @@ pub enum Op {
         /// Vector.
         vector: ValueId,
     },
-    /// left^T diag(weight) right: element (r, c) sums (left_gr * weight_g) * right_gc.
+    /// left^T diag(weight) right: element (r, c) is the sum over g of (left_gr * weight_g) * right_gc.
     Gram {
-        /// Matrix nodes x rows.
+        /// Matrix, quadrature nodes x rows.
         left: ValueId,
-        /// Vector over the nodes.
+        /// Vector over the quadrature nodes.
         weight: ValueId,
-        /// Matrix nodes x columns.
+        /// Matrix, quadrature nodes x columns.
         right: ValueId,
     },
     /// Diagonal of left^T diag(weight) right.
     GramDiagonal {
-        /// Matrix nodes x modes.
+        /// Matrix, quadrature nodes x modes.
         left: ValueId,
-        /// Vector over the nodes.
+        /// Vector over the quadrature nodes.
         weight: ValueId,
-        /// Matrix nodes x modes.
+        /// Matrix, quadrature nodes x modes.
         right: ValueId,
     },
     /// Matrix with element (r, c) = 0 + diagonal + each outer product u_r v_c + each (row_r * matrix_rc) *
@@ -146,11 +146,11 @@ pub enum Op {
     },
     /// Lower Cholesky factor, row by row; the upper part is 0. A pivot that is not positive gives NaN.
     Cholesky(ValueId),
-    /// Forward, then backward substitution with a Cholesky factor, column by column.
+    /// Solution of a system with a Cholesky factor: forward, then backward substitution, column by column.
     CholeskySolve(ValueId, ValueId),
 }
 
-/// diag(row) matrix diag(column)
+/// Scaled matrix diag(row) matrix diag(column).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScaledValue {
     /// Factors of the rows.
@@ -226,8 +226,7 @@ pub struct Value {
     pub op: Op,
     /// Extent.
     pub extent: Extent,
-    /// True if it depends only on parameters and constants, so that it is prepared once for a set of
-    /// parameters.
+    /// True if the value depends only on parameters and constants; `prepare` computes it once per parameter set.
     pub parameter_only: bool,
     /// Name in the specification, if there is one.
     pub name: Option<String>,

@@ -2,7 +2,7 @@
 
 use std::ops::Deref;
 
-/// Arguments of a function in written order, readable as a slice.
+/// Arguments of a function in the order of the call; they dereference to a slice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Arguments<T> {
     /// One argument.
@@ -12,7 +12,7 @@ pub enum Arguments<T> {
 }
 
 impl<T> Arguments<T> {
-    /// Builds arguments from one or two operands; `None` for another number.
+    /// Builds arguments from one or two operands; `None` for any other number of operands.
     pub fn from_operands(operands: Vec<T>) -> Option<Self> {
         let operands = match <[T; 1]>::try_from(operands) {
             Ok(one) => return Some(Self::One(one)),

@@ -1,6 +1,6 @@
-//! Multiplication order of products. Pairs of factors that several products share are multiplied first, the
-//! most frequent pair before all others, so that each is computed once. Other products keep the order of
-//! their factors.
+//! Multiplication order of products. Pairs of factors that several products share are multiplied first, the most
+//! frequent pair before all others; therefore each pair is computed only once. Other products keep the order of their
+//! factors.
 
 use std::collections::{BTreeSet, BinaryHeap, HashMap};
 
@@ -15,14 +15,14 @@ pub(crate) enum Factor {
     Pair(usize),
 }
 
-/// Number times powers of nodes that depend only on parameters.
+/// Number times powers of nodes that depend only on parameters, computed by `prepare`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PreparedFactor {
     pub(crate) number: f64,
     pub(crate) powers: Vec<(NodeId, i32)>,
 }
 
-/// Product with the magnitude of its numeric factor.
+/// Bits of the magnitude of a numeric factor, and the product that it multiplies.
 type ProductKey = (u64, NodeId);
 
 #[derive(Default)]
@@ -36,10 +36,10 @@ pub(crate) struct Association {
 
 type ProductPowers = (u64, Vec<(NodeId, i32)>);
 
-/// Largest number of factors of a reordered product; longer ones have too many pairs to compare.
+/// Largest number of factors of a reordered product; longer products have too many pairs to compare.
 pub(crate) const MAX_FACTORS: usize = 12;
 
-/// Largest exponent of a reordered factor; higher powers use squaring.
+/// Largest exponent of a reordered factor; higher powers are computed by repeated squaring.
 const LARGEST_EXPONENT: i32 = 3;
 
 impl Association {
@@ -57,7 +57,7 @@ impl Association {
         self.pairs[place]
     }
 
-    /// Counts the multiplications per call of all known products, each shared pair once.
+    /// Counts the multiplications per call in all products, with each shared pair counted once.
     fn multiplications(&self, graph: &Graph) -> usize {
         let own = self.seen.iter().map(|&(bits, product)| {
             if let Some(factors) = self.products.get(&(bits, product)) {
@@ -80,7 +80,7 @@ impl Association {
         own.sum::<usize>() + self.pairs.len()
     }
 
-    /// Chooses the orders of all new products that `roots` depend on.
+    /// Determines the multiplication orders of all new products that `roots` depend on.
     pub(crate) fn extend(&mut self, graph: &Graph, roots: &[NodeId]) {
         let keys = product_keys(graph, roots);
         let mut found: Vec<(ProductKey, Vec<Factor>)> = Vec::new();
@@ -149,10 +149,11 @@ impl Association {
     }
 }
 
-/// Cost of a sine or a cosine in operations: they occur in pairs and wait for few operations.
+/// Cost of a sine or a cosine, in additions. It is moderate because both functions of an angle are computed together,
+/// and because they can run in parallel with other operations.
 const TRIG_COST: usize = 20;
 
-/// Counts the operations of scalar nodes per call with shared products. The count decides between two forms.
+/// Counts the operations of scalar nodes per call with shared products, for the selection between two forms.
 pub(crate) fn shared_operations(graph: &Graph, roots: &[NodeId]) -> usize {
     let mut association = Association::default();
     association.extend(graph, roots);
@@ -210,7 +211,7 @@ fn product_keys(graph: &Graph, roots: &[NodeId]) -> Vec<ProductKey> {
 
 type Pair = (Factor, Factor);
 
-/// Products that contain each pair.
+/// Products to be reordered, with the products that contain each pair of factors.
 struct Sharing {
     products: Vec<Vec<Factor>>,
     holders: HashMap<Pair, BTreeSet<usize>>,
@@ -230,7 +231,7 @@ impl Sharing {
         sharing
     }
 
-    /// Replaces the most frequent pair until no pair is shared.
+    /// Repeatedly replaces the most frequent pair by one factor, until no pair is shared.
     fn run(&mut self, pairs: &mut Vec<Pair>) {
         let mut queue: BinaryHeap<(usize, std::cmp::Reverse<Pair>)> = self
             .holders

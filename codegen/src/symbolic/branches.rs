@@ -1,14 +1,15 @@
-//! Nodes that select one of two others.
+//! Nodes that select one of two other nodes.
 
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
-/// Returns, for a node that selects one of two others, a and b of the condition a > b, the node if it is
-/// true, and the node otherwise. A guarded power counts as a power.
+/// Returns [a, b, then, otherwise] for a node that selects `then` if a > b, and `otherwise` if not. Returns `None`
+/// for other nodes and for guarded powers, which count as powers.
 pub(crate) fn choice(graph: &Graph, id: NodeId) -> Option<[NodeId; 4]> {
     match graph.operation(id) {
-        // Differentiated as the power that it guards, so that a missing limit remains visible.
+        // A guarded power is differentiated as the power itself; a derivative without a limit then remains infinite
+        // or NaN.
         _ if graph.guarded_power(id).is_some() => None,
         &Operation::Select {
             a,
@@ -26,7 +27,7 @@ pub(crate) fn choice(graph: &Graph, id: NodeId) -> Option<[NodeId; 4]> {
     }
 }
 
-/// Returns false for a selection between two results that agree near the surface.
+/// Returns true if a node switches at a surface; returns false for a selection between results that agree near a = b.
 pub(crate) fn is_switch(graph: &Graph, id: NodeId) -> bool {
     let is_equivalent = matches!(
         graph.operation(id),

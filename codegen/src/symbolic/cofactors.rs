@@ -1,8 +1,9 @@
-//! Cofactors of bounded terms: zeros of a term of a derivative at zeros of its roots.
+//! Cofactors of bounded terms. They show where a term of a derivative is zero at zeros of the square roots in it.
 //!
-//! The derivative of `norm([v_x, v_y])*v_z` by v_x is v_x v_z/norm. It is bounded by |v_z|, its cofactor, and has
-//! the limit 0 where v_z is 0 as well. A cofactor c of a term f is a continuous node with |f| <= C |c| near zeros
-//! of the roots in f. Each factor of a product cancels one root at most; the factors left are the cofactor.
+//! The derivative of `norm([v_x, v_y])*v_z` by v_x is v_x v_z/norm. It is bounded by |v_z|; v_z is its cofactor.
+//! Where norm and v_z are both 0, the limit is 0. A cofactor c of a term f is a continuous node with |f| <= C |c|
+//! near zeros of the roots in f. Each factor of a product cancels at most one root; the product of the remaining
+//! factors is the cofactor.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -15,8 +16,8 @@ use crate::symbolic::limits::{
 };
 
 impl Graph {
-    /// Returns the cofactor of a node near zeros of the arguments of its roots, or 1 if none is known. `None`
-    /// without a proof that the node is bounded.
+    /// Returns the cofactor of a node near zeros of the arguments of its roots, or 1 if no cofactor is known. Returns
+    /// `None` if the node is not proven to be bounded.
     pub(super) fn cofactor(&mut self, arguments: &Arc<Vec<NodeId>>, id: NodeId) -> Option<NodeId> {
         if !self.has_reciprocal_root(id) {
             return Some(self.factor_that_vanishes(arguments, id));
@@ -56,7 +57,7 @@ impl Graph {
         }
     }
 
-    /// Returns the sum of the squares of the cofactors.
+    /// Returns the cofactor of a sum: the sum of the squares of the cofactors of its terms.
     fn cofactor_of_sum(
         &mut self,
         arguments: &Arc<Vec<NodeId>>,
@@ -98,7 +99,7 @@ impl Graph {
         Some(cofactor)
     }
 
-    /// Adds a factor of a product to the powers of the roots that it divides by, or to its other factors.
+    /// Adds a factor of a product to the list of reciprocal roots or to the list of other factors.
     fn split_reciprocals(
         &mut self,
         arguments: &Arc<Vec<NodeId>>,
@@ -131,7 +132,7 @@ impl Graph {
         Some(())
     }
 
-    /// Divides factors by a product that cancels the reciprocal of a power of `argument`.
+    /// Removes from `factors` a product that cancels the reciprocal of a power of `argument`.
     fn cancel(
         &mut self,
         argument: NodeId,
@@ -155,7 +156,7 @@ impl Graph {
         (power <= EXPONENT_ROUNDING).then_some(())
     }
 
-    /// Returns the node if it is continuous and can be 0 at zeros of the arguments, otherwise 1.
+    /// Returns the node if it is continuous and can be 0 at zeros of the arguments, else 1.
     fn factor_that_vanishes(&mut self, arguments: &Arc<Vec<NodeId>>, id: NodeId) -> NodeId {
         let may_vanish = match self.operation(id).clone() {
             _ if self.dependence(id).is_parameter_only() => false,

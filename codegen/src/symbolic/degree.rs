@@ -1,4 +1,4 @@
-//! Degree of a node in the rates, read off its structure. Shows that a kinetic energy is a quadratic form.
+//! Degree of a node in the rates, from its structure. It proves that a kinetic energy is a quadratic form.
 
 use std::collections::HashMap;
 
@@ -6,7 +6,7 @@ use eomgen_model_spec::model::Function;
 
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 
-/// Returns true if the structure of a node is homogeneous of degree 2 in the rates, so that q' dT/dq' = 2 T.
+/// Returns true if a node is homogeneous of degree 2 in the rates, according to its structure; then q' dT/dq' = 2 T.
 pub fn is_quadratic_in_rates(graph: &Graph, id: NodeId) -> bool {
     graph.is_zero(id) || degree(graph, id, &mut HashMap::new()) == Some(2)
 }
@@ -16,7 +16,8 @@ fn moves(graph: &Graph, id: NodeId) -> bool {
     graph.dependence(id).has(Dependence::RATE)
 }
 
-/// Returns the degree of a homogeneous function of the rates; `None` for another or unrecognised structure.
+/// Returns the degree of a homogeneous function of the rates; `None` if the structure is not recognised as
+/// homogeneous.
 fn degree(graph: &Graph, id: NodeId, known: &mut HashMap<NodeId, Option<i32>>) -> Option<i32> {
     if !moves(graph, id) {
         return Some(0);

@@ -11,16 +11,16 @@ use crate::symbolic::flat::guard_partial;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 use crate::symbolic::node_map::NodeMap;
 
-/// Nodes that vary along a direction. The test precedes the formation of derivatives, because most of an
-/// expression is constant along most directions.
+/// Test for nodes that vary along a direction. It runs before derivatives are built, because most of an expression is
+/// constant along most directions.
 #[derive(Default)]
 pub(super) struct VariationTest {
     pub(super) known: NodeMap<NodeId, bool>,
 }
 
 impl VariationTest {
-    /// Returns true if an operand of `id`, direct or indirect, varies. `leaf` decides for leaves and for
-    /// other nodes that it recognises.
+    /// Returns true if `id` or an operand, direct or indirect, varies. `leaf` returns the answer for leaves and for
+    /// some other nodes, else `None`.
     pub(super) fn has(
         &mut self,
         graph: &Graph,
@@ -47,14 +47,14 @@ impl VariationTest {
 /// Function that returns the derivative of a leaf.
 pub type Tangent<'a> = dyn Fn(&mut Graph, NodeId) -> NodeId + 'a;
 
-/// Direction: derivatives of the leaves of the graph.
+/// Direction of differentiation, given by the derivatives of the leaves of the graph.
 #[derive(Default)]
 pub struct Direction<'a> {
     tangent: Option<&'a Tangent<'a>>,
     known: NodeMap<NodeId, NodeId>,
-    /// Nodes with a given derivative.
+    /// Nodes whose derivatives were set by [`Direction::seed`].
     seeds: Vec<NodeId>,
-    /// True after the removal of seeds with the derivative 0.
+    /// True if seeds with the derivative 0 have been removed.
     has_moving_seeds_alone: bool,
     moving: VariationTest,
 }
@@ -66,7 +66,7 @@ pub(crate) struct KnownDerivatives {
 }
 
 impl<'a> Direction<'a> {
-    /// Creates a direction from the derivative of every leaf that is no parameter (0 for constant ones).
+    /// Creates a direction from the derivatives of all leaves except parameters; constant leaves have derivative 0.
     pub fn new(tangent: &'a Tangent<'a>) -> Self {
         Self {
             tangent: Some(tangent),
@@ -74,7 +74,7 @@ impl<'a> Direction<'a> {
         }
     }
 
-    /// Continues a direction with its known derivatives.
+    /// Creates a direction with derivatives that are known from an earlier use.
     pub(crate) fn resume(tangent: &'a Tangent<'a>, known: KnownDerivatives) -> Self {
         let KnownDerivatives { known, moving } = known;
         Self {
@@ -90,7 +90,7 @@ impl<'a> Direction<'a> {
         KnownDerivatives { known, moving }
     }
 
-    /// Makes `id` a variable with the derivative `tangent`.
+    /// Treats the node `id` as a variable with the derivative `tangent`.
     pub fn seed(&mut self, id: NodeId, tangent: NodeId) {
         self.known.insert(id, tangent);
         self.seeds.push(id);
@@ -107,7 +107,7 @@ impl<'a> Direction<'a> {
         result
     }
 
-    /// Returns true if `id` can have a derivative other than 0. It does not evaluate tangents, which would
+    /// Returns true if `id` can have a derivative other than 0. The test evaluates no tangents, because this would
     /// change the order of nodes in the graph.
     fn is_moving(&mut self, graph: &Graph, id: NodeId) -> bool {
         let (known, tangents) = (&self.known, self.tangent.is_some());
@@ -119,7 +119,7 @@ impl<'a> Direction<'a> {
         let seeds = &self.seeds;
         let is_out_of_reach =
             |id| !tangents && !seeds.iter().any(|seed| graph.may_depend_on(id, *seed));
-        // Most terms of a long sum return here without a lookup.
+        // This bit test rejects most terms of a long sum without a lookup.
         if is_out_of_reach(id) {
             return false;
         }
@@ -185,7 +185,7 @@ impl<'a> Direction<'a> {
     }
 }
 
-/// Differentiates a node by a scalar node: a leaf, or an expression whose operands then count as constant.
+/// Differentiates a node by a scalar node: a leaf, or an expression that is treated as a variable.
 pub fn derive_by_scalar(graph: &mut Graph, id: NodeId, variable: NodeId) -> NodeId {
     let mut direction = Direction::default();
     let one = graph.one();
@@ -193,8 +193,8 @@ pub fn derive_by_scalar(graph: &mut Graph, id: NodeId, variable: NodeId) -> Node
     direction.derivative(graph, id)
 }
 
-/// Differentiates a node that selects one of two others. It selects between the derivatives instead of
-/// multiplying them by 1 and 0, because the derivative of the unused branch can be infinite or NaN.
+/// Selects between the derivatives of two branches. The derivatives are not multiplied by 1 and 0, because the
+/// derivative of the branch not taken can be infinite or NaN.
 pub(super) fn choose(
     graph: &mut Graph,
     id: NodeId,
@@ -211,9 +211,9 @@ pub(super) fn choose(
     graph.select_between([a, b], taken, skipped, is_switch(graph, id))
 }
 
-/// Returns, for an elementwise operation, each varying operand with its partial derivative (for functions
-/// every operand). Matrix operations have none: `matrix_derivatives` differentiates them along a direction,
-/// and they do not vary with the state.
+/// Returns the varying operands of an elementwise operation with their partial derivatives (for functions, all
+/// operands). Matrix operations have no partial derivatives; `matrix_derivatives` differentiates them along a
+/// direction.
 pub(crate) fn partial_derivatives(
     graph: &mut Graph,
     id: NodeId,
@@ -291,7 +291,7 @@ pub(crate) fn partial_derivatives(
     }
 }
 
-/// Replaces guarded powers in a product by powers. Each term of the derivative gets new guards.
+/// Replaces guarded powers in a product by powers, because each term of the derivative gets its own guards.
 fn remove_guards(graph: &Graph, factors: &[(NodeId, i32)]) -> Vec<(NodeId, i32)> {
     let mut collected = BTreeMap::new();
     for &(factor, exponent) in factors {
@@ -316,7 +316,7 @@ fn power_derivatives(
     [(base, by_base), (exponent, by_exponent)]
 }
 
-/// Returns b^e ln(b), with its limit 0 at b = 0 for e > 0. The other branch is NaN if there is no limit.
+/// Returns b^e ln(b), which has the limit 0 at b = 0 for e > 0. Without a limit, the result at b = 0 is NaN.
 fn derive_by_exponent(graph: &mut Graph, power: NodeId, base: NodeId, exponent: NodeId) -> NodeId {
     let logarithm = graph.call(Function::Ln, &[base]);
     let then = graph.multiply(power, logarithm);
@@ -356,7 +356,8 @@ fn function_derivatives(
     }
 }
 
-/// Returns true if a function has an infinite derivative at a point at which its argument may be clipped.
+/// Returns true if a function has an infinite derivative at the boundary of its domain, at which `max` or `min` may
+/// clip its argument.
 fn has_singular_slope(function: Function) -> bool {
     matches!(
         function,
@@ -364,7 +365,7 @@ fn has_singular_slope(function: Function) -> bool {
     )
 }
 
-/// Returns the derivative of a function of one argument; `None` if it is 0 almost everywhere.
+/// Returns the derivative of a function of one argument; `None` if the derivative is 0 almost everywhere.
 fn derivative_of_function(
     graph: &mut Graph,
     id: NodeId,

@@ -1,16 +1,16 @@
-//! Expansion of products, level by level and within bounds. It is applied only to terms that are likely to
-//! cancel, and kept if it saves operations.
+//! Expansion of products, level by level and with limited length. It is applied only to terms that are likely to
+//! cancel, and the result is kept only if it saves operations.
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
-/// Largest number of expanded levels.
+/// Largest number of levels that are expanded.
 pub const MAX_EXPANSIONS: usize = 4;
 
 /// Largest number of terms of an expanded sum.
 const MAX_TERMS: usize = 200;
 
-/// Expands every product with a sum among its factors by one of the sums; `None` if there is no such product,
-/// or if the result is too long.
+/// Expands one sum in every product that has a sum as a factor; `None` if there is no such product, or if the result
+/// is too long.
 pub fn expand_once(graph: &mut Graph, id: NodeId) -> Option<NodeId> {
     let terms: Vec<(f64, NodeId)> = match graph.operation(id) {
         Operation::Sum(terms) => terms.iter().map(|(c, term)| (c.value(), *term)).collect(),
@@ -34,7 +34,7 @@ pub fn expand_once(graph: &mut Graph, id: NodeId) -> Option<NodeId> {
     changed.then(|| graph.combine_flat(&result))
 }
 
-/// Returns true if no term is a product that [`expand_once`] expands.
+/// Returns true if [`expand_once`] would expand no term.
 pub fn is_expanded(graph: &Graph, id: NodeId) -> bool {
     match graph.operation(id) {
         Operation::Sum(terms) => {
@@ -45,7 +45,7 @@ pub fn is_expanded(graph: &Graph, id: NodeId) -> bool {
     }
 }
 
-/// Returns the place of the first sum among the factors of a product, to the first or second power.
+/// Returns the index of the first sum among the factors of a product; its exponent must be 1 or 2.
 fn expandable_factor(graph: &Graph, id: NodeId) -> Option<usize> {
     let Operation::Product(factors) = graph.operation(id) else {
         return None;
@@ -55,7 +55,7 @@ fn expandable_factor(graph: &Graph, id: NodeId) -> Option<usize> {
     })
 }
 
-/// Returns the terms of a product, expanded by one of its sums.
+/// Expands one sum in a product and returns the terms.
 fn expanded_product(graph: &mut Graph, id: NodeId) -> Option<Vec<(f64, NodeId)>> {
     let place = expandable_factor(graph, id)?;
     let Operation::Product(factors) = graph.operation(id) else {

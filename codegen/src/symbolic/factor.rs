@@ -1,5 +1,5 @@
-//! Extraction of common factors of sums. Inner sums with one use are expanded first, so that equal terms
-//! meet.
+//! Extraction of common factors of sums. Inner sums that are used once are expanded first, because their terms can be
+//! equal to other terms.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -11,7 +11,7 @@ use crate::symbolic::substitute::substitute;
 
 type Terms = Vec<(f64, NodeId)>;
 
-/// Extracts common factors of sums if that saves operations.
+/// Extracts common factors of sums if this saves operations.
 pub(crate) fn factor_if_cheaper(graph: &mut Graph, roots: Vec<NodeId>) -> Vec<NodeId> {
     let other = factor_common(graph, &roots);
     if shared_operations(graph, &other) < shared_operations(graph, &roots) {
@@ -57,7 +57,8 @@ fn factor_common(graph: &mut Graph, roots: &[NodeId]) -> Vec<NodeId> {
     roots.iter().map(|root| known[root]).collect()
 }
 
-/// Adds terms; terms that differ only in parameters and numbers are collected: a x + b x = (a + b) x.
+/// Builds a sum of terms. Terms that differ only in factors of parameters and numbers are collected: a x + b x = (a +
+/// b) x.
 pub(crate) fn collect_terms(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
     let mut by_live: BTreeMap<NodeId, Terms> = BTreeMap::new();
     for &(c, term) in terms {
@@ -85,7 +86,7 @@ pub(crate) fn collect_terms(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeI
     graph.combine(&terms)
 }
 
-/// Adds terms, with the most frequent factor extracted first.
+/// Builds a sum of terms and extracts the most frequent factor first.
 fn sum(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
     let combined = graph.combine(terms);
     let Operation::Sum(terms) = graph.operation(combined).clone() else {
@@ -115,8 +116,8 @@ fn sum(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
     graph.combine(&terms)
 }
 
-/// Returns the most frequent factor of at least two terms. Sines and cosines precede equally frequent
-/// factors, because both rows of a rotation then contain the same sums.
+/// Returns the most frequent factor of at least two terms. Among equally frequent factors, sines and cosines are
+/// preferred, because then both rows of a rotation contain the same sums.
 fn most_common_factor(graph: &Graph, terms: &[(f64, NodeId)]) -> Option<NodeId> {
     let mut counts: BTreeMap<NodeId, usize> = BTreeMap::new();
     for (_, term) in terms {
@@ -137,8 +138,8 @@ fn most_common_factor(graph: &Graph, terms: &[(f64, NodeId)]) -> Option<NodeId> 
         .map(|(id, _)| id)
 }
 
-/// Returns the scalar factors of a term that depend on the state and have a positive exponent; none for a
-/// product with too many factors.
+/// Returns the scalar, state-dependent factors of a term with positive exponents; empty for a product with too many
+/// factors.
 fn live_factors(graph: &Graph, term: NodeId) -> Vec<NodeId> {
     let live =
         |id: NodeId| graph.shape(id) == Shape::Scalar && !graph.dependence(id).is_parameter_only();

@@ -1,10 +1,10 @@
-//! Derivatives on the flat side of a switch.
+//! Derivatives on the flat side of a switch, on which the switch makes an expression constant.
 //!
-//! `sqrt(max(x, 0))` is constant for x < 0. Its derivative there is 0, but the chain rule gives 1/sqrt(0)
-//! times 0. The activity of an expression is a node that is 0 on every open set on which a switch makes the
-//! expression constant, and positive elsewhere. A term of a derivative with a possibly infinite factor is 0
-//! if the activity is 0. On the switching surface the activity is positive, so that a derivative without a
-//! limit remains infinite or NaN.
+//! `sqrt(max(x, 0))` is constant for x < 0. Its derivative there is 0, but the chain rule gives 1/sqrt(0) times 0.
+//! The activity of an expression is a node that is 0 on every open set on which a switch makes the expression
+//! constant, and positive elsewhere. A term of a derivative with a factor that can be infinite is set to 0 if the
+//! activity is 0. On the switching surface the activity is positive; therefore a derivative without a limit remains
+//! infinite or NaN.
 
 use std::collections::HashMap;
 
@@ -15,12 +15,12 @@ use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 use crate::symbolic::switches::FlatGuard;
 
 impl Graph {
-    /// Returns the guard represented by a node, if it is one.
+    /// Returns the flat-side guard that a node represents, if there is one.
     pub(crate) fn flat_guard(&self, id: NodeId) -> Option<FlatGuard> {
         self.flat_guards.get(&id).copied()
     }
 
-    /// Guards `inner` like `guard`, unless nothing in `inner` can be infinite.
+    /// Applies the condition of `guard` to `inner`, unless nothing in `inner` can be infinite.
     pub(super) fn guard_flat(&mut self, guard: FlatGuard, inner: NodeId) -> NodeId {
         if self.is_zero(inner) || !(guard.is_permanent || self.has_reciprocal_root(inner)) {
             return inner;
@@ -43,7 +43,7 @@ impl Graph {
         node
     }
 
-    /// Removes the guards of a factor and adds them to `guards`, outermost first.
+    /// Returns a factor without its guards, and adds these to `guards`, outermost first.
     pub(super) fn without_flat_guards(
         &mut self,
         mut id: NodeId,
@@ -69,7 +69,7 @@ impl Graph {
     }
 }
 
-/// Guards `partial`, the derivative of a function at `argument`, if a switch can make `argument` constant.
+/// Guards `partial`, the derivative of a function by `argument`, if a switch can make `argument` constant.
 pub(super) fn guard_partial(
     graph: &mut Graph,
     partial: NodeId,
@@ -91,8 +91,8 @@ pub(super) fn guard_partial(
     graph.guard_flat(guard, partial)
 }
 
-/// Activities and supports of nodes. A support is a node that is 0 on every open set on which a switch makes
-/// the other node 0.
+/// Activities and supports of nodes. The support of a node is another node that is 0 on every open set on which a
+/// switch makes the first node 0.
 struct Activities<'m> {
     moves: &'m mut dyn FnMut(&Graph, NodeId) -> bool,
     activities: HashMap<NodeId, NodeId>,
@@ -123,7 +123,7 @@ impl<'m> Activities<'m> {
         }
         let operation = graph.operation(id).clone();
         let operands = graph.operands(&operation);
-        // The variable itself can be an expression.
+        // The variable of differentiation can be an expression.
         let is_variable = !operands.iter().any(|operand| (self.moves)(graph, *operand));
         if is_variable || !graph.holds_switch(id) {
             return graph.one();
@@ -218,7 +218,7 @@ impl<'m> Activities<'m> {
     }
 }
 
-/// Selects the first branch if a > b and the second if b > a; on the surface, a branch that is not 0.
+/// Selects the first branch if a > b and the second if b > a; if a = b, a branch that is not 0.
 fn strict_select(graph: &mut Graph, a: NodeId, b: NodeId, branches: [NodeId; 2]) -> NodeId {
     let [then, otherwise] = branches;
     if graph.is_zero(otherwise) {
@@ -227,14 +227,14 @@ fn strict_select(graph: &mut Graph, a: NodeId, b: NodeId, branches: [NodeId; 2])
     graph.select(a, b, then, otherwise)
 }
 
-/// Returns 0 if |p| < b, else 1.
+/// Returns a node that is 0 if |p| < b, else 1.
 fn outside_play(graph: &mut Graph, p: NodeId, b: NodeId) -> NodeId {
     let magnitude = graph.call(Function::Abs, &[p]);
     let (zero, one) = (graph.zero(), graph.one());
     graph.select(b, magnitude, zero, one)
 }
 
-/// Returns a node that is positive if any of the nodes is; none of them is negative.
+/// Returns a node that is positive if at least one of the nodes is positive; no node may be negative.
 fn any_positive(graph: &mut Graph, nodes: &[NodeId]) -> NodeId {
     let is_positive = |id: &NodeId| graph.as_constant(*id).is_some_and(|value| value > 0.0);
     if nodes.iter().any(is_positive) {
@@ -244,7 +244,7 @@ fn any_positive(graph: &mut Graph, nodes: &[NodeId]) -> NodeId {
     graph.combine(&terms)
 }
 
-/// Returns the total of `summand` over the elements of `vector`.
+/// Returns the sum of `summand` over the index space of `vector`.
 fn total(graph: &mut Graph, vector: NodeId, summand: NodeId) -> NodeId {
     match graph.shape(vector) {
         Shape::Vector(space) => graph.total_over(space, summand),

@@ -1,8 +1,8 @@
 //! Derivatives of a scalar by all its variables at once.
 //!
 //! Forward mode visits a sum of n variables n times. Reverse accumulation visits it once, and its derivatives are
-//! products of adjoints and partial derivatives. Terms whose limits at zeros of roots matter are formed as in forward
-//! mode: the accumulation stops at every operation whose derivative can be infinite.
+//! products of adjoints and partial derivatives. Reverse accumulation stops at every operation whose derivative can
+//! be infinite; its operands are differentiated in forward mode, which forms the limits at zeros of roots.
 
 use std::collections::BTreeMap;
 
@@ -13,10 +13,10 @@ use crate::symbolic::differentiate::{derive_by_scalar, partial_derivatives};
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape};
 use crate::symbolic::node_map::NodeMap;
 
-/// Variables with the derivatives by them, in the order of the variables' nodes.
+/// Pairs of variable and derivative, in the order of the variables' nodes.
 type Derivatives = Vec<(NodeId, NodeId)>;
 
-/// Returns the leaves with the dependence `by` and the nonzero derivatives of a scalar by them.
+/// Returns the nonzero derivatives of a scalar by all leaves of the kinds `by`, as pairs of leaf and derivative.
 pub(crate) fn derive_by_all(graph: &mut Graph, scalar: NodeId, by: Dependence) -> Derivatives {
     let known = NodeMap::default();
     Gradients { by, known }.derive(graph, scalar)
@@ -32,7 +32,7 @@ impl Gradients {
     fn derive(&mut self, graph: &mut Graph, scalar: NodeId) -> Derivatives {
         let mut adjoints = BTreeMap::from([(scalar, vec![(1.0, graph.one())])]);
         let mut parts = Parts::default();
-        // An operand is older than its uses.
+        // Operands have smaller indices than their uses.
         while let Some((node, received)) = adjoints.pop_last() {
             let adjoint = graph.combine(&received);
             if self.is_variable(graph, node) {
@@ -51,7 +51,7 @@ impl Gradients {
         parts.sum(graph)
     }
 
-    /// Returns the gradient of a node at which the accumulation stops.
+    /// Returns the gradient of a node at which the reverse accumulation stops.
     fn derive_stop(&mut self, graph: &mut Graph, node: NodeId) -> Derivatives {
         if let Some(known) = self.known.get(&node) {
             return known.clone();
@@ -78,7 +78,7 @@ impl Gradients {
         gradient
     }
 
-    /// Returns the operands that depend on the variables, with the partial derivatives by them.
+    /// Returns pairs of operand and partial derivative for all operands that depend on the variables.
     fn partials(&self, graph: &mut Graph, node: NodeId) -> Derivatives {
         let by = self.by;
         let moves = |graph: &Graph, operand: NodeId| graph.dependence(operand).has(by);
@@ -95,7 +95,8 @@ impl Gradients {
         is_scalar && graph.dependence(node).has(self.by)
     }
 
-    /// Returns true for sums, and for products and functions without a singularity.
+    /// Returns true for operations whose partial derivatives are finite: sums, and products and functions without a
+    /// singularity.
     fn has_bounded_slopes(&self, graph: &Graph, node: NodeId) -> bool {
         let is_bounded = match graph.operation(node) {
             Operation::Sum(_) => true,
@@ -112,7 +113,7 @@ impl Gradients {
     }
 }
 
-/// Returns true if [`partial_derivatives`] has the derivatives of a scalar by its operands, all of them scalars.
+/// Returns true if a node and its operands are scalars and [`partial_derivatives`] covers its operation.
 fn is_scalar_function(graph: &Graph, node: NodeId) -> bool {
     let has_partials = matches!(
         graph.operation(node),
@@ -121,7 +122,7 @@ fn is_scalar_function(graph: &Graph, node: NodeId) -> bool {
     has_partials && graph.shape(node) == Shape::Scalar && choice(graph, node).is_none()
 }
 
-/// Contributions to the derivative by each variable.
+/// Contributions to the derivatives, by variable.
 #[derive(Default)]
 struct Parts {
     terms: BTreeMap<NodeId, Vec<(f64, NodeId)>>,
@@ -149,7 +150,7 @@ mod tests {
     use super::*;
     use crate::mechanics::inertia::point::Point;
 
-    /// Returns the derivatives at a state by all variables and, in the same order, by each of them.
+    /// Returns the derivatives at a state computed together and, in the same order, computed one by one.
     fn derive_both(
         state: &[f64],
         scalar: impl Fn(&mut Graph, &[NodeId]) -> NodeId,

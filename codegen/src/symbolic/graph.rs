@@ -1,9 +1,9 @@
-//! Hash-consed expression graph: every distinct expression is stored once, so that differentiation and
-//! emission work on shared parts.
+//! Hash-consed expression graph: every distinct expression is stored once. Differentiation and emission therefore
+//! process shared parts once.
 //!
-//! A node is a scalar, a vector over an index space (a field's modes, or its quadrature nodes) or a matrix
-//! over two of them; element-wise operations broadcast scalars. Sums over modes are single nodes, so the
-//! graph has the same size for any truncation order. `operation` defines the operations, `simplify` their
+//! A node is a scalar, a vector over an index space (a field's modes, or its quadrature nodes) or a matrix over two
+//! of them; element-wise operations broadcast scalars. A sum over modes is a single node; therefore the size of the
+//! graph does not depend on the truncation order. `operation` defines the operations, `simplify` their
 //! simplification, `differentiate` their derivatives.
 
 use std::collections::{HashMap, HashSet};
@@ -23,7 +23,7 @@ struct Node {
     operation: Operation,
     shape: Shape,
     dependence: Dependence,
-    /// Bit set of 64 bits for the variables that the node depends on; variables can share a bit.
+    /// Variables that the node depends on, as a 64-bit set; several variables can share a bit.
     variables: u64,
     critical_path: u32,
     has_reciprocal_root: bool,
@@ -35,7 +35,7 @@ struct Node {
 pub struct Graph {
     nodes: Vec<Node>,
     known: NodeMap<Operation, NodeId>,
-    /// Nodes of 0 and 1, if they exist.
+    /// Nodes of the constants 0 and 1, if they exist.
     pub(super) zero_and_one: [Option<NodeId>; 2],
     tables: Vec<Table>,
     orders: Vec<usize>,
@@ -45,7 +45,7 @@ pub struct Graph {
     names: HashMap<NodeId, String>,
     taken: HashSet<String>,
     pub(crate) orders_at_zeros: Orders,
-    /// Nodes that guard a factor of a derivative on the flat side of a switch.
+    /// Nodes that set a factor of a derivative to 0 on the flat side of a switch; see [`FlatGuard`].
     pub(super) flat_guards: HashMap<NodeId, FlatGuard>,
 }
 
@@ -99,7 +99,7 @@ impl Graph {
         }
     }
 
-    /// Returns the count of numbers in a node of this shape.
+    /// Returns the number of elements of a node of this shape.
     pub fn length(&self, shape: Shape) -> usize {
         match shape {
             Shape::Scalar => 1,
@@ -123,18 +123,18 @@ impl Graph {
         self.nodes[id.0 as usize].dependence
     }
 
-    /// Returns the length of the critical path to a node: the largest number of nested elementary functions
-    /// of the state. Each takes as long as some dozen additions in a row.
+    /// Returns the length of the critical path to a node: the largest number of nested elementary functions of the
+    /// state. Each has the latency of some dozen additions.
     pub fn critical_path(&self, id: NodeId) -> u32 {
         self.nodes[id.0 as usize].critical_path
     }
 
-    /// Returns true if a node contains the reciprocal of a root without a guard at the root's zero.
+    /// Returns true if a node contains the reciprocal of a root that is infinite at the zero of the root.
     pub(crate) fn has_reciprocal_root(&self, id: NodeId) -> bool {
         self.nodes[id.0 as usize].has_reciprocal_root
     }
 
-    /// Returns true if a node depends on a function that switches between sides.
+    /// Returns true if a node contains an operation that switches.
     pub(crate) fn holds_switch(&self, id: NodeId) -> bool {
         self.nodes[id.0 as usize].holds_switch
     }
@@ -302,7 +302,7 @@ impl Graph {
         }
     }
 
-    /// Returns false only if `id` cannot depend on all variables of `of`.
+    /// Returns false only if `id` cannot depend on `of`, because it does not depend on all variables of `of`.
     pub(crate) fn may_depend_on(&self, id: NodeId, of: NodeId) -> bool {
         let [own, needed] = [id, of].map(|id| self.nodes[id.0 as usize].variables);
         own & needed == needed
@@ -413,7 +413,7 @@ impl Graph {
                 waiting.extend(self.operands(self.operation(id)));
             }
         }
-        // Operands are older than their uses.
+        // Operands have smaller indices than their uses.
         found.sort_unstable();
         found
     }

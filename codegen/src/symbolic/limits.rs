@@ -19,14 +19,15 @@ use crate::symbolic::substitute::substitute;
 pub(super) const EXPONENT_ROUNDING: f64 = 1e-9;
 
 impl Graph {
-    /// Returns `partial` times `inner`, a term of a derivative: 0 on the flat side of a switch, and equal to
-    /// its limit at the zero of a root in it.
+    /// Returns `partial` times `inner` as a term of a derivative. The term is 0 on the flat side of a switch, and it
+    /// equals its limit at zeros of roots.
     pub(crate) fn derivative_term(&mut self, partial: NodeId, inner: NodeId) -> NodeId {
         self.guarded_term(None, partial, inner)
     }
 
-    /// Returns the derivative `partial` by an operand times `inner`, the derivative of the operand, as
-    /// [`Graph::derivative_term`]. It is also 0 at [zeros of a smooth factor](super::vanishing_products).
+    /// Returns the derivative `partial` by an operand times `inner`, the derivative of the operand, like
+    /// [`Graph::derivative_term`]. In addition, the term is 0 at [zeros of a smooth
+    /// factor](super::vanishing_products).
     pub(crate) fn chain_rule_term(
         &mut self,
         operand: NodeId,
@@ -75,7 +76,7 @@ impl Graph {
         }
     }
 
-    /// Returns base and exponent of the power that a guarded reciprocal represents away from 0.
+    /// Returns base and exponent of the power that a guarded power equals if the base is not 0.
     pub(crate) fn guarded_power(&self, id: NodeId) -> Option<(NodeId, i32)> {
         self.guarded_power_of(self.operation(id))
     }
@@ -141,7 +142,7 @@ impl Graph {
         }
     }
 
-    /// Returns base s and exponent p of a node c |s|^p with a constant c; opens nested roots and powers.
+    /// Returns base s and exponent p of a node c |s|^p with a constant c; nested roots and powers are resolved.
     pub(super) fn base_power(&self, id: NodeId) -> (NodeId, f64) {
         let (inner, exponent) = match self.operation(id) {
             Operation::Call(Function::Sqrt, a) => (a[0], 0.5),
@@ -230,7 +231,7 @@ impl Graph {
         found
     }
 
-    /// Returns the order of a node in `argument`; negative without a proof that the node is bounded.
+    /// Returns the order of a node in `argument`; the order is negative if the node is not proven to be bounded.
     pub(super) fn order(&mut self, argument: NodeId, id: NodeId) -> f64 {
         if let Some(&known) = self.orders_at_zeros.orders.get(&(argument, id)) {
             return known;
@@ -297,7 +298,7 @@ impl Graph {
         }
     }
 
-    /// Returns 0 for bounded operands, else negative infinity.
+    /// Returns the order 0 if all operands are bounded, else negative infinity.
     fn bounded_order(&mut self, argument: NodeId, operands: &[NodeId]) -> f64 {
         let unbounded = operands.iter().any(|operand| {
             self.has_reciprocal_root(*operand) && self.order(argument, *operand) < 0.0
@@ -305,7 +306,7 @@ impl Graph {
         if unbounded { f64::NEG_INFINITY } else { 0.0 }
     }
 
-    /// Adds the orders of the monomials in a product, and those of its other factors.
+    /// Returns the order of a product: the sum of the orders of the monomials and of the other factors in it.
     fn product_order(
         &mut self,
         argument: NodeId,
@@ -324,7 +325,7 @@ impl Graph {
             order += times * each;
         }
         for (factor, exponent) in sorted(left) {
-            // Without a monomial in it, the order of the node itself is unknown.
+            // A node that contains no monomial has no known order and counts as order 0.
             if own == Some(factor) {
                 continue;
             }
@@ -333,8 +334,8 @@ impl Graph {
         order
     }
 
-    /// Returns the order of a factor. A reciprocal has an order only for powers of the argument, which are bounded
-    /// below.
+    /// Returns the order of a factor. The order of a reciprocal is known only for powers of the argument and for
+    /// factors of order 0.
     fn factor_order(&mut self, argument: NodeId, factor: NodeId, exponent: f64) -> f64 {
         let (base, power) = self.base_power(factor);
         if base == argument {
@@ -375,8 +376,8 @@ impl Graph {
         }
     }
 
-    /// Returns the monomials that vanish with a sum of terms of one sign. `None` if the sum can have terms of
-    /// other signs, or a term of parameters, with which it does not vanish.
+    /// Returns the monomials that are zero wherever a sum of terms with the same sign is zero. Returns `None` if the
+    /// terms can have different signs, or if a term of parameters keeps the sum from being zero.
     pub(super) fn bounds(&mut self, argument: NodeId) -> Option<Bounds> {
         if let Some(known) = self.orders_at_zeros.bounds.get(&argument) {
             return known.clone();
@@ -452,7 +453,8 @@ pub(super) fn vanishes_with_argument(function: Function) -> bool {
         || matches!(function, Function::Abs | Function::Deadzone)
 }
 
-/// Returns the node with all reciprocals of roots of `argument` guarded; with a condition, only where it is 0.
+/// Returns the node with guards on all reciprocals of roots of `argument`. If `condition` is given, the guards act
+/// only where it is 0.
 fn guard(graph: &mut Graph, id: NodeId, argument: NodeId, condition: Option<NodeId>) -> NodeId {
     let replacement = |graph: &mut Graph, node: NodeId| guarded(graph, node, argument, condition);
     substitute(graph, id, &replacement, &mut HashMap::new())
@@ -503,7 +505,7 @@ fn guarded(
     Some(graph.product(&rebuilt))
 }
 
-/// Returns the reciprocal, or 0 if the root and the condition are 0.
+/// Returns a node that is 0 if the root and the condition are 0, else the reciprocal of the root.
 fn guarded_reciprocal(
     graph: &mut Graph,
     root: NodeId,
@@ -518,7 +520,7 @@ fn guarded_reciprocal(
     }
 }
 
-/// Returns the largest power of a monomial that divides a product.
+/// Returns the largest exponent with which a power of the monomial divides a product.
 pub(super) fn held_times(monomial: &Monomial, product: &HashMap<NodeId, f64>) -> f64 {
     let held = |(node, exponent): &(NodeId, f64)| product.get(node).map_or(0.0, |n| n / exponent);
     let times = monomial.iter().map(held);

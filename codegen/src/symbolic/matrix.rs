@@ -1,11 +1,11 @@
-//! Structured matrices over modes: a diagonal, outer products of vectors and scaled tables. Modal mass
-//! matrices have this form: diagonal for a uniform beam, plus an outer product for a tip mass, plus a table
-//! for a basis that is not orthogonal.
+//! Structured matrices over modes: sums of a diagonal, outer products of vectors and scaled tables. Modal mass
+//! matrices have this form. A uniform beam gives a diagonal, a tip mass adds an outer product, and a basis that is
+//! not orthogonal adds a table.
 
 use crate::symbolic::graph::{Assembly, Graph, NodeId, Operation, ScaledMatrix, Shape, Space};
 
 impl Assembly {
-    /// Returns the terms of this matrix times a vector.
+    /// Returns the terms of the product of this matrix and a vector.
     pub(crate) fn multiply_vector(&self, graph: &mut Graph, vector: NodeId) -> Vec<NodeId> {
         let mut parts = Vec::new();
         if let Some(diagonal) = self.diagonal {
@@ -25,7 +25,7 @@ impl Assembly {
     }
 }
 
-/// Matrix diagonal + sum of u v^T + sum of diag(row) matrix diag(column).
+/// Structured matrix: diagonal + sum of u v^T + sum of diag(row) matrix diag(column).
 #[derive(Clone, Debug)]
 pub struct StructuredMatrix {
     /// Index space of the rows.
@@ -88,7 +88,7 @@ impl StructuredMatrix {
         }
     }
 
-    /// Adds diag(scale) other, a term of a derivative.
+    /// Adds diag(scale) times `other`.
     pub fn add_scaled(&mut self, graph: &mut Graph, scale: NodeId, other: &Self) {
         if graph.is_zero(scale) {
             return;
@@ -129,7 +129,7 @@ impl StructuredMatrix {
             result.add_outer(graph, applied, v);
         }
         for inner in &self.matrices {
-            // Only shapes at quadrature nodes occur here: Phi^T diag(row) Phi.
+            // The only such products are those of mode shapes at quadrature nodes, Phi^T diag(row) Phi.
             let product = graph.intern(Operation::Gram {
                 left: matrix,
                 weight: inner.row,
@@ -145,7 +145,7 @@ impl StructuredMatrix {
         result
     }
 
-    /// Solves a system by its Cholesky factor with this matrix as the right-hand side.
+    /// Solves a system with a given Cholesky factor and this matrix as the right-hand side.
     pub fn solve_with_factor(&self, graph: &mut Graph, factor: NodeId) -> Self {
         let mut result = Self::zero(self.rows, self.columns);
         for &(u, v) in &self.outer {
@@ -169,8 +169,8 @@ impl StructuredMatrix {
         result
     }
 
-    /// Returns the row vector of column sums: the gradient of a vector's total, if this is the vector's
-    /// Jacobian.
+    /// Returns the column sums as a vector. If this matrix is the Jacobian of a vector, they are the gradient of the
+    /// sum of its elements.
     pub fn column_totals(&self, graph: &mut Graph) -> NodeId {
         let mut terms = Vec::new();
         if let Some(diagonal) = self.diagonal {
@@ -187,7 +187,7 @@ impl StructuredMatrix {
         graph.combine(&terms)
     }
 
-    /// Returns the parts as the operand of a node.
+    /// Returns the parts as the operand of [`Operation::Assemble`].
     pub fn assembly(&self) -> Assembly {
         Assembly {
             rows: self.rows,

@@ -1,9 +1,10 @@
-//! Expressions as nodes of one hash-consed graph, with all operations on them that need no mechanics.
+//! Expressions as nodes of one hash-consed graph, with all operations that do not depend on mechanics.
 //!
 //! - Nodes: `graph` and `node_map` store them, `operation`, `variable` and `arguments` define them, `simplify` applies
 //!   algebraic laws in their constructors, `tables` and `table_text` hold constants of a basis.
-//! - Derivatives: `differentiate`, `gradient`, `modal_derivative` and `matrix` keep the structure; `limits`, `cofactors`,
-//!   `vanishing_products` and `orders` handle zeros of roots, `switches`, `branches` and `flat` operations that switch.
+//! - Derivatives: `differentiate`, `gradient`, `modal_derivative` and `matrix` keep the structure; `limits`,
+//!   `cofactors`, `vanishing_products` and `orders` treat zeros of roots; `switches`, `branches` and `flat` treat
+//!   operations that switch.
 //! - Transformations: `substitute`, `expand`, `factor`, `trigonometry` and `association` (multiplication
 //!   order), with `degree` and `operation_count` to compare forms.
 //! - `formula` prints nodes.

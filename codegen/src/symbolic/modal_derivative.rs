@@ -105,7 +105,7 @@ impl ModalDerivative {
         matrix
     }
 
-    /// Returns the Jacobian of M x with x, the solution of M x = right, held; M depends on the modes.
+    /// Returns the Jacobian of M x for constant x, where x solves M x = right and M depends on the modes.
     fn matrix_product_jacobian(
         &mut self,
         graph: &mut Graph,

@@ -1,5 +1,5 @@
-//! Maps with nodes or operations as keys. A derivation performs millions of lookups with trusted keys, so
-//! that a few operations per word suffice as hash (FxHash of Firefox and rustc).
+//! Hash maps with nodes or operations as keys. A derivation performs millions of lookups, and the keys are trusted.
+//! Therefore a fast hash without protection against collisions suffices (FxHash of Firefox and rustc).
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -12,7 +12,7 @@ pub(crate) struct WordHasher {
     state: u64,
 }
 
-/// Odd number without a bit pattern.
+/// Odd multiplier with irregular bits.
 const MULTIPLIER: u64 = 0xf135_7aea_2e62_a9c5;
 
 impl Hasher for WordHasher {
@@ -41,7 +41,7 @@ impl Hasher for WordHasher {
     }
 
     fn finish(&self) -> u64 {
-        // The high bits of a product depend on all bits of its factors; hash tables use the low ones.
+        // The high bits of a product depend on all bits of its factors, but hash tables use the low bits.
         self.state.rotate_left(26)
     }
 }

@@ -6,7 +6,7 @@ use eomgen_model_spec::model::Function;
 use crate::symbolic::arguments::Arguments;
 pub use crate::symbolic::variable::{Argument, Variable};
 
-/// Node of a graph.
+/// Index of a node in a graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct NodeId(pub(crate) u32);
 
@@ -42,7 +42,7 @@ pub enum Shape {
 pub struct Bits(u64);
 
 impl Bits {
-    /// Converts a number; -0 becomes 0, so that both are one constant.
+    /// Converts a number; -0 becomes 0, so both are the same constant.
     pub fn new(value: f64) -> Self {
         Self((value + 0.0).to_bits())
     }
@@ -85,7 +85,7 @@ pub enum Operation {
     Product(Box<[(NodeId, i32)]>),
     /// Function applied element by element.
     Call(Function, Arguments<NodeId>),
-    /// Real power `base^exponent`; the exponent is no integer literal.
+    /// Real power `base^exponent`; the exponent is not an integer constant.
     Power(NodeId, NodeId),
     /// `if a > b { then } else { otherwise }`.
     Select {
@@ -97,7 +97,7 @@ pub enum Operation {
         then: NodeId,
         /// Result otherwise.
         otherwise: NodeId,
-        /// False if both results agree near a = b, so that this is no switching surface.
+        /// True if a = b is a switching surface; false if both results agree near a = b.
         is_switch: bool,
     },
     /// Sum of a vector's elements.
@@ -113,28 +113,28 @@ pub enum Operation {
     },
     /// left^T diag(weight) right, for tables over quadrature nodes.
     Gram {
-        /// Matrix nodes x modes.
+        /// Matrix, quadrature nodes x modes.
         left: NodeId,
-        /// Vector over the nodes.
+        /// Vector over the quadrature nodes.
         weight: NodeId,
-        /// Matrix nodes x modes.
+        /// Matrix, quadrature nodes x modes.
         right: NodeId,
     },
     /// Diagonal of left^T diag(weight) right.
     GramDiagonal {
-        /// Matrix nodes x modes.
+        /// Matrix, quadrature nodes x modes.
         left: NodeId,
-        /// Vector over the nodes.
+        /// Vector over the quadrature nodes.
         weight: NodeId,
-        /// Matrix nodes x modes.
+        /// Matrix, quadrature nodes x modes.
         right: NodeId,
     },
     /// Matrix assembled from a diagonal, outer products u v^T and matrices with scaled rows and columns.
     Assemble(Box<Assembly>),
     /// Lower Cholesky factor of a symmetric positive definite matrix; NaN if a pivot is not positive.
     Cholesky(NodeId),
-    /// Solution of a system by its Cholesky factor. The right-hand side is a vector, a repeated scalar, or a
-    /// matrix.
+    /// Solution of a system with a given Cholesky factor (first operand). The right-hand side is a vector, a scalar
+    /// for all elements, or a matrix.
     CholeskySolve(NodeId, NodeId),
     /// Reciprocal of a pivot, NaN if it is not positive.
     PivotReciprocal(NodeId),
@@ -186,12 +186,12 @@ impl Dependence {
         Self(self.0 | other.0)
     }
 
-    /// Returns true if it includes one of `kinds`.
+    /// Returns true if the node depends on one of `kinds`.
     pub fn has(self, kinds: Self) -> bool {
         self.0 & kinds.0 != 0
     }
 
-    /// Returns true if it includes only parameters and constants.
+    /// Returns true if the node depends only on parameters and constants.
     pub fn is_parameter_only(self) -> bool {
         self.0 & !Self::PARAMETER.0 == 0
     }

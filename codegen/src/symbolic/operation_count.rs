@@ -1,4 +1,4 @@
-//! Number of operations of nodes per call, by which expansions and elimination orders are compared.
+//! Number of operations per call, for the comparison of expansions and elimination orders.
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 

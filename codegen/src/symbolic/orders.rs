@@ -8,7 +8,7 @@ use crate::symbolic::operation::NodeId;
 /// Powers of nodes.
 pub(crate) type Monomial = Vec<(NodeId, f64)>;
 
-/// Monomials with their orders in s: |monomial| <= C s^order.
+/// Monomials with their orders in the argument s of a root: |monomial| <= C |s|^order near s = 0.
 pub(crate) type Bounds = Arc<Vec<(Monomial, f64)>>;
 
 #[derive(Default, Clone)]

@@ -35,7 +35,7 @@ impl Graph {
         made
     }
 
-    /// Returns the value of a constant node, None for others.
+    /// Returns the value of a constant node; `None` for other nodes.
     pub fn as_constant(&self, id: NodeId) -> Option<f64> {
         match self.operation(id) {
             Operation::Constant(bits) => Some(bits.value()),
@@ -71,7 +71,7 @@ impl Graph {
     /// Returns a linear combination. Laws: numbers are folded, c (k a) = (c k) a, equal nodes are collected;
     /// an inner sum remains a node.
     pub fn combine(&mut self, terms: &[(f64, NodeId)]) -> NodeId {
-        // No law changes a single term that is no product.
+        // No law applies to a single term that is not a product.
         if let [(1.0, only)] = *terms
             && !matches!(self.operation(only), Operation::Product(_))
         {
@@ -84,7 +84,7 @@ impl Graph {
         self.sum_of(collected)
     }
 
-    /// Returns a linear combination with inner sums expanded, so that equal terms cancel across them.
+    /// Returns a linear combination with inner sums expanded, because terms of different sums can cancel.
     pub fn combine_flat(&mut self, terms: &[(f64, NodeId)]) -> NodeId {
         let mut collected = BTreeMap::new();
         for &(factor, id) in terms {
@@ -164,7 +164,7 @@ impl Graph {
 
     /// Returns a b.
     pub fn multiply(&mut self, a: NodeId, b: NodeId) -> NodeId {
-        // 0 times an infinite number is not 0.
+        // A product of 0 and an infinite constant is not 0.
         let holds_number = |id| match self.operation(id) {
             Operation::Constant(_) => true,
             Operation::Sum(terms) => terms.len() == 1,
@@ -187,9 +187,9 @@ impl Graph {
         self.product(&[(a, exponent)])
     }
 
-    /// Returns a product of integer powers. Laws: numeric factors move in front of the product, inner
-    /// products are expanded, (a^m)^n = a^(m n), equal factors are collected, a^0 = 1. Inner products are not
-    /// expanded if an exponent would become too large.
+    /// Returns a product of integer powers. Laws: numeric factors are moved in front of the product, inner products
+    /// are merged, (a^m)^n = a^(m n), equal factors are collected, a^0 = 1. Inner products are not merged if an
+    /// exponent would become too large.
     pub fn product(&mut self, factors: &[(NodeId, i32)]) -> NodeId {
         let (number, mut collected) = match self.collect_nested_factors(factors) {
             Some(opened) => opened,
@@ -209,7 +209,7 @@ impl Graph {
         self.scale(number, product)
     }
 
-    /// Returns the number and the powers of a product; `None` if an exponent is too large.
+    /// Returns the numeric factor and the powers of a product; `None` if an exponent is too large.
     fn collect_nested_factors(
         &self,
         factors: &[(NodeId, i32)],
@@ -255,8 +255,8 @@ impl Graph {
         Some(())
     }
 
-    /// Laws: contact^n = contact for n > 0, and deadzone(p, b)^n contact(p, b) = deadzone(p, b)^n, because
-    /// the force of Eq. (7) vanishes without contact.
+    /// Laws: contact^n = contact for n > 0, and deadzone(p, b)^n contact(p, b) = deadzone(p, b)^n, because the force
+    /// of Eq. (7) is zero without contact.
     fn apply_piecewise_laws(&mut self, factors: &mut BTreeMap<NodeId, i32>) {
         let contacts: Vec<(NodeId, Arguments<NodeId>)> = factors
             .keys()
@@ -292,8 +292,8 @@ impl Graph {
         }
     }
 
-    /// Returns a function of scalars or vectors. Laws: exact values of simple numbers are computed; odd
-    /// functions move a minus sign out, even ones drop it; min(a, a) = max(a, a) = a.
+    /// Returns a function of scalars or vectors. Laws: functions of constants with an exact result are evaluated;
+    /// f(-a) = -f(a) for odd functions and f(-a) = f(a) for even functions; min(a, a) = max(a, a) = a.
     pub fn call(&mut self, function: Function, arguments: impl Into<Arguments<NodeId>>) -> NodeId {
         let arguments = arguments.into();
         if let (Function::Min | Function::Max, [a, b]) = (function, &arguments[..])
@@ -317,7 +317,7 @@ impl Graph {
         self.intern(Operation::Call(function, arguments))
     }
 
-    /// Returns a for -a, None for other nodes.
+    /// Returns a for a node -a; `None` for other nodes.
     fn without_minus(&mut self, id: NodeId) -> Option<NodeId> {
         match self.operation(id).clone() {
             Operation::Sum(terms) if terms.iter().all(|(factor, _)| factor.value() < 0.0) => {
@@ -333,7 +333,7 @@ impl Graph {
         self.combine(&negated)
     }
 
-    /// Returns `if a > b { then } else { otherwise }`. Law: equal branches need no selection.
+    /// Returns `if a > b { then } else { otherwise }`. Law: a selection between equal branches is the branch.
     pub fn select(&mut self, a: NodeId, b: NodeId, then: NodeId, otherwise: NodeId) -> NodeId {
         self.select_between([a, b], then, otherwise, true)
     }
@@ -375,8 +375,7 @@ impl Graph {
             .partition(|(id, _)| self.shape(*id) == Shape::Scalar)
     }
 
-    /// Returns the sum of a vector's elements. Laws: scalar factors move in front of the sum, an empty sum is
-    /// 0.
+    /// Returns the sum of a vector's elements. Laws: scalar factors are moved in front of the sum; an empty sum is 0.
     pub fn total(&mut self, vector: NodeId) -> NodeId {
         let Shape::Vector(space) = self.shape(vector) else {
             return vector;
@@ -414,10 +413,10 @@ impl Graph {
         }
     }
 
-    /// Returns a matrix, or its transpose, times a vector or repeated scalar. Laws: scalar factors of the
-    /// vector move in front; empty spaces and zero vectors give 0. left^T diag(weight) right with a moving
-    /// weight is applied factor by factor, which takes fewer operations than the matrix and can be
-    /// differentiated.
+    /// Returns a matrix, or its transpose, times a vector or repeated scalar. Laws: scalar factors of the vector are
+    /// moved in front; empty spaces and zero vectors give 0. If the weight of left^T diag(weight) right depends on
+    /// the state, the three factors are applied one after the other. This takes fewer operations than forming the
+    /// matrix, and it can be differentiated.
     pub fn apply(&mut self, matrix: NodeId, transposed: bool, vector: NodeId) -> NodeId {
         let Shape::Matrix(rows, columns) = self.shape(matrix) else {
             return self.zero();
@@ -460,7 +459,8 @@ impl Graph {
         }
     }
 
-    /// Returns the solution of a system by its Cholesky factor. Law: 0 for 0.
+    /// Returns the solution of a system with a given Cholesky factor. Law: the solution is 0 if the right-hand side
+    /// is 0.
     pub fn cholesky_solve(&mut self, factor: NodeId, vector: NodeId) -> NodeId {
         if self.is_zero(vector) {
             return vector;
@@ -480,7 +480,7 @@ impl Graph {
 /// Largest exponent of collected equal factors.
 const MAX_EXPONENT: i32 = 4096;
 
-/// Collects equal factors without expanding inner products.
+/// Collects equal factors without merging inner products.
 fn collect_equal_factors(factors: &[(NodeId, i32)]) -> BTreeMap<NodeId, i32> {
     let mut collected = BTreeMap::new();
     for &(id, exponent) in factors {
@@ -489,7 +489,7 @@ fn collect_equal_factors(factors: &[(NodeId, i32)]) -> BTreeMap<NodeId, i32> {
     collected
 }
 
-/// Computes value^exponent by repeated multiplication: `powi` may round differently on other machines.
+/// Computes value^exponent by repeated multiplication, because `powi` may round differently on other machines.
 fn power_of_number(value: f64, exponent: i32) -> f64 {
     let magnitude = (0..exponent.unsigned_abs()).fold(1.0, |product, _| product * value);
     if exponent < 0 {

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
-/// Replaces every node in `id` for which `replacement` returns another one. Matrix factors, which depend only
-/// on parameters, are kept.
+/// Replaces every node in the expression `id` for which `replacement` returns another node. Matrix factors are kept,
+/// because they depend only on parameters.
 pub fn substitute(
     graph: &mut Graph,
     id: NodeId,

@@ -1,5 +1,5 @@
-//! Descriptions of tables of constants: as plain text, LaTeX, documentation, and as the name of a constant in
-//! emitted code.
+//! Descriptions of tables of constants as plain text, LaTeX and documentation, and names of the tables in emitted
+//! code.
 
 use crate::symbolic::tables::{Table, TableKind};
 
@@ -15,8 +15,7 @@ fn power_of_s(power: u32) -> String {
     }
 }
 
-/// Returns the content of a table in plain text. Integrals are over s from 0 to 1, primes are derivatives by
-/// s.
+/// Returns the content of a table in plain text. Integrals are over s from 0 to 1; primes denote derivatives by s.
 pub fn plain(kind: TableKind) -> String {
     match kind {
         TableKind::Wavenumber => "betal_i".to_owned(),
@@ -112,7 +111,7 @@ pub fn doc(table: &Table) -> String {
     }
 }
 
-/// Returns the name of a table as a constant.
+/// Returns the name of the constant for a table in emitted code.
 pub fn constant_name(table: &Table) -> String {
     let derivative = |d: u8| {
         if d == 0 {

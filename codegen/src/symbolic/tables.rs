@@ -21,14 +21,14 @@ pub enum TableKind {
     ShapeAtStart(u8),
     /// phi_r^(a)(1), a vector over the modes.
     ShapeAtEnd(u8),
-    /// phi_r^(a)(s) at a fixed position in a table of shapes, a vector over the modes.
+    /// phi_r^(a)(s) of tabulated shapes at a fixed position, a vector over the modes.
     ShapeAtPlace {
         /// Bits of s.
         bits: u64,
         /// a
         derivative: u8,
     },
-    /// 1 for the mode of this number, from 1 on, and 0 for all others, a vector over the modes.
+    /// 1 for the mode with this number (from 1), 0 for all other modes; a vector over the modes.
     Indicator(usize),
     /// Integral of s^k phi_r^(a), a vector over the modes.
     Moment {
@@ -88,11 +88,12 @@ impl Table {
     }
 }
 
-/// Returns the number of Gauss-Legendre nodes for products of `degree` modes up to `order`; at least two modes count.
+/// Returns the number of Gauss-Legendre nodes for products of `degree` mode shapes up to `order`; a degree below 2
+/// counts as 2.
 ///
-/// A product of p shapes with wave numbers beta l < pi (order + 1/2) has phases up to p pi order/2 on [-1, 1].
-/// A rule of n nodes is exact to degree 2 n - 1, and the Legendre coefficients of such a wave vanish a few
-/// dozen degrees past p pi order/2, which is less than 2 n = 2 p order + 64.
+/// A product of p shapes with wave numbers beta l < pi (order + 1/2) has phases up to p pi order/2 on [-1, 1]. A rule
+/// of n nodes is exact up to the degree 2 n - 1. The Legendre coefficients of such a wave are negligible from a few
+/// dozen degrees above p pi order/2. This is less than 2 n = 2 p order + 64.
 pub fn quadrature_size(order: usize, degree: u32) -> usize {
     degree.max(2) as usize * order + 32
 }

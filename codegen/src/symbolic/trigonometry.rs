@@ -1,6 +1,6 @@
-//! Addition theorems for sums of products of sines and cosines, such as cos a cos b + sin a sin b = cos(a -
-//! b). They need an expansion and are no laws of the constructors; the caller compares the operations of both
-//! forms.
+//! Addition theorems for sums of products of sines and cosines, such as cos a cos b + sin a sin b = cos(a - b). They
+//! need an expansion; therefore the constructors of nodes do not apply them. The caller compares the operations of
+//! both forms.
 
 use std::collections::BTreeMap;
 
@@ -10,11 +10,11 @@ use crate::symbolic::expand::{expand_once, is_expanded};
 use crate::symbolic::factor::collect_terms;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
-/// Largest number of expanded levels.
+/// Largest number of levels that are expanded.
 const MAX_LEVELS: usize = 12;
 
-/// Expands a node and applies the addition theorems to its terms. Returns `None` if the expansion is too long: terms
-/// that cancel meet only in a complete one.
+/// Expands a node and applies the addition theorems to its terms. Returns `None` if the complete expansion is too
+/// long.
 pub(crate) fn with_sums_of_angles(graph: &mut Graph, node: NodeId) -> Option<NodeId> {
     let mut expanded = node;
     let mut levels = 0;
@@ -103,9 +103,8 @@ fn merge_pair(
     (_, second, b): (NodeId, Function, NodeId),
 ) -> (f64, NodeId) {
     let same = factor == other;
-    // sin a sin b and cos a cos b with equal signs give cos(a - b), with opposite signs cos(a + b) with the
-    // sign of the cosines. sin a cos b and cos a sin b give sin(a + b), or sin(a - b) with the sign of the
-    // first.
+    // sin a sin b + cos a cos b = cos(a - b), and cos a cos b - sin a sin b = cos(a + b). sin a cos b + cos a sin b =
+    // sin(a + b), and sin a cos b - cos a sin b = sin(a - b).
     let alike = first == second;
     let sum = alike != same;
     let angle = graph.combine_flat(&[(1.0, a), (if sum { 1.0 } else { -1.0 }, b)]);

@@ -1,17 +1,17 @@
 //! Derivatives of products at zeros of a smooth factor.
 //!
-//! Let A be continuous at a point and B vanish there with |B| <= C |dx|, as a Lipschitz function does. Then A B has
-//! the derivative A dB there, because A B = A(0) B + o(|dx|). The other term of the product rule, B dA, is 0, also if
-//! dA is infinite: `sqrt(norm([v_x, v_y]))*v_z` has the derivative 0 at rest. The reciprocals of roots in B dA are
-//! therefore guarded where the roots and B are 0. Elsewhere they remain infinite.
+//! Let A be continuous at a point, and let B be zero there with |B| <= C |dx|, as for a Lipschitz function. Then A B
+//! has the derivative A dB at this point, because A B = A(0) B + o(|dx|). The other term of the product rule, B dA,
+//! is 0 even if dA is infinite. For example, `sqrt(norm([v_x, v_y]))*v_z` has the derivative 0 at rest. Therefore the
+//! reciprocals of roots in B dA are set to 0 where the roots and B are 0. Elsewhere they remain infinite.
 
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
 impl Graph {
-    /// Returns a factor of `partial`, the derivative of a node by its `operand`, whose zeros are zeros of the term
-    /// with the derivative of `operand`. `None` if no such factor is known.
+    /// Returns a factor of `partial`, the derivative of a node by its `operand`. Where this factor is zero, `partial`
+    /// times the derivative of `operand` is zero. Returns `None` if no such factor is known.
     pub(super) fn vanishing_factor(&mut self, operand: NodeId, partial: NodeId) -> Option<NodeId> {
         if self.has_reciprocal_root(operand)
             || self.has_reciprocal_root(partial)

@@ -17,13 +17,13 @@ pub enum Variable {
     State(StateId),
     /// Input.
     Input(InputId),
-    /// Parameter; in a program, the index among the independent ones.
+    /// Parameter; in a program, its index among the independent parameters.
     Parameter(ParameterId),
     /// Time.
     Time,
 }
 
-/// Additional argument of an output: a number for each of its variables.
+/// Additional argument of an output, with one number for each variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Argument {
     /// Accelerations, in the order of the coordinates.
@@ -34,6 +34,7 @@ pub enum Argument {
     PointDirection,
     /// Weight of each rate of the state, in the order of the state.
     Weights,
-    /// Sides of the frictions that can hold the motion, 0 to 1; as variable, the input with the number of the friction.
+    /// Sides of the frictions that can stick, from 0 to 1. The variable is the input whose index is the index of the
+    /// friction.
     Sides,
 }

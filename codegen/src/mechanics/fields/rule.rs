@@ -16,8 +16,8 @@ pub struct FieldRule {
 }
 
 impl FieldRule {
-    /// Returns the rule of a field at an order. The knots are both ends, the rows of a shape table, and the [fixed
-    /// breaks](fixed_breaks) of coefficients.
+    /// Returns the rule of a field at an order. The knots are both ends, the rows of a shape table, and the positions
+    /// at which coefficients switch if they are fixed fractions of the length.
     pub fn new(model: &Model, field: FieldId, order: usize) -> Self {
         let basis = &model.fields[field].basis;
         let nodes_of_a_piece = nodes_of_a_piece(basis, order, highest_degree(model, field));

@@ -1,12 +1,12 @@
-//! Bounds of observables, switching functions and distances at impacts over a stretch of a motion, by interval
-//! arithmetic with rates (R. E. Moore, *Methods and Applications of Interval Analysis*, mean-value form).
+//! Bounds of observables, switching functions and distances of impacts over a time interval, by interval arithmetic
+//! with rates (R. E. Moore, *Methods and Applications of Interval Analysis*, mean-value form).
 
 use super::bounds_memory::BoundsMemory;
 use super::enclosure::Enclosure;
 use super::{Evaluator, Stage};
 use crate::program::{Arguments, Extent, Op, ValueId};
 
-/// Stretch of a motion: bounds of time (rate 1), state and inputs.
+/// Bounds of time, state and inputs over a time interval.
 #[derive(Clone, Copy, Debug)]
 pub struct Stretch<'a> {
     /// Time in s.
@@ -25,7 +25,7 @@ impl Evaluator {
         self.copy_bounds(guards, out);
     }
 
-    /// Writes the bounds of the distances at impacts to `out`, one entry for each impact.
+    /// Writes the bounds of the distances of impacts to `out`, one entry for each impact.
     pub fn bound_distances(&mut self, stretch: &Stretch<'_>, out: &mut [Enclosure]) {
         self.compute_bounds(Stage::Distances, stretch);
         let distances = self.program.impacts.iter().map(|impact| impact.distance);
@@ -63,7 +63,7 @@ impl Evaluator {
         self.stages[stage as usize] = steps;
     }
 
-    /// Returns the bounds of an element of a value; scalars are repeated.
+    /// Returns the bounds of an element of a value; a scalar has the same bounds for all indices.
     fn bound(&self, id: ValueId, index: usize) -> Enclosure {
         let value = self.program.value(id);
         if value.parameter_only {

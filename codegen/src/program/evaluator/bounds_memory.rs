@@ -3,9 +3,9 @@
 use super::enclosure::Enclosure;
 use crate::program::{Program, ValueId};
 
-/// Bounds of the values of the stages.
+/// Bounds of the values in some stages.
 pub(super) struct BoundsMemory {
-    /// Place of each value's first bound; unused values have none.
+    /// Index of the first bound of each value; `None` for values without memory.
     places: Vec<Option<usize>>,
     bounds: Vec<Enclosure>,
 }
@@ -27,7 +27,7 @@ impl BoundsMemory {
         }
     }
 
-    /// Returns the bounds of an element of a value; unknown for a value without memory.
+    /// Returns the bounds of an element of a value; [`Enclosure::UNKNOWN`] for a value without memory.
     pub(super) fn bound(&self, id: ValueId, index: usize) -> Enclosure {
         let place = self.places[id.index()];
         place.map_or(Enclosure::UNKNOWN, |place| self.bounds[place + index])

@@ -18,7 +18,7 @@ pub enum Stage {
     Distances,
     /// All quantities of the impacts.
     Impacts,
-    /// All quantities of the surfaces that can hold the motion.
+    /// All quantities of the surfaces along which the motion can slide.
     Sliding,
     /// All quantities at corners of the motion.
     Corners,
@@ -191,25 +191,25 @@ impl Stage {
     }
 }
 
-/// Machine code of every stage of a program. Its memory holds the program's values at their
-/// [places](super::Places), then its own data.
+/// Machine code of the stages of a program. Its memory holds the program's values at their [offsets](super::Places),
+/// then data of the machine code.
 pub trait MachineCode: Send + Sync {
-    /// Returns the stages that it computes, with [`Stage::Rates`] among them. The evaluator computes the others and, if
-    /// there are any, also the prepared values.
+    /// Returns the stages that the machine code computes; they must include [`Stage::Rates`]. The evaluator computes
+    /// the other stages. If there are other stages, it also computes the prepared values.
     fn stages(&self) -> &[Stage] {
         &Stage::ALL
     }
 
-    /// Returns the initial content of its own data.
+    /// Returns the initial content of the data of the machine code.
     fn initial_memory(&self) -> &[f64];
 
-    /// Computes the prepared values from parameters and tables in their places.
+    /// Computes the prepared values from the parameters and tables in memory.
     fn prepare(&self, memory: &mut [f64]);
 
     /// Computes the roots of a stage.
     fn compute(&self, stage: Stage, memory: &mut [f64], point: &Point<'_>);
 
-    /// Writes the rates of the state to `out`, which has the length of the state. Their places in memory are
-    /// not written.
+    /// Writes the rates of the state to `out`, which has the length of the state. The values of the rates in memory
+    /// are not updated.
     fn rates(&self, memory: &mut [f64], point: &Point<'_>, out: &mut [f64]);
 }

@@ -3,7 +3,7 @@
 use super::{Evaluator, Point, Stage};
 use crate::program::{Corners, RateRow, RowValues, ValueId};
 
-/// Quantities at a point in SI units; see [`Corners`]. A row has one number for each degree of freedom.
+/// Quantities of corners at a point, in SI units; see [`Corners`]. A row has one number for each degree of freedom.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CornerValues {
     /// Momenta.
@@ -14,7 +14,7 @@ pub struct CornerValues {
     pub energy: f64,
     /// Rate of each surface, and its derivatives by the rates of the coordinates.
     pub surfaces: Vec<(f64, Vec<f64>)>,
-    /// The same of each constraint.
+    /// Rate of each constraint, and its derivatives by the rates of the coordinates.
     pub constraints: Vec<(f64, Vec<f64>)>,
 }
 

@@ -1,4 +1,4 @@
-//! Bounds of a quantity and of its rate over a stretch of time.
+//! Bounds of a quantity and of its rate over a time interval.
 
 use eomgen_model_spec::function::Function;
 use eomgen_model_spec::interval::Interval;
@@ -6,19 +6,20 @@ use eomgen_model_spec::interval::Interval;
 /// Degree of the polynomial part of an [`Enclosure`].
 pub const DEGREE: usize = 7;
 
-/// Rounding of a sum, relative to its terms.
+/// Bound of the rounding error of a sum, relative to its terms.
 const ROUNDING: f64 = 1e-15;
 
-/// Bounds of a quantity over a stretch of time, and of its derivative with respect to time. The bound of the
-/// rate holds between any two times of the stretch, so a kink is allowed and a jump makes it unbounded.
+/// Bounds of a quantity and of its time derivative over a time interval. The bounds of the rate hold for the
+/// difference quotient between any two times of the interval. Therefore they exist at a kink, but a jump makes them
+/// infinite.
 ///
-/// The quantity is a polynomial in Bernstein form plus a rest, of which only bounds are known. Sums and
-/// multiples keep the polynomial, so that a difference of large quantities has close bounds. Other operations
-/// keep bounds only.
+/// The quantity is the sum of a polynomial in Bernstein form and a remainder, for which only bounds are known. Sums
+/// and multiples keep the polynomial; therefore a difference of large quantities has tight bounds. Other operations
+/// keep only bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosure {
     controls: [f64; DEGREE + 1],
-    /// Degree of the polynomial over the duration of the stretch, 1/s; 0 without a polynomial.
+    /// Degree of the polynomial divided by the duration of the interval, in 1/s; 0 if there is no polynomial.
     per_time: f64,
     rest_value: Interval,
     rest_rate: Interval,
@@ -35,7 +36,7 @@ const ONE: Interval = Interval {
 };
 
 impl Enclosure {
-    /// No bounds.
+    /// Infinite bounds of quantity and rate.
     pub const UNKNOWN: Self = Self::from_bounds(Interval::ALL, Interval::ALL);
 
     /// Returns the enclosure with these bounds of the quantity and of its rate per second.
@@ -66,7 +67,7 @@ impl Enclosure {
         }
     }
 
-    /// Returns the bounds of the time from `begin` to `end`, s.
+    /// Returns the bounds of the time itself from `begin` to `end`, in s.
     pub fn time(begin: f64, end: f64) -> Self {
         let part = |place: usize| place as f64 / DEGREE as f64;
         let controls = std::array::from_fn(|place| begin + part(place) * (end - begin));
@@ -90,7 +91,7 @@ impl Enclosure {
         self.rest_value == Interval::ALL && self.rest_rate == Interval::ALL
     }
 
-    /// Returns the number if the quantity is one.
+    /// Returns the value if the quantity is a known constant.
     fn number(&self) -> Option<f64> {
         let Interval { low, high } = self.rest_value;
         let is_number = low == high && self.rest_rate == ZERO && self.controls == [0.0; DEGREE + 1];
@@ -210,7 +211,7 @@ fn hull(values: impl Iterator<Item = f64>) -> Interval {
     Interval::from_ends(low, high)
 }
 
-/// Returns the interval of one number, without the widening for rounding.
+/// Returns the interval that contains only this number.
 fn exact(value: f64) -> Interval {
     match value.is_nan() {
         true => Interval::ALL,
@@ -221,7 +222,7 @@ fn exact(value: f64) -> Interval {
     }
 }
 
-/// Returns a piecewise linear function of arguments that stay on one side of its kinks.
+/// Returns the bounds of a piecewise linear function if its arguments stay on one side of its kinks.
 fn linear_branch(function: Function, arguments: &[Enclosure]) -> Option<Enclosure> {
     let is_positive = |x: Enclosure| x.value().low >= 0.0;
     match (function, arguments) {
@@ -257,7 +258,8 @@ fn linear_branch(function: Function, arguments: &[Enclosure]) -> Option<Enclosur
     }
 }
 
-/// Returns the bounds of the derivative of a function at arguments in `x`, where it has the values `value`.
+/// Returns the bounds of the derivative of a function for arguments in `x`; `value` has the bounds of the function
+/// there.
 fn slope(function: Function, x: Interval, value: Interval) -> Interval {
     let smooth = x.differentiate(function, value);
     smooth.unwrap_or(match function {
@@ -271,7 +273,7 @@ fn binary_rate(function: Function, x: Enclosure, y: Enclosure) -> Interval {
     let (x_value, y_value) = (x.value(), y.value());
     match function {
         Function::Atan2 => {
-            // Its first argument is the ordinate.
+            // The first argument of `atan2` is the ordinate.
             if x_value.contains(0.0) && y_value.low <= 0.0 {
                 return Interval::ALL;
             }
@@ -292,7 +294,7 @@ fn binary_rate(function: Function, x: Enclosure, y: Enclosure) -> Interval {
 mod tests {
     use super::*;
 
-    /// Bounds of the polynomials t^2 + c and t^3 over 0 to 2 s.
+    /// Returns the bounds of the polynomials t^2 + c and t^3 from 0 to 2 s.
     fn polynomials(constant: f64) -> [Enclosure; 2] {
         let choose = |n: usize, k: usize| {
             (0..k).fold(1.0, |value, j| value * (n - j) as f64 / (j + 1) as f64)

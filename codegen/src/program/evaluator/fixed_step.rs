@@ -1,12 +1,14 @@
-//! Steps of fixed length with held inputs: the classical Runge-Kutta method of order 4, and the reactions of frictions and
-//! contacts over the whole step. Emitted code has the same method with the same order of operations.
+//! Steps of fixed length with constant inputs: the classical Runge-Kutta method of order 4, with reactions of
+//! frictions and contacts that act over the whole step. Emitted code uses the same method with the same order of
+//! operations.
 //!
-//! A friction has one value over the step, such that its velocity is zero at the end or has its sign: a friction at rest
-//! holds exactly. Contacts that are closed at the end of the step receive impulses by Newton's law, frictions at contacts
-//! after Coulomb's. The conditions on velocities at the end of steps are those of time-stepping methods (J. J. Moreau,
-//! Unilateral contact and dry friction in finite freedom dynamics, CISM 302, 1988; V. Acary, B. Brogliato, *Numerical
-//! Methods for Nonsmooth Dynamical Systems*, chapter 10), solved by projected Gauss-Seidel sweeps. An event costs an error
-//! of the order of the step; without events the order is 4.
+//! A friction is constant over the step. At the end of the step, its velocity is zero, or has the sign of the
+//! friction; therefore sticking is exact. Contacts that are closed at the end of the step receive impulses by
+//! Newton's law of restitution, and frictions of contacts obey Coulomb's law. As in time-stepping methods, the
+//! conditions apply to the velocities at the end of the step (J. J. Moreau, Unilateral contact and dry friction in
+//! finite freedom dynamics, CISM 302, 1988; V. Acary, B. Brogliato, *Numerical Methods for Nonsmooth Dynamical
+//! Systems*, chapter 10), solved by projected Gauss-Seidel sweeps. A step with an event has an error proportional to
+//! the step size; without events, the order of the method is 4.
 
 use super::{Evaluator, Point, Stage};
 use crate::program::{Argument, ProgramReactions, Reactions, ValueId};
@@ -14,16 +16,18 @@ use crate::program::{Argument, ProgramReactions, Reactions, ValueId};
 /// Largest number of sweeps over the reactions.
 pub(crate) const MAX_SWEEPS: usize = 1000;
 
-/// Number of sweeps after which further contacts are sought.
+/// Number of sweeps between two searches for further contacts.
 pub(crate) const SWEEPS_BETWEEN_CONTACTS: usize = 10;
 
-/// Largest change of a function by a sweep, in roundings of the sum of its changes by all reactions, at which the sweeps end.
+/// Sweeps end if no function changes by more than this number of rounding errors of the sum of its changes by all
+/// reactions.
 pub(crate) const MAX_SETTLED_ROUNDINGS: f64 = 64.0;
 
-/// Largest change by the last sweep, relative to the same sum, of reactions that are found.
+/// The reactions are accepted if the last sweep changes no function by more than this fraction of the sum of its
+/// changes by all reactions.
 pub(crate) const MAX_LAST_CHANGE: f64 = 1.0 / 1024.0;
 
-/// Memory of steps of one model.
+/// Work arrays for the steps of one model.
 #[derive(Clone, Debug, Default)]
 pub struct StepMemory {
     rates: [Vec<f64>; 4],
@@ -41,7 +45,7 @@ pub struct StepMemory {
 }
 
 impl Evaluator {
-    /// Returns memory for [`Evaluator::step`].
+    /// Allocates the work arrays for [`Evaluator::step`].
     pub fn create_step_memory(&self) -> StepMemory {
         let states = vec![0.0; self.program.states()];
         let known = self.program.outputs.reactions.as_ref();
@@ -65,9 +69,10 @@ impl Evaluator {
         }
     }
 
-    /// Advances a state by a step of length `h` (s) with held inputs. The state becomes NaN if the reactions of frictions
-    /// and contacts do not settle. A program without the output `step` ignores contacts and takes the sign of frictions
-    /// from the state. An evaluator in single precision computes the step in it.
+    /// Advances a state by a step of length `h` (s) with constant inputs. The state becomes NaN if the iteration for
+    /// the reactions of frictions and contacts does not converge. A program without the output `step` ignores
+    /// contacts and computes the signs of frictions from the state. An evaluator in single precision computes the
+    /// step in single precision.
     pub fn step(
         &mut self,
         (t, h): (f64, f64),
@@ -84,7 +89,7 @@ impl Evaluator {
         }
     }
 
-    /// Takes a step with every operation rounded.
+    /// Takes a step; `round` is applied to the result of every operation.
     fn step_with_rounding(
         &mut self,
         at: (f64, f64),
@@ -160,7 +165,8 @@ impl Evaluator {
         apply_reactions(degrees, known, memory, round);
         self.write_reaction_functions(at(end, &memory.next, inputs), known, &mut memory.functions);
         separate_contacts(degrees, known, memory, round);
-        // The positions and forces at the end differ from those at the start, from which the reactions were found.
+        // Correct the reactions: they were computed with the positions and forces at the start, which differ from
+        // those at the end.
         memory.applied.copy_from_slice(&memory.reactions);
         let is_found = find_reactions(h, known, (memory, MAX_SWEEPS), round);
         memory.delays.fill(0.0);
@@ -171,7 +177,7 @@ impl Evaluator {
         }
     }
 
-    /// Writes the state after a step of the Runge-Kutta method to `next`, with the sides of the reactions if there are any.
+    /// Writes the state after a Runge-Kutta step to `next`; the sides of the reactions are used if there are any.
     fn take_runge_kutta_step(
         &mut self,
         (t, h): (f64, f64),
@@ -280,7 +286,8 @@ fn advance(from: &[f64], h: f64, rates: &[f64], to: &mut [f64], round: impl Fn(f
     }
 }
 
-/// Starts frictions that drive their own velocity with its sign. The others are found.
+/// Sets the frictions that accelerate their own velocity (negative damping) to the sign of this velocity, and all
+/// other frictions to 0.
 fn drive_by_signs(h: f64, known: &ProgramReactions, memory: &mut StepMemory) {
     let count = known.functions.len();
     for own in 0..known.sides() {
@@ -296,14 +303,15 @@ fn set_sides(h: f64, memory: &mut StepMemory, round: impl Fn(f64) -> f64 + Copy)
     }
 }
 
-/// Opens all contacts: they have no impulse.
+/// Opens all contacts; open contacts have no impulse.
 fn open_contacts(known: &ProgramReactions, memory: &mut StepMemory) {
     memory.targets.fill(0.0);
     memory.targets[known.sides()..][..known.distances.len()].fill(f64::NEG_INFINITY);
 }
 
-/// Closes the open contacts whose distance is not positive with the reactions so far: sets the rate that each has after the
-/// step at least, and the time for which its impulse acts, since the distance was zero. Returns true if a contact closes.
+/// Closes the open contacts whose distance is not positive with the present reactions. Sets, for each of them, the
+/// smallest rate of the distance after the step, and the time since the distance was zero, for which the impulse
+/// acts. Returns true if a contact closes.
 fn close_contacts(
     h: f64,
     known: &ProgramReactions,
@@ -327,7 +335,8 @@ fn close_contacts(
         let change = round(rate - rate_before);
         let approach = round(rate_before + round(crossing * change));
         let bounce = select(0.0, approach, -round(restitution * approach), 0.0);
-        // Forces change the rate after the bounce as they did before it; a contact that closes again stays closed.
+        // The forces change the rate after the bounce by the same amount as without the bounce. A contact that would
+        // close again within the step stays closed.
         let rebound = round(bounce + round(rate - approach));
         let target = select(rebound, 0.0, select(bounce, 0.0, rebound, 0.0), 0.0);
         let delay = select(
@@ -349,8 +358,8 @@ fn close_contacts(
     closes > 0.5
 }
 
-/// Corrects the reactions until the conditions on the functions hold, and the functions with them. Returns false if they
-/// are not found.
+/// Corrects the reactions, and the functions with them, until the conditions on the functions are satisfied. Returns
+/// false if the iteration does not converge.
 fn find_reactions(
     h: f64,
     known: &ProgramReactions,
@@ -414,7 +423,7 @@ fn find_reactions(
     is_found
 }
 
-/// Moves the positions so that closed contacts do not overlap.
+/// Moves the positions until closed contacts do not overlap.
 fn separate_contacts(
     degrees: usize,
     known: &ProgramReactions,
@@ -442,7 +451,7 @@ fn separate_contacts(
     }
 }
 
-/// Adds the changes of the reactions since `applied` to the state.
+/// Adds the effect of the changes of the reactions since `applied` to the state.
 fn apply_reactions(
     degrees: usize,
     known: &ProgramReactions,

@@ -1,4 +1,4 @@
-//! Functions of the expression language as functions with one definition for all backends.
+//! Mapping of the functions of the expression language to elementary functions with one definition for all backends.
 
 use eomgen_elementary::{Function as Elementary, Real};
 use eomgen_model_spec::function::Function;
@@ -8,7 +8,7 @@ pub fn call<N: Real>(function: Function, a: N, b: N) -> N {
     elementary(function).apply(&[a, b])
 }
 
-/// Returns the definition of a function.
+/// Returns the elementary function for a function of the expression language.
 pub fn elementary(function: Function) -> Elementary {
     match function {
         Function::Sin => Elementary::Sin,

@@ -1,45 +1,45 @@
-//! Impacts of a program at a point.
+//! Quantities of the impacts of a program at a point.
 
 use super::{Evaluator, Point, Stage};
 
-/// Impact at a point in SI units; see [`Impact`](crate::mechanics::impact::Impact).
+/// Quantities of an impact at a point, in SI units; see [`Impact`](crate::mechanics::impact::Impact).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImpactValues {
     /// Distance.
     pub distance: f64,
     /// Rate of the distance.
     pub rate: f64,
-    /// Rate at which a force does no work.
+    /// Rate of the distance at which a contact force does no work.
     pub workless_rate: f64,
-    /// Second rate of the distance if no contact is closed.
+    /// Second rate of the distance without contact forces.
     pub acceleration: f64,
     /// Coefficient of restitution.
     pub restitution: f64,
     /// Gradient of the distance, one number for each degree of freedom.
     pub row: Vec<f64>,
-    /// Change of the rates by a unit impulse, one number for each degree of freedom.
+    /// Change of the rates per unit impulse, one number for each degree of freedom.
     pub column: Vec<f64>,
-    /// Change of the distance's rate by a unit impulse at each of the impacts, then by a unit tangential
-    /// impulse at each with friction.
+    /// Changes of the rate of the distance per unit normal impulse at each impact, then per unit tangential impulse
+    /// at each impact with friction.
     pub delassus: Vec<f64>,
     /// Friction, if the contact has any.
     pub friction: Option<FrictionValues>,
 }
 
-/// Friction of a contact at a point in SI units; see [`Friction`](crate::mechanics::impact::Friction).
+/// Friction of a contact at a point, in SI units; see [`Friction`](crate::mechanics::impact::Friction).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrictionValues {
-    /// Coefficient.
+    /// Coefficient of friction.
     pub coefficient: f64,
     /// Tangential velocity.
     pub slip: f64,
-    /// Slip at which friction does no work.
+    /// Slip at which the friction force does no work.
     pub workless_slip: f64,
-    /// Rate of the slip if no contact is closed.
+    /// Rate of the slip without contact forces.
     pub acceleration: f64,
-    /// Change of the rates by a unit tangential impulse.
+    /// Change of the rates per unit tangential impulse.
     pub column: Vec<f64>,
-    /// Change of the slip by a unit impulse at each of the impacts, normal, then tangential.
+    /// Changes of the slip per unit impulse at each impact: normal impulses, then tangential impulses.
     pub delassus: Vec<f64>,
 }
 

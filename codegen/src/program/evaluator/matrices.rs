@@ -1,5 +1,5 @@
-//! Matrix operations of the evaluator: products, Gram matrices, assembled blocks and Cholesky factors, with
-//! the order of summation that the program defines.
+//! Matrix operations of the evaluator: products, Gram matrices, assembled matrices and Cholesky factors, with the
+//! order of summation that [`Op`](crate::program::Op) defines.
 
 use eomgen_model_spec::function::Function;
 
@@ -100,7 +100,7 @@ pub(super) fn assemble<N: Number>(
     }
 }
 
-/// Computes the factor L of L L^T = matrix; the upper part of `out` becomes 0.
+/// Computes the lower Cholesky factor L with L L^T = matrix; the upper part of `out` is set to 0.
 pub(super) fn cholesky<N: Number>(out: &mut [N], matrix: &[N], size: usize) {
     out.fill(N::constant(0.0));
     let mut execution = Execution {
@@ -111,7 +111,8 @@ pub(super) fn cholesky<N: Number>(out: &mut [N], matrix: &[N], size: usize) {
     cholesky::factorise(&mut execution, &size, &Operand::Left, &Operand::Out);
 }
 
-/// Solves for `columns` right-hand sides; with stride 0 all rows share one number.
+/// Solves a system for `columns` right-hand sides. With stride 0, all rows of the right-hand side have the same
+/// number.
 pub(super) fn cholesky_solve<N: Number>(
     out: &mut [N],
     columns: usize,
@@ -127,7 +128,7 @@ pub(super) fn cholesky_solve<N: Number>(
     cholesky::solve(&mut execution, [&size, &columns], &Operand::Left, both);
 }
 
-/// Matrices of an operation, each with the distance between its rows.
+/// Matrices of an operation, each with its row stride.
 struct Execution<'a, N> {
     left: (&'a [N], usize),
     right: (&'a [N], usize),
@@ -199,7 +200,7 @@ impl<N: Number> MatrixLoops for Execution<'_, N> {
 mod tests {
     use super::*;
 
-    /// L L^T of the integer factor with the rows (2), (1, 3) and (-4, 5, 1).
+    /// Product L L^T of the integer factor L with the rows (2), (1, 3) and (-4, 5, 1).
     const MATRIX: [f64; 9] = [4.0, 2.0, -8.0, 2.0, 10.0, 11.0, -8.0, 11.0, 42.0];
 
     #[test]
@@ -207,7 +208,7 @@ mod tests {
         let mut factor = [f64::NAN; 9];
         cholesky(&mut factor, &MATRIX, 3);
         assert_eq!(factor, [2.0, 0.0, 0.0, 1.0, 3.0, 0.0, -4.0, 5.0, 1.0]);
-        // Columns: the matrix times (1, 2, 3) and times (0, -1, 1).
+        // The columns are the products of the matrix with (1, 2, 3) and (0, -1, 1).
         let right = [-16.0, -10.0, 55.0, 1.0, 140.0, 31.0];
         let mut x = [f64::NAN; 6];
         cholesky_solve(&mut x, 2, (&factor, 3, 3), (&right, 1));

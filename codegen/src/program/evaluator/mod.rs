@@ -1,6 +1,6 @@
-//! Evaluation of a program without a compiler: every value has a place in one block of memory, every stage is
-//! a list of steps. It is slower than emitted code and computes the same bits. Machine code for the stages
-//! can replace the steps.
+//! Evaluation of a program without a compiler. All values are stored in one block of memory, and every stage is a
+//! list of steps. The evaluator is slower than emitted code; its results are bit-identical. Machine code for the
+//! stages can replace the steps.
 
 mod bounds;
 mod bounds_memory;
@@ -47,7 +47,7 @@ pub struct Evaluator {
     places: Places,
     /// Parameter values, each with its index among the independent parameters.
     parameters: Vec<(ValueId, usize)>,
-    /// Values that are numbers of a caller, such as weights.
+    /// Values that the caller supplies as arguments, such as weights.
     arguments: Vec<(Argument, Variable, ValueId)>,
     guard_count: usize,
     prepare: Vec<ValueId>,
@@ -56,11 +56,11 @@ pub struct Evaluator {
     code: Option<Arc<dyn MachineCode>>,
     /// True for each stage that machine code computes.
     by_code: [bool; Stage::ALL.len()],
-    /// Prepared values that functions in single precision compute themselves.
+    /// Prepared values that are not stored as coefficients; functions in single precision recompute them.
     recomputed: Vec<ValueId>,
-    /// Memory of the steps in single precision, if they compute in it.
+    /// Memory of the steps in single precision, if the evaluator uses single precision.
     single: Option<Vec<f32>>,
-    /// Allocated when bounds are first computed.
+    /// Memory of bounds, allocated when bounds are first computed.
     bounds: Option<BoundsMemory>,
 }
 
@@ -106,7 +106,7 @@ impl Evaluator {
         evaluator
     }
 
-    /// Prepares a program that is computed by `code`, its own machine code.
+    /// Prepares a program whose stages are computed by the machine code `code`.
     pub fn with_code(program: Program, code: Arc<dyn MachineCode>) -> Self {
         let mut evaluator = Self::new(program);
         evaluator.memory.extend_from_slice(code.initial_memory());
@@ -117,11 +117,12 @@ impl Evaluator {
         evaluator
     }
 
-    /// Computes the outputs from now on in single precision, with the bits of the emitted code for `f32` with
-    /// coefficients that are prepared in double precision and converted. Times, states and inputs must be numbers
-    /// of single precision.
+    /// Switches the evaluator to single precision. The results are bit-identical to emitted code in `f32` with
+    /// coefficients that are prepared in double precision and converted. Times, states and inputs must be exactly
+    /// representable in single precision.
     ///
-    /// `coefficients` are the prepared values that the emitted functions read; they compute all others.
+    /// `coefficients` are the prepared values that emitted functions read; all other prepared values are recomputed
+    /// in each function.
     pub fn in_single_precision(mut self, coefficients: &[ValueId]) -> Self {
         self.code = None;
         self.by_code = [false; Stage::ALL.len()];
@@ -138,7 +139,7 @@ impl Evaluator {
         &self.program
     }
 
-    /// Returns the independent parameters, SI; those that no value depends on have their default values.
+    /// Returns the independent parameters in SI units. Parameters that no value depends on have their default values.
     pub fn parameter_values(&self) -> Vec<f64> {
         let mut values = self.program.default_parameters();
         for (id, place) in &self.parameters {
@@ -171,8 +172,8 @@ impl Evaluator {
         }
     }
 
-    /// Prepares as [`Evaluator::prepare`], in single precision: the parameters must be numbers of it. For outputs in
-    /// single precision.
+    /// Computes all values that depend only on the parameters in single precision, for an evaluator in single
+    /// precision. The parameters must be exactly representable in single precision.
     pub fn prepare_in_single_precision(&mut self, parameters: &[f64]) {
         for (id, place) in &self.parameters {
             self.memory[self.places.offset(*id)] = parameters[*place];
@@ -201,7 +202,7 @@ impl Evaluator {
         }
     }
 
-    // Separate from `rates`, so that the call of machine code stays short.
+    // This function is separate from `rates`, which keeps the call of machine code short.
     #[inline(never)]
     fn interpreted_rates(&mut self, point: &Point<'_>, out: &mut [f64]) {
         self.compute(Stage::Rates, point);
@@ -232,7 +233,7 @@ impl Evaluator {
         self.guard_count
     }
 
-    /// Writes the values of the switching surfaces to `out`, [`Evaluator::guard_count`] numbers.
+    /// Writes the values of the switching functions to `out`, [`Evaluator::guard_count`] numbers.
     pub fn guards(&mut self, point: Point<'_>, out: &mut [f64]) {
         self.compute(Stage::Guards, &point);
         let mut place = 0;
@@ -294,8 +295,8 @@ impl Evaluator {
         );
     }
 
-    /// Returns the numbers of a value. Machine code keeps only prepared values and the [roots](Stage::roots)
-    /// of the last stage, except the rates.
+    /// Returns the elements of a value. With machine code, only prepared values and the [roots](Stage::roots) of the
+    /// last computed stage are valid, except the rates.
     pub fn slice(&self, id: ValueId) -> &[f64] {
         let start = self.places.offset(id);
         &self.memory[start..start + self.program.values[id.0].extent.length()]
@@ -337,7 +338,7 @@ impl Evaluator {
         run(&mut self.memory, &self.places, &self.program, steps, point);
     }
 
-    /// Converts the coefficients to single precision, and computes the other prepared values from them.
+    /// Converts the coefficients to single precision and computes the other prepared values from the coefficients.
     fn convert_prepared(&mut self) {
         for number in &mut self.memory {
             *number = f64::from(*number as f32);
@@ -347,8 +348,8 @@ impl Evaluator {
         self.recomputed = steps;
     }
 
-    /// Computes steps in single precision. Prepared values and arguments are read from the memory of double precision,
-    /// and results written to it, which is exact.
+    /// Computes steps in single precision. Prepared values and arguments are read from the double-precision memory,
+    /// and results are written to it; both conversions are exact.
     fn compute_single(&mut self, steps: &[ValueId], point: &Point<'_>) {
         let (places, program) = (&self.places, &self.program);
         let single = self.single.get_or_insert_default();
@@ -364,7 +365,7 @@ impl Evaluator {
     }
 }
 
-/// No time, state and inputs, for prepared values.
+/// Point without state and inputs, for the computation of prepared values.
 pub(crate) const NO_POINT: Point<'static> = Point {
     t: 0.0,
     state: &[],

@@ -1,4 +1,4 @@
-//! Numbers in which the steps of a program are computed.
+//! Number types in which the steps of a program can be computed.
 
 use eomgen_elementary::{Function as Elementary, Real};
 use eomgen_model_spec::function::Function;
@@ -6,8 +6,8 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 use super::functions::call;
 
-/// Number of the evaluator: `f64`, `f32` for the bits of emitted code in single precision, or a number that records
-/// the operations.
+/// Number type of the evaluator: `f64`, `f32` (bit-identical to emitted code in single precision), or a number that
+/// records the operations.
 pub trait Number:
     Copy
     + Add<Output = Self>
@@ -26,7 +26,7 @@ pub trait Number:
     /// Returns a^b.
     fn power(self, exponent: Self) -> Self;
 
-    /// Returns `then` if a > b, else `otherwise`, also if a or b is NaN.
+    /// Returns `then` if a > b, else `otherwise`; returns `otherwise` if a or b is NaN.
     fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
 
     /// Returns the number if it is positive, else NaN.

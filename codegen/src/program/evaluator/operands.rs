@@ -3,7 +3,7 @@
 use super::places::Places;
 use crate::program::{Extent, Program, ValueId};
 
-/// Read access to the operands of a value, which precede it in memory.
+/// Read access to the operands of a value; in memory, they precede the value.
 pub(super) struct Operands<'a, N> {
     pub(super) memory: &'a [N],
     pub(super) places: &'a Places,
@@ -16,8 +16,7 @@ impl<'a, N> Operands<'a, N> {
         &self.memory[start..start + self.program.values[id.0].extent.length()]
     }
 
-    /// Returns the numbers of an operand and the distance between its elements: 0 for a scalar, which is
-    /// repeated.
+    /// Returns the elements of an operand and their stride; the stride of a scalar is 0, which repeats it.
     pub(super) fn strided(&self, id: ValueId) -> (&'a [N], usize) {
         let scalar = self.program.values[id.0].extent == Extent::Scalar;
         (self.slice(id), usize::from(!scalar))

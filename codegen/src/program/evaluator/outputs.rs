@@ -50,7 +50,7 @@ impl Evaluator {
         true
     }
 
-    /// Computes the structural nonzeros of the Jacobian with index `place`.
+    /// Computes the structural nonzeros of the Jacobian with this index.
     pub fn jacobian(&mut self, place: usize, point: Point<'_>, out: &mut [f64]) -> bool {
         if place >= self.program.outputs.jacobians.len() {
             return false;
@@ -60,7 +60,7 @@ impl Evaluator {
         true
     }
 
-    /// Computes the structural nonzeros of the Jacobian with index `place`, whose column is the derivative along a
+    /// Computes the structural nonzeros of the Jacobian with this index, whose only column is the derivative along a
     /// direction of state and inputs.
     pub fn derivatives_along(
         &mut self,
@@ -192,7 +192,7 @@ impl Evaluator {
         }
     }
 
-    /// Copies the numbers of an argument to the places of its values.
+    /// Copies the numbers of an argument to its values in memory.
     pub(super) fn set_argument(&mut self, argument: Argument, numbers: &[f64], inputs: &[f64]) {
         for (of, variable, id) in &self.arguments {
             if *of != argument {

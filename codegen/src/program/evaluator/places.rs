@@ -8,8 +8,8 @@ pub struct Places {
 }
 
 impl Places {
-    /// Arranges the values one after the other. Vectors and matrices begin at an even offset, so that a pair
-    /// of elements never crosses a cache line.
+    /// Assigns consecutive offsets to the values. Vectors and matrices begin at an even offset; therefore no pair of
+    /// elements crosses a cache line.
     pub fn new(program: &Program) -> Self {
         let mut offsets = Vec::with_capacity(program.values.len());
         let mut size = 0_usize;
@@ -23,12 +23,12 @@ impl Places {
         Self { offsets, size }
     }
 
-    /// Returns the offset of a value's first number.
+    /// Returns the offset of the first element of a value.
     pub fn offset(&self, id: ValueId) -> usize {
         self.offsets[id.index()]
     }
 
-    /// Returns the total count of numbers.
+    /// Returns the number of elements of all values, with padding.
     pub fn size(&self) -> usize {
         self.size
     }

@@ -1,22 +1,22 @@
-//! Surfaces that can hold the motion, at a point.
+//! Quantities of the surfaces along which the motion can slide, at a point.
 
 use super::{Evaluator, Point, Stage};
 
-/// Surface at a point in SI units; see [`SlidingSurface`](crate::mechanics::outputs::SlidingSurface).
+/// Quantities of a surface at a point, in SI units; see
+/// [`SlidingSurface`](crate::mechanics::outputs::SlidingSurface).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SlidingValues {
-    /// Rate of the surface's function.
+    /// Rate of the switching function.
     pub rate: f64,
-    /// Derivative of that rate by each side.
+    /// Derivative of the rate of the switching function by each side.
     pub by_sides: Vec<f64>,
-    /// Derivative of the state's rates by the surface's own side: one number for each degree of freedom, then
-    /// one for each first-order state.
+    /// Derivatives of the accelerations, then of the rates of first-order states, by the side of this surface.
     pub column: Vec<f64>,
 }
 
 impl Evaluator {
-    /// Computes all surfaces that can hold the motion, in the order of the program. A call with an `out` of a
-    /// previous call allocates no memory.
+    /// Computes the quantities of all surfaces along which the motion can slide, in the order of the program. A call
+    /// with an `out` of a previous call allocates no memory.
     pub fn sliding(&mut self, point: Point<'_>, out: &mut Vec<SlidingValues>) {
         self.compute(Stage::Sliding, &point);
         let degrees = self.program.degrees_of_freedom();

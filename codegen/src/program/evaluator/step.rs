@@ -7,7 +7,7 @@ use super::places::Places;
 use super::point::Point;
 use crate::program::{Arguments, Op, PARTIAL_SUMS, Program, ValueId};
 
-/// Computes the value `id` into its place in `memory`.
+/// Computes the value `id` and stores it at its offset in `memory`.
 pub(crate) fn step<N: Number>(
     memory: &mut [N],
     places: &Places,
@@ -141,7 +141,7 @@ fn total<N: Number>(elements: &[N]) -> N {
     partial[0]
 }
 
-/// Converts numbers to the type of the computation; `numbers` has at least as many as `out`.
+/// Converts numbers to the number type of the computation; `numbers` must be at least as long as `out`.
 fn convert<N: Number>(out: &mut [N], numbers: &[f64]) {
     for (slot, number) in out.iter_mut().zip(numbers) {
         *slot = N::constant(*number);

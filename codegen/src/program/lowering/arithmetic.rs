@@ -8,9 +8,8 @@ use crate::symbolic::association::Factor;
 use crate::symbolic::graph::{Bits, NodeId, Operation, Shape};
 
 impl Lowering<'_> {
-    /// Adds the prepared terms first. The others follow by the number of elementary functions before them, so
-    /// that the sum does not wait for the slowest terms. Positive terms precede negative ones, which saves a
-    /// negation.
+    /// Adds the prepared terms first. The other terms follow in the order of their critical paths; therefore the
+    /// addition does not wait for the slowest terms. Positive terms precede negative terms, which saves a negation.
     pub(super) fn sum(&mut self, terms: &[(Bits, NodeId)]) -> ValueId {
         let graph = self.graph;
         let (parameter_only, mut live): (Vec<_>, Vec<_>) = terms
@@ -36,7 +35,7 @@ impl Lowering<'_> {
         self.add_all(&parts)
     }
 
-    /// Combines the parts into one, which is subtracted if all parts are.
+    /// Adds the parts to one part; the flag of the result is true if all parts are subtracted.
     fn join_terms(&mut self, parts: Vec<(bool, ValueId)>) -> Vec<(bool, ValueId)> {
         if parts.len() < 2 {
             return parts;
@@ -65,7 +64,7 @@ impl Lowering<'_> {
         total
     }
 
-    /// Returns -a, with the sign in a prepared factor if there is one.
+    /// Returns -a; if a has a prepared factor, the sign is applied to the factor.
     fn negate(&mut self, value: ValueId) -> ValueId {
         let extent = self.values[value.0].extent;
         if let Op::Multiply(factor, moving) = self.values[value.0].op
@@ -151,8 +150,8 @@ impl Lowering<'_> {
         }
     }
 
-    /// Moves a prepared factor of a sum over modes into its prepared factors, if no other value uses the sum
-    /// without it. A vector factor stays outside the sum.
+    /// Moves a prepared factor of a sum over modes into the sum, if no other value uses the sum without this factor.
+    /// Vector factors stay outside the sum.
     fn scaled_total(
         &mut self,
         number: f64,
@@ -186,8 +185,8 @@ impl Lowering<'_> {
         Some(self.emit(Op::Total(summand), Extent::Scalar))
     }
 
-    /// Multiplies powers. A contact factor selects between the product of the others and 0, which needs no
-    /// multiplication.
+    /// Multiplies powers if one factor is `contact`. The result is a selection between the product of the other
+    /// factors and 0, which needs no multiplication.
     fn select_by_contact(&mut self, factors: &[(NodeId, i32)]) -> Option<ValueId> {
         let graph = self.graph;
         let contact = |(id, _): &(NodeId, i32)| {
@@ -215,7 +214,7 @@ impl Lowering<'_> {
         Some(self.emit(op, extent))
     }
 
-    /// Multiplies a number and powers, scalars before vectors; returns `None` for a plain 1.
+    /// Multiplies a number and powers, scalars before vectors; returns `None` if the product is the constant 1.
     fn powers(&mut self, number: f64, factors: &[(NodeId, i32)]) -> Option<ValueId> {
         let graph = self.graph;
         let mut ordered = factors.to_vec();

@@ -19,7 +19,7 @@ use crate::program::{ControlOp, MeasuredSource, Program, ProgramController, Quan
 /// Lowers the controllers of a model with the program of its equations.
 ///
 /// # Errors
-/// A measured mode that does not exist at the order of the program, with its place.
+/// A measured mode that does not exist at the order of the program, with its location.
 pub fn lower_controllers(
     model: &Model,
     program: &Program,
@@ -83,7 +83,7 @@ struct ControlLowering<'m> {
     program: &'m Program,
     controller: &'m Controller,
     values: Vec<ControlOp>,
-    /// Values of parameters.
+    /// Operations of the parameters.
     parameters: HashMap<ParameterId, usize>,
     measured: Vec<Quantity>,
     sources: Vec<MeasuredSource>,
@@ -151,12 +151,12 @@ impl ControlLowering<'_> {
                 let places: Vec<usize> = arguments.iter().map(|a| self.expression(a)).collect();
                 self.push(ControlOp::Call(*function, places))
             }
-            // A checked expression of parameters has no other parts.
+            // A checked model has no other leaves in expressions of parameters.
             _ => self.push(ControlOp::Constant(f64::NAN)),
         }
     }
 
-    /// Adds a binary operation; a power without an exponent is a square.
+    /// Adds a binary operation; if `right` is missing, the operation is a square.
     fn binary(&mut self, operator: BinaryOperator, left: usize, right: Option<usize>) -> usize {
         let Some(right) = right else {
             return self.push(ControlOp::Multiply(left, left));
@@ -200,7 +200,7 @@ impl ControlLowering<'_> {
                 let x = self.sampled(x)?;
                 let low = self.sampled(low)?;
                 let high = self.sampled(high)?;
-                // NaN stays NaN; `high` if `low` is above it.
+                // The result is NaN if x is NaN, and `high` if `low` exceeds `high`.
                 let raised = self.push(ControlOp::Select([low, x, low, x]));
                 self.push(ControlOp::Select([raised, high, high, raised]))
             }

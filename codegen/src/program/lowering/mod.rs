@@ -1,8 +1,8 @@
 //! Lowering of the equations' graph to a program. Sums and products become binary operations in a fixed
 //! order; values that depend only on parameters are prepared once.
 //!
-//! A term `c P X` of a sum, with P of parameters and X of the state, becomes a prepared coefficient |c| P
-//! times X, added or subtracted according to the sign of c.
+//! A term `c P X` of a sum has a number c, a factor P of parameters and a state-dependent factor X. It is computed as
+//! the prepared coefficient |c| P times X, and added or subtracted according to the sign of c.
 
 mod affine;
 mod arithmetic;
@@ -39,7 +39,7 @@ pub fn lower_with_outputs(
     lower_with_values(model, equations, parameter_values, outputs).0
 }
 
-/// Lowers the equations with additional outputs. Also returns the nodes and their values.
+/// Lowers the equations with additional outputs. Also returns pairs of node and value.
 pub(crate) fn lower_with_values(
     model: &Model,
     equations: &Equations,
@@ -156,8 +156,8 @@ pub(crate) fn lower_with_values(
     (program, values)
 }
 
-/// Returns the roots of each function of a program, the rates first. Shared factors are multiplied in the
-/// order that saves most within one function.
+/// Returns the roots of each function of a program, the rates first. The multiplication order of shared factors is
+/// optimised within one function.
 fn functions(equations: &Equations, outputs: &Outputs<NodeId, RowNodes>) -> Vec<Vec<NodeId>> {
     let mass = &equations.mass;
     let scalars = mass.scalars.iter().flatten().copied().collect();

@@ -5,7 +5,7 @@ use eomgen_model_spec::unit::Unit;
 
 use crate::program::{Domain, ProgramParameter, Quantity};
 
-/// Range without ends.
+/// Range of a quantity without declared bounds.
 const UNBOUNDED: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 pub(super) fn quantity(name: &str, unit: &str, doc: &str) -> Quantity {
@@ -16,7 +16,7 @@ pub(super) fn quantity(name: &str, unit: &str, doc: &str) -> Quantity {
     }
 }
 
-/// Returns the unit as written in the specification if it is coherent, else its SI equivalent.
+/// Returns the unit as written in the specification if it is a coherent SI unit, else the equivalent SI unit.
 pub(super) fn si_unit(unit: &Unit) -> String {
     if unit.is_coherent() {
         unit.text.clone()
@@ -54,7 +54,7 @@ pub(super) fn program_observables(model: &Model) -> Vec<Quantity> {
     all
 }
 
-/// Returns units, initial state and ranges at these values of all parameters. Modes and rates have no range.
+/// Returns units, initial state and ranges for these values of all parameters. Modes and rates have no range.
 pub(super) fn domain(model: &Model, orders: &[usize], parameter_values: &[f64]) -> Domain {
     let ends = |range: &Option<Range>| {
         range.as_ref().map_or(UNBOUNDED, |range| {
@@ -71,7 +71,7 @@ pub(super) fn domain(model: &Model, orders: &[usize], parameter_values: &[f64]) 
     first_order.for_each(|(range, state)| *range = ends(&state.range));
     Domain {
         state_units: units.iter().map(si_unit).collect(),
-        // The derivation reports initial values that are not finite.
+        // Initial values that are not finite are errors of the derivation.
         initial_state: model.initial_state(orders).unwrap_or(vec![0.0; states]),
         state_ranges,
         input_ranges: model

@@ -1,4 +1,4 @@
-//! Lowering of nodes to values, each once.
+//! Lowering of nodes to values; each node is lowered once.
 
 use eomgen_model_spec::ids::ParameterId;
 use std::collections::HashMap;
@@ -13,7 +13,7 @@ use crate::symbolic::association::Association;
 use crate::symbolic::graph::{Assembly, Graph, NodeId, Operation, Shape, Variable};
 use crate::symbolic::node_map::NodeMap;
 
-/// Operation and extent of a value, as a key; constants are compared by their bits.
+/// Key of a value: operation and extent; constants are compared by their bits.
 struct Computation {
     op: Op,
     extent: Extent,
@@ -50,7 +50,7 @@ impl Hash for Computation {
 pub(super) struct Lowering<'g> {
     pub(super) graph: &'g Graph,
     derived: &'g [Option<NodeId>],
-    /// Index among the independent parameters, for each parameter.
+    /// Index of each parameter among the independent parameters.
     independent: Vec<usize>,
     parameter_names: Vec<String>,
     pub(super) values: Vec<Value>,
@@ -58,14 +58,14 @@ pub(super) struct Lowering<'g> {
     pub(super) lowered: NodeMap<NodeId, ValueId>,
     pub(super) tables: Vec<ProgramTable>,
     table_places: HashMap<usize, usize>,
-    /// Number of uses of each node by the accelerations, while these are lowered.
+    /// Number of uses of each node by the accelerations, while these are lowered; empty afterwards.
     pub(super) uses: HashMap<NodeId, usize>,
     pub(super) association: Association,
 }
 
 impl<'g> Lowering<'g> {
-    /// Starts the lowering of `graph`. `names` are the names of its parameters; `derived` are the expressions
-    /// of those that depend on others.
+    /// Starts the lowering of `graph`. `names` are the names of its parameters; `derived` are the expressions of
+    /// derived parameters.
     pub(super) fn new(graph: &'g Graph, derived: &'g [Option<NodeId>], names: &[String]) -> Self {
         let mut next = 0;
         let independent = derived
@@ -162,7 +162,7 @@ impl<'g> Lowering<'g> {
         }
     }
 
-    /// Adds a value, or finds an equal one.
+    /// Adds a value, or returns an existing equal value.
     pub(super) fn emit(&mut self, op: Op, extent: Extent) -> ValueId {
         let key = Computation { op, extent };
         if let Some(&known) = self.known.get(&key) {

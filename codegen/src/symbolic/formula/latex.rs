@@ -1,7 +1,7 @@
 //! Formulas in LaTeX math mode with amsmath.
 //!
-//! TeX breaks lines at the signs of a sum, except inside fractions and stretched parentheses. Long sums
-//! therefore have fixed parentheses, and long quotients a slash.
+//! TeX breaks lines at the signs of a sum, except inside fractions and stretched parentheses. Therefore long sums
+//! have parentheses of fixed size, and long quotients are written with a slash.
 
 use eomgen_model_spec::model::Function;
 
@@ -13,7 +13,7 @@ use crate::symbolic::table_text;
 /// Largest length, in characters of plain text, of a part that TeX must not break.
 const MAX_UNBROKEN_LENGTH: usize = 80;
 
-/// Largest number of terms of a sum with fractions; longer sums have quotients with a slash.
+/// Largest number of terms of a sum with fraction bars; in longer sums, quotients are written with a slash.
 const MAX_FRACTIONS: usize = 8;
 
 const TIMES: &str = "\\,";
@@ -25,7 +25,7 @@ impl Formula {
     }
 }
 
-/// Writes a formula with parentheses if its surroundings require them.
+/// Writes a formula, with parentheses if its context requires them.
 fn latex_at_level(formula: &Formula, level: Level) -> String {
     if formula.set_level() < level {
         return in_parentheses(formula);
@@ -109,7 +109,7 @@ fn sum(terms: &[Term]) -> String {
     text
 }
 
-/// Writes factors next to each other; a sum over modes before other factors has parentheses.
+/// Writes factors next to each other; a sum over modes that precedes other factors gets parentheses.
 fn product(factors: &[Formula]) -> String {
     if let [only] = factors {
         return only.latex();
@@ -132,7 +132,7 @@ fn quotient(above: &[Formula], below: &[Formula]) -> String {
         factors => product(factors),
     };
     if below.is_empty() {
-        // A single factor needs no more parentheses than outside a product.
+        // A single factor gets parentheses only if it would need them outside a product.
         return match above {
             [only] => latex_at_level(only, Level::Product),
             _ => numerator,
@@ -144,7 +144,7 @@ fn quotient(above: &[Formula], below: &[Formula]) -> String {
     format!("\\frac{{{numerator}}}{{{}}}", product(below))
 }
 
-/// Writes a quotient with a slash, or a product, on one line that TeX can break.
+/// Writes a product, or a quotient with a slash, on one line that TeX can break.
 fn slash_quotient(above: &[Formula], below: &[Formula]) -> String {
     let numerator = match above {
         [only] => latex_at_level(only, Level::Product),
@@ -157,7 +157,7 @@ fn slash_quotient(above: &[Formula], below: &[Formula]) -> String {
     }
 }
 
-/// Writes a power. Braces separate the exponent from other superscripts, except for a symbol.
+/// Writes a power. If the base is no symbol, braces separate its superscripts from the exponent.
 fn power(base: &Formula, exponent: &Formula) -> String {
     let (base_text, exponent) = (latex_at_level(base, Level::Base), exponent.latex());
     match base {
@@ -250,7 +250,7 @@ fn matrix_part(part: &MatrixPart) -> String {
     }
 }
 
-/// Writes a name with dots above its head and its other parts as subscripts.
+/// Writes a symbol: its first part with dots, its other parts as subscripts.
 fn symbol(symbol: &Symbol) -> String {
     let (head, mut parts) = symbol.parts();
     let head = word(head);
@@ -287,7 +287,7 @@ fn word(head: &str) -> String {
     }
 }
 
-/// Writes the numeric factor of a product, as a small fraction if that is exact.
+/// Writes the numeric factor of a product, as a small fraction if the fraction is exact.
 fn factor(magnitude: f64) -> String {
     match small_fraction(magnitude) {
         Some((numerator, denominator)) => format!("\\tfrac{{{numerator}}}{{{denominator}}}"),
@@ -303,7 +303,7 @@ fn number(value: f64) -> String {
     }
 }
 
-/// Escapes LaTeX characters in prose. Letters outside the font are written in math mode or as code points.
+/// Escapes LaTeX characters in prose. Letters that the font lacks are written in math mode or as code points.
 pub(crate) fn prose(text: &str) -> String {
     text.chars().map(prose_letter).collect()
 }

@@ -1,4 +1,4 @@
-//! Names of Greek letters with their LaTeX commands and characters.
+//! Names of the Greek letters with their LaTeX commands and characters.
 
 const GREEK: [(&str, &str, &str); 36] = [
     ("alpha", "\\alpha", "α"),
@@ -43,7 +43,7 @@ pub(super) fn command(name: &str) -> Option<&'static str> {
     entry(name).map(|(_, command, _)| *command)
 }
 
-/// Returns the Greek letter for a name: θ for `theta`.
+/// Returns the Greek letter for a name, for example θ for `theta`.
 pub fn letter(name: &str) -> Option<&'static str> {
     entry(name).map(|(_, _, letter)| *letter)
 }

@@ -1,9 +1,9 @@
 //! Formulas for documents, as trees that are printed as plain text or LaTeX. (The page generator prints
 //! MathML.)
 //!
-//! `shared` chooses shared nodes with separate lines, `read` converts nodes to a `tree` of `symbol`s and
-//! numbers, `text` and `latex` print it. Sums over modes have an index i. A named node is written by its
-//! name, except in its own formula.
+//! `shared` selects the shared nodes that get separate lines. `read` converts nodes to a `tree` of `symbol`s and
+//! numbers, which `text` and `latex` print. Sums over modes have the index i. A named node is printed as its name,
+//! except in its own formula.
 
 mod latex;
 mod letters;

@@ -16,7 +16,7 @@ const MAX_ABRIDGED_LENGTH: u64 = 2000;
 /// Smallest length of an omitted part in characters.
 const MIN_OMITTED_LENGTH: u64 = 40;
 
-/// Reader of the formulas of a graph.
+/// Converter of graph nodes to formulas.
 pub struct Reader<'a> {
     graph: &'a Graph,
     model: &'a Model,
@@ -24,7 +24,7 @@ pub struct Reader<'a> {
     omitted: HashSet<NodeId>,
 }
 
-/// Returns the complete formula of a node; only named nodes are abbreviated. For large models it can be
+/// Returns the complete formula of a node; only named nodes are abbreviated. For large models, the formula can be
 /// exponentially longer than the graph.
 pub fn full_formula(graph: &Graph, model: &Model, id: NodeId) -> Formula {
     Reader::new(graph, model, &SharedExpressions::default()).formula(id)
@@ -46,7 +46,7 @@ pub fn abridged_formula(graph: &Graph, model: &Model, id: NodeId) -> Formula {
 }
 
 impl<'a> Reader<'a> {
-    /// Prepares a reader in which the nodes of `shared` have separate lines.
+    /// Prepares a reader in which the nodes of `shared` are represented by their names.
     pub fn new(graph: &'a Graph, model: &'a Model, shared: &'a SharedExpressions) -> Self {
         Self {
             graph,
@@ -56,8 +56,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Returns the formula of a node, even if the node has a name in the specification; a node with a
-    /// separate line is represented by its name.
+    /// Returns the formula of a node, even if the node has a name in the specification. A shared node with a separate
+    /// line is represented by its name.
     pub fn formula(&self, id: NodeId) -> Formula {
         match self.shared.name(id) {
             Some(name) => Formula::Symbol(self.indexed(Symbol::plain(name), id)),
@@ -81,8 +81,7 @@ impl<'a> Reader<'a> {
             .map(|id| (self.formula(*id), self.operation(*id)))
     }
 
-    /// Returns the symbol for a name of the graph. The suffixes `_dot` and `_ddot` after the name of a moving
-    /// quantity become dots.
+    /// Returns the symbol for a name of the graph. The suffixes `_dot` and `_ddot` of rates become dots.
     pub fn symbol(&self, name: &str) -> Symbol {
         if let Some(entry) = self.factorisation_symbol(name) {
             return entry;
@@ -114,7 +113,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Returns the symbol of a row of the equations; `index` is the index over the modes of a field.
+    /// Returns the symbol of an equation row; `index` is the mode index if the row belongs to a field.
     fn row(&self, name: &str, index: Index) -> Option<Symbol> {
         let model = self.model;
         if model.coordinates.iter().any(|known| known.name == name) {
@@ -131,7 +130,7 @@ impl<'a> Reader<'a> {
             || model.definitions.iter().any(|known| known.name == name)
     }
 
-    /// Marks operands as omitted until the formula of a node is short enough.
+    /// Marks operands as omitted until the formula of a node has at most `longest` characters.
     fn omit(&mut self, id: NodeId, longest: u64, lengths: &HashMap<NodeId, u64>) {
         if lengths.get(&id).is_none_or(|length| *length <= longest) {
             return;
@@ -222,7 +221,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Returns the value in SI of a parameter that only gives a unit to numbers; these are shown in SI.
+    /// Returns the SI value of a parameter that only carries the unit of a number in the specification; such numbers
+    /// are printed in SI units.
     fn unit_factor(&self, id: NodeId) -> Option<f64> {
         let Operation::Parameter(index) = self.graph.operation(id) else {
             return None;
@@ -275,7 +275,7 @@ impl<'a> Reader<'a> {
         let (mut above, mut below) = (Vec::new(), Vec::new());
         let is_shown = |(id, _): &&(NodeId, i32)| self.unit_factor(*id) != Some(1.0);
         let mut shown: Vec<_> = factors.iter().filter(is_shown).copied().collect();
-        // Coefficients precede varying factors.
+        // Coefficients are printed before varying factors.
         shown.sort_by_key(|(id, _)| !self.is_coefficient(*id));
         let is_reduced = shown.len() < factors.len();
         for (id, exponent) in shown {

@@ -1,6 +1,7 @@
-//! Choice of shared nodes with separate lines. A graph of n nodes can represent a tree of 2^n: the complete
-//! equations of a chain of twenty pendulums fill gigabytes. If every long shared node has a line, the text is
-//! not longer than the graph. Short reports are not split; longer ones are split only as much as necessary.
+//! Selection of the shared nodes that get separate lines. A graph of n nodes can represent a tree of 2^n nodes;
+//! written without sharing, the equations of a chain of twenty pendulums fill gigabytes. If every long shared node
+//! has its own line, the length of the text is proportional to the graph. Short reports are not split; longer reports
+//! are split only as far as necessary.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -14,26 +15,26 @@ const MAX_UNSPLIT_LENGTH: u64 = 16_000;
 /// Target length in characters of split formulas, as far as [`LENGTHS`] permit.
 const SPLIT_TARGET_LENGTH: u64 = 24_000;
 
-/// Lengths above which shared nodes get lines, tried in turn.
+/// Lengths in characters above which shared nodes get lines; they are tried in this order.
 const LENGTHS: [u64; 4] = [320, 160, 80, 40];
 
 /// Approximate length in characters of the name of a line.
 const NAME_LENGTH: u64 = 5;
 
-/// Stems of the names; the first that no numbered quantity of the model uses.
+/// Stems of the line names. The first stem that no numbered quantity of the model uses is taken.
 const STEMS: [&str; 4] = ["s", "z", "y", "h"];
 
 /// Shared nodes with separate lines.
 #[derive(Clone, Debug, Default)]
 pub struct SharedExpressions {
-    /// Nodes in the order of the graph: each line uses only earlier lines.
+    /// Nodes in the order of the graph; each line uses only earlier lines.
     nodes: Vec<NodeId>,
     names: HashMap<NodeId, String>,
 }
 
 impl SharedExpressions {
-    /// Chooses among the nodes that the formulas of `roots` share. A named root is written in full as itself,
-    /// and by its name elsewhere.
+    /// Selects shared nodes in the formulas of `roots`. The formula of a named root is written in full; elsewhere the
+    /// root is printed as its name.
     pub fn find_shared(graph: &Graph, model: &Model, roots: &[NodeId]) -> Self {
         let uses = uses(graph, roots);
         let lengths = Lengths { graph, uses: &uses };
@@ -56,12 +57,12 @@ impl SharedExpressions {
         }
     }
 
-    /// Returns the nodes; each uses only earlier ones.
+    /// Returns the nodes; the formula of each node uses only earlier nodes.
     pub fn nodes(&self) -> &[NodeId] {
         &self.nodes
     }
 
-    /// Returns the name of a node with a line.
+    /// Returns the name of a shared node; `None` for other nodes.
     pub fn name(&self, id: NodeId) -> Option<&str> {
         self.names.get(&id).map(String::as_str)
     }
@@ -73,7 +74,7 @@ struct Lengths<'a> {
 }
 
 impl Lengths<'_> {
-    /// Returns the total length if shared nodes above `longest` have lines, and these nodes.
+    /// Returns the total length in characters if all shared nodes longer than `longest` get lines, and these nodes.
     fn total(&self, roots: &[NodeId], longest: u64) -> (u64, Vec<NodeId>) {
         let mut ids: Vec<NodeId> = self.uses.keys().copied().collect();
         ids.sort_unstable();
@@ -102,7 +103,7 @@ impl Lengths<'_> {
     }
 }
 
-/// Counts the uses of each unnamed node if shared nodes are written once.
+/// Counts the uses of each unnamed node, with shared nodes written once.
 fn uses(graph: &Graph, roots: &[NodeId]) -> HashMap<NodeId, usize> {
     let mut uses: HashMap<NodeId, usize> = HashMap::new();
     let mut waiting: BTreeSet<NodeId> = roots.iter().copied().collect();
@@ -112,7 +113,7 @@ fn uses(graph: &Graph, roots: &[NodeId]) -> HashMap<NodeId, usize> {
             *uses.entry(root).or_insert(0) += 1;
         }
     }
-    // Operands are older than their uses.
+    // Operands have smaller indices than their uses.
     while let Some(id) = waiting.pop_last() {
         for operand in graph.operands(graph.operation(id)) {
             if is_written(operand) {
@@ -128,7 +129,8 @@ pub(super) fn is_leaf(graph: &Graph, id: NodeId) -> bool {
     graph.operands(graph.operation(id)).is_empty()
 }
 
-/// Returns the approximate length of a node in characters; `written` has the lengths of its unnamed operands.
+/// Returns the approximate length of a node's formula in characters; `written` has the lengths of its unnamed
+/// operands.
 pub(super) fn own_length(graph: &Graph, id: NodeId, written: &HashMap<NodeId, u64>) -> u64 {
     let part = |id: &NodeId| match (written.get(id), graph.name(*id)) {
         (Some(known), _) => *known,

@@ -30,8 +30,8 @@ pub struct Symbol {
     pub dots: u8,
     /// Indices: none for a scalar, one for a vector, two for a matrix.
     pub indices: Vec<Index>,
-    /// Symbols that are the subscripts, such as row and column of an entry of a matrix. They replace the
-    /// parts of the name after the first.
+    /// Symbols used as subscripts, such as row and column of a matrix entry. They replace the subscripts from the
+    /// name.
     pub owners: Vec<Self>,
 }
 
@@ -46,8 +46,7 @@ impl Symbol {
         }
     }
 
-    /// Returns the symbol of a part of other quantities: M of two coordinates is an entry of the mass
-    /// matrix.
+    /// Returns a symbol with other symbols as subscripts, such as an entry of the mass matrix with two coordinates.
     pub fn part_of(head: &str, owners: Vec<Self>) -> Self {
         let names = owners.iter().map(|owner| owner.name.as_str());
         let names: Vec<&str> = std::iter::once(head).chain(names).collect();
@@ -80,8 +79,8 @@ impl Symbol {
         }
     }
 
-    /// Splits the name into head and subscripts: `theta_s` is theta with s. A name with empty parts is not
-    /// split. The subscripts of a symbol with owners are these.
+    /// Splits the name at underscores into head and subscripts: `theta_s` is theta with the subscript s. A name with
+    /// empty parts is not split. If the symbol has owners, no subscripts are returned.
     pub fn parts(&self) -> (&str, Vec<&str>) {
         let mut parts = self.name.split('_');
         let head = parts.next().unwrap_or_default();
@@ -96,7 +95,7 @@ impl Symbol {
     }
 }
 
-/// Prints a rate as `dot(x)`; indices follow the name inside the parentheses.
+/// Prints a symbol as plain text. A rate is printed as `dot(x)`, with indices inside the parentheses.
 impl fmt::Display for Symbol {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (before, after) = match self.dots {

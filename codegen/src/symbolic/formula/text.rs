@@ -5,7 +5,7 @@ use std::fmt::{self, Display, Formatter};
 use super::tree::{Choice, Formula, Level, MatrixPart, Term, powers_of_ten, small_fraction};
 use crate::symbolic::table_text;
 
-/// Formula with the level of its surroundings.
+/// Formula with the level of its context.
 struct AtLevel<'a>(&'a Formula, Level);
 
 /// Formulas with a separator.
@@ -130,7 +130,7 @@ fn matrix(f: &mut Formatter<'_>, parts: &[MatrixPart]) -> fmt::Result {
     Ok(())
 }
 
-/// Writes the numeric factor of a product, as a small fraction if that is exact.
+/// Writes the numeric factor of a product, as a small fraction if the fraction is exact.
 fn factor(magnitude: f64) -> String {
     match small_fraction(magnitude) {
         Some((numerator, denominator)) => format!("{numerator}/{denominator}"),

@@ -13,7 +13,7 @@ pub enum Formula {
     Number(f64),
     /// Named quantity.
     Symbol(Symbol),
-    /// Constant of a basis.
+    /// Element of a table of constants of a basis.
     Table(TableKind),
     /// Sum of terms.
     Sum(Vec<Term>),
@@ -32,13 +32,13 @@ pub enum Formula {
     Choice(Box<Choice>),
     /// Sum over an index.
     Total(Index, Box<Self>),
-    /// Element of a matrix times a vector.
+    /// Element of the product of a matrix and a vector.
     Applied(Box<Self>, Box<Self>),
     /// Transposed matrix.
     Transposed(Box<Self>),
     /// Element of a matrix, as a sum of parts.
     Matrix(Vec<MatrixPart>),
-    /// Operation without a symbol, by its name.
+    /// Operation without a mathematical notation, with its name.
     Operation(&'static str, Vec<Self>),
     /// Omitted part of an abridged formula.
     Omitted,
@@ -77,10 +77,10 @@ pub enum MatrixPart {
     Scaled(Formula, Formula, Formula),
 }
 
-/// Surroundings of a formula, which decide about its parentheses.
+/// Context of a formula, which determines whether it needs parentheses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// Term of a sum, or no surroundings.
+    /// Term of a sum, or no context.
     Sum,
     /// Factor of a product.
     Product,
@@ -108,7 +108,7 @@ impl Formula {
         }
     }
 
-    /// Returns the sum of formulas; 0 without any.
+    /// Returns the sum of formulas, or 0 if there are none.
     pub fn sum(formulas: Vec<Self>) -> Self {
         let mut terms: Vec<Term> = formulas
             .into_iter()
@@ -127,7 +127,7 @@ impl Formula {
         }
     }
 
-    /// Changes the index of a vector's element to the column index; other formulas are unchanged.
+    /// Replaces the index of a vector element by the column index; other formulas are unchanged.
     pub fn split_by_columns(self) -> Self {
         match self {
             Self::Symbol(symbol) if symbol.indices == [Index::I] => {
@@ -200,7 +200,8 @@ impl Serialize for Formula {
     }
 }
 
-/// Returns numerator and denominator if the magnitude is exactly a small fraction and no integer.
+/// Returns numerator and denominator if the magnitude is exactly a fraction with small integers; `None` for integers
+/// and other numbers.
 pub fn small_fraction(value: f64) -> Option<(f64, u32)> {
     if value.fract() == 0.0 {
         return None;
@@ -215,8 +216,8 @@ pub fn small_fraction(value: f64) -> Option<(f64, u32)> {
 /// Largest power of pi that [`multiple_of_pi`] finds.
 const MAX_POWER_OF_PI: i32 = 4;
 
-/// Returns the factor and the power of a magnitude that is a small whole number or fraction times a power
-/// of pi, to rounding: 39.478... is 4 times pi to the power 2.
+/// Returns factor and exponent if a magnitude equals, up to rounding, a small integer or fraction times a power of
+/// pi: 39.478... is 4 pi^2.
 pub fn multiple_of_pi(magnitude: f64) -> Option<(f64, i32)> {
     (1..=MAX_POWER_OF_PI).find_map(|power| {
         let rough = magnitude / std::f64::consts::PI.powi(power);
@@ -231,7 +232,7 @@ pub fn multiple_of_pi(magnitude: f64) -> Option<(f64, i32)> {
     })
 }
 
-/// Returns mantissa and exponent of ten of a very small or large number; None for others.
+/// Returns mantissa and exponent of ten of a very small or large number; `None` for other numbers.
 pub fn powers_of_ten(value: f64) -> Option<(String, String)> {
     let magnitude = value.abs();
     if magnitude == 0.0 || (1e-4..1e6).contains(&magnitude) {
