@@ -1,5 +1,5 @@
-//! Certificates of models given as text, without compiling emitted code: correct models must pass
-//! and wrong ones must fail.
+//! Certificates of models given as text, without compiling emitted code. Certificates of correct models must pass, and
+//! certificates of wrong models must fail.
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::program::evaluator::Evaluator;
@@ -22,12 +22,12 @@ pub fn check_model(text: &str) -> Model {
     }
 }
 
-/// Certifies the equations of `subject` against `model`.
+/// Certifies the derived equations of `subject`; the oracle uses `model`.
 pub fn certify(model: &Model, subject: &Model) -> Certificate {
     certify_outputs(model, subject, &[])
 }
 
-/// Certifies the equations and the requested `outputs` of `subject` against `model`.
+/// Certifies the derived equations and the requested `outputs` of `subject`; the oracle uses `model`.
 pub fn certify_outputs(model: &Model, subject: &Model, outputs: &[Output]) -> Certificate {
     let parameters = model.parameter_values().expect("values");
     let variants = |order: usize| {

@@ -1,5 +1,5 @@
-//! Machines with constraints: a pendulum in Cartesian coordinates, a slider-crank, a four-bar linkage, two gears and a
-//! sleigh with an edge.
+//! Machines with constraints: a pendulum in Cartesian coordinates, a slider-crank, a four-bar linkage, two gears and
+//! Chaplygin's sleigh.
 
 use crate::constrained_records::{Channel, Machine};
 
@@ -8,7 +8,7 @@ const RADIANS: (&str, f64) = ("rad", 1.0);
 const MILLIMETRES: (&str, f64) = ("mm", 1e-3);
 const DEGREES: (&str, f64) = ("deg", std::f64::consts::PI / 180.0);
 
-/// Units of lengths and of angles: m and rad, or mm and deg.
+/// Returns the units of lengths and angles: m and rad, or mm and deg.
 fn units(is_si: bool) -> [(&'static str, f64); 2] {
     match is_si {
         true => [METRES, RADIANS],
@@ -40,7 +40,8 @@ air = "1/2*c*(dot(x)^2 + dot(y)^2)"
 push = { on = "x", value = "u" }
 "#;
 
-/// A pendulum of the length `l` (m), 0.3 in the specification, with a spring of `stiffness` (N/m) along x.
+/// Returns a pendulum of length `l` (m) with a spring of `stiffness` (N/m) along x. In the specification the length is
+/// 0.3 m.
 pub fn pendulum(l: f64, stiffness: f64, is_si: bool) -> Machine<2, 2> {
     let (m, g, c) = (0.2, 9.81, 0.01);
     let [length, _] = units(is_si);
@@ -90,11 +91,11 @@ bearing = "1/2*c*dot(theta)^2"
 motor = { on = "theta", value = "u" }
 "#;
 
-/// A slider-crank with a slider of `mass` (kg), 0.4 in the specification, a dry friction of `friction` (N) and a damper of
-/// `damping` (N s/m) on the slider.
+/// Returns a slider-crank whose slider has the mass `mass` (kg), dry friction `friction` (N) and a damper `damping` (N
+/// s/m). In the specification the mass is 0.4 kg.
 pub fn slider_crank(mass: f64, friction: f64, damping: f64, is_si: bool) -> Machine<2, 2> {
     let (r, l, crank, rod, c) = (0.05_f64, 0.15_f64, 1e-3, 1e-4, 4e-3);
-    // The angle of the rod and its derivative, the place of the slider, its derivative, by the angle of the crank.
+    // Angle of the rod, position of the slider, and their derivatives by the angle of the crank.
     let close = move |angle: f64| {
         let rod = (r / l * angle.sin()).asin();
         let turn = r * angle.cos() / (l * rod.cos());
@@ -137,11 +138,11 @@ pub fn slider_crank(mass: f64, friction: f64, damping: f64, is_si: bool) -> Mach
     }
 }
 
-/// A four-bar linkage with a damper of `damping` (N m s) at the pivot of the rocker.
+/// Returns a four-bar linkage with a damper of `damping` (N m s) at the pivot of the rocker.
 pub fn four_bar(damping: f64, is_si: bool) -> Machine<2, 2> {
     let (crank, coupler, rocker, ground) = (0.05_f64, 0.15_f64, 0.12_f64, 0.16_f64);
     let (inertias, mass, c) = ([1e-3, 3e-4, 2e-3], 0.3, 4e-3);
-    // The angles of coupler and rocker.
+    // Angles of coupler and rocker.
     let close = move |angle: f64| {
         let (x, y) = (crank * angle.cos(), crank * angle.sin());
         let diagonal = (ground - x).hypot(y);
@@ -214,12 +215,12 @@ loop_y = { zero = "a*sin(theta) + b*sin(phi) - e*sin(psi)" }
         }),
         friction: (0.0, Box::new(|_| [1.0, 1.0])),
         observe: Box::new(move |[angle, _]| [angle, close(angle)[1]]),
-        // The crank of the test record begins far from the initial state of the specification.
+        // The test record starts with a crank angle far from the initial state of the specification.
         initial: [[0.6, 12.0], [4.0, 10.0]],
     }
 }
 
-/// Two gears, of which the second is measured, with a dry friction of `friction` (N m) on the second.
+/// Returns two gears with dry friction `friction` (N m) on the second one, whose angle is measured.
 pub fn gears(friction: f64, is_si: bool) -> Machine<2, 1> {
     let (ratio, motor, load, c) = (0.4, 1e-4, 2e-3, 2e-4);
     let inertia = motor + load * ratio * ratio;
@@ -260,7 +261,7 @@ teeth = { zero = "z_1*q_1 - z_2*q_2" }
     }
 }
 
-/// A sleigh on an edge that does not slip sideways (Chaplygin), with a damper of `damping` (N m s) on its turns.
+/// Returns a sleigh on an edge that does not slip sideways (Chaplygin), with a rotational damper `damping` (N m s).
 pub fn sleigh(damping: f64, is_si: bool) -> Machine<5, 3> {
     let (m, inertia, a, c, push) = (2.0, 0.05, 0.1, 1.0, 2.0);
     let [length, turn] = units(is_si);
@@ -304,7 +305,7 @@ edge = { zero = "cos(theta)*dot(y) - sin(theta)*dot(x)" }
         ],
         sections: "[uncertain]\nc = { relative = 0.1 }",
         input: (0.0, 0.25, "N m"),
-        // Speed along the edge, speed of turning, place and angle.
+        // State: speed along the edge, angular velocity, position and angle.
         rates: Box::new(move |[v, w, _, _, angle], u| {
             let along = (m * a * w * w - c * v + push) / m;
             let turning = (u - m * a * v * w - damping * w) / (inertia + m * a * a);

@@ -1,35 +1,37 @@
-//! Records of machines with constraints, from equations in independent coordinates that are written by hand and integrated
-//! by classical Runge-Kutta steps. Dry friction brings the second state, a speed, as close to zero in each step as its bound
-//! permits.
+//! Records of machines with constraints. Hand-written equations in independent coordinates are integrated by classical
+//! Runge-Kutta steps. In each step, dry friction brings the second state, a speed, as close to zero as the bound of the
+//! friction permits.
 
 use crate::random_numbers::NormalNumbers;
 
-/// Steps of a sample.
+/// Number of integration steps per sample.
 const PARTS: usize = 40;
 
-/// A measured quantity.
+/// Measured quantity.
 pub struct Channel {
-    /// Its name: a coordinate of the specification with constraints.
+    /// Name of the quantity: a coordinate of the specification with constraints.
     pub name: &'static str,
-    /// Unit of its column, and the size of the unit in SI.
+    /// Unit of the column, and its factor to SI.
     pub unit: (&'static str, f64),
     /// Standard deviation of the noise, SI.
     pub noise: f64,
 }
 
-/// Rates of a state at an input.
+/// Function that returns the rates of the state for a state and an input.
 pub type Rates<const S: usize> = dyn Fn([f64; S], f64) -> [f64; S];
 
-/// Lever arm of a dry friction on the second state and reciprocal inertia of that state, at a state.
+/// Function of the state that returns the lever arm of the dry friction on the second state, and the reciprocal inertia
+/// of the second state.
 pub type Lever<const S: usize> = dyn Fn([f64; S]) -> [f64; 2];
 
-/// A machine with its specifications.
+/// Machine with its specifications.
 pub struct Machine<const S: usize, const C: usize> {
     /// Specification with constraints, without the hidden effect.
     pub specification: String,
-    /// The same machine in independent coordinates; its observables have the names of the channels and `_seen`.
+    /// Specification of the machine in independent coordinates; its observables have the names of the channels with the
+    /// suffix `_seen`.
     pub independent: String,
-    /// The channels.
+    /// Measured quantities.
     pub channels: [Channel; C],
     /// Uncertain parameters, as in a dataset file.
     pub sections: &'static str,
@@ -37,27 +39,27 @@ pub struct Machine<const S: usize, const C: usize> {
     pub input: (f64, f64, &'static str),
     /// Rates in independent coordinates, without dry friction.
     pub rates: Box<Rates<S>>,
-    /// Bound of the dry friction, and its lever.
+    /// Bound of the dry friction, and its lever arm.
     pub friction: (f64, Box<Lever<S>>),
     /// Measured quantities.
     pub observe: Box<dyn Fn([f64; S]) -> [f64; C]>,
-    /// Initial states of the training and the test record.
+    /// Initial states of the training record and the test record.
     pub initial: [[f64; S]; 2],
 }
 
-/// Sampling and windows of records.
+/// Sampling and window length of records.
 #[derive(Clone, Copy)]
 pub struct Sampling {
     /// Number of samples.
     pub samples: usize,
-    /// Time between samples, s.
+    /// Time between samples, in s.
     pub step: f64,
     /// Length of the windows, s; `None` for whole records.
     pub window: Option<f64>,
 }
 
 impl<const S: usize, const C: usize> Machine<S, C> {
-    /// Returns the dataset file. `suffix` follows the name of each channel in its observable.
+    /// Returns the dataset file. The observable of a channel has the channel's name with the suffix `suffix`.
     pub fn dataset(&self, sampling: Sampling, suffix: &str) -> String {
         let mut text = format!(
             "[records]\ntrain = [\"train.csv\"]\ntest = [\"test.csv\"]\n\n[time]\ncolumn = \"t\"\nunit = \"s\"\n\n\

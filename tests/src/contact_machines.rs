@@ -1,6 +1,6 @@
-//! Machines with frictions that hold and with contacts, for steps of fixed length.
+//! Machines with sticking friction and with contacts, for tests of fixed steps.
 
-/// Mass on a spring with friction of Stribeck's form, driven by an input `F`.
+/// Mass on a spring with Stribeck friction, driven by an input `F`.
 pub const STRIBECK: &str = r#"
 [model]
 name = "machine"

@@ -1,9 +1,8 @@
-//! Shared code of the integration tests: shipped specifications with their derived variants
-//! ([`models`]), generated models with their motions ([`motions`]) or certificates ([`certified`]),
-//! random correct models ([`smooth_models`]), the built program ([`program`]), commands printed in
-//! the docs ([`pages`]), synthetic records ([`measured`], with [`logistic_noise`], [`moving_base`] with
-//! [`moving_machines`], and [`constrained_records`] of [`constrained_machines`]) and the arm
-//! integrated in extended precision ([`taylor`]).
+//! Shared code of the integration tests: shipped specifications with their derived variants ([`models`]), generated
+//! models with their motions ([`motions`]) or certificates ([`certified`]), random correct models ([`smooth_models`]),
+//! the built program ([`program`]), commands in the documentation ([`pages`]), synthetic records ([`measured`], with
+//! [`logistic_noise`], [`moving_base`] with [`moving_machines`], and [`constrained_records`] of
+//! [`constrained_machines`]) and the arm integrated in extended precision ([`taylor`]).
 
 pub mod certified;
 pub mod constrained_machines;

@@ -1,15 +1,15 @@
 //! Deterministic noise from the centred logistic map.
 
-/// Generator of numbers with mean 0.
+/// Generator of pseudo-random numbers with mean 0.
 pub struct LogisticNoise {
     /// State of the map, between 0 and 1.
     place: f64,
-    /// Approximate standard deviation.
+    /// Approximate standard deviation of the numbers.
     size: f64,
 }
 
 impl LogisticNoise {
-    /// Starts with this standard deviation and initial state, between 0 and 1.
+    /// Creates a generator with this standard deviation and initial state (between 0 and 1).
     pub fn new(size: f64, place: f64) -> Self {
         Self { place, size }
     }

@@ -1,5 +1,5 @@
-//! Synthetic records of the stage of `emps.toml`: held forces, the closed form between them, and
-//! deterministic noise. Tests modify them.
+//! Synthetic records of the stage of `emps.toml`: piecewise constant forces, closed-form motion between their changes,
+//! and deterministic noise. Tests modify these records.
 
 use std::path::PathBuf;
 
@@ -7,11 +7,13 @@ use crate::logistic_noise::LogisticNoise;
 use crate::models::path;
 use crate::program;
 
-/// Number of samples of a record, and time between samples, s.
+/// Number of samples of a record.
 pub const SAMPLES: usize = 400;
+
+/// Time between samples, in s.
 const STEP: f64 = 0.005;
 
-/// Noise of the position sensor, m.
+/// Standard deviation of the position sensor's noise, in m.
 const NOISE: f64 = 1e-6;
 
 /// Temporary folder for a dataset and its records.
@@ -49,7 +51,7 @@ F_v = { relative = 0.05 }
 length = 0.25
 "#;
 
-/// State of the stage.
+/// Time, state and motor force of the stage.
 #[derive(Clone, Copy)]
 pub struct Moment {
     /// Time, s.
@@ -62,12 +64,12 @@ pub struct Moment {
     pub force: f64,
 }
 
-/// Returns a record of t, force, q with dry friction in N; `turn` changes the input.
+/// Returns a record with columns t, force, q and dry friction in N; `turn` is a phase that changes the input.
 pub fn record(friction: f64, turn: f64) -> String {
     record_with_force(&dry(friction), turn)
 }
 
-/// Returns dry friction with a steep slope at zero speed.
+/// Returns dry friction that changes its sign steeply at zero speed.
 fn dry(friction: f64) -> impl Fn(Moment) -> f64 {
     move |at| -friction * (at.v / 1e-4).tanh()
 }
@@ -82,7 +84,7 @@ pub fn record_with_force(other: &dyn Fn(Moment) -> f64, turn: f64) -> String {
         let t = STEP * sample as f64;
         let force = 300.0 * (5.0 * t + turn).cos() - 150.0 * (13.0 * t * (1.0 + 0.3 * turn)).sin();
         text += &format!("{t:.3},{force:.17},{:.9}\n", q + noise.draw());
-        // The steps are so short that friction has one direction in each.
+        // The integration steps are so short that the friction has a constant direction in each step.
         let parts = 50;
         let h = STEP / f64::from(parts);
         let slope = |at: Moment| (force + other(at) - viscous * at.v) / mass;
@@ -109,7 +111,7 @@ impl Measured {
         }
     }
 
-    /// Writes two valid records of a stage with this dry friction, N.
+    /// Writes two valid records of a stage with dry friction `friction`, in N.
     pub fn stage(friction: f64) -> Self {
         Self::stage_with_force(&dry(friction))
     }

@@ -44,7 +44,7 @@ pub fn load(name: &str) -> Model {
         .model
 }
 
-/// Model derived with every field at one order.
+/// Variant of a model with all fields at one order.
 pub struct Variant {
     /// Equations of motion.
     pub equations: Equations,
@@ -66,8 +66,7 @@ pub fn variant(model: &Model, order: usize) -> Variant {
     }
 }
 
-/// Returns random times, states and inputs with the magnitudes of the model's motion, `count` in
-/// every regime of its switching functions.
+/// Returns random times, states and inputs with magnitudes typical of the motion; `count` in every regime.
 pub fn samples(model: &Model, order: usize, seed: u64, count: usize) -> Vec<Sample> {
     let parameters = model
         .parameter_values()

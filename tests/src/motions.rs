@@ -1,5 +1,5 @@
-//! Generated models and their motions by the exact and by the general solver. The two solvers share
-//! only the derived equations.
+//! Generated models and their simulation with the exact solver and with the general solvers. The two kinds of solvers
+//! share only the derived equations.
 
 use std::cell::RefCell;
 use std::fmt::Write;
@@ -161,8 +161,7 @@ impl TestMotion {
         propagator.simulate(&self.initial, span, times, &self.inputs, &mut |_| {})
     }
 
-    /// Simulates like [`try_simulate_exactly`](Self::try_simulate_exactly); asserts success and that every sample is
-    /// present.
+    /// Simulates like [`try_simulate_exactly`](Self::try_simulate_exactly); asserts success and a row for every time.
     pub fn simulate_exactly(&self, span: (f64, f64), times: &[f64]) -> Trajectory {
         let trajectory = self
             .try_simulate_exactly(span, times)
@@ -171,7 +170,7 @@ impl TestMotion {
         trajectory
     }
 
-    /// Returns the model with its inputs for the general solver.
+    /// Returns the model with its inputs for the general solvers.
     pub fn driven(&self) -> DrivenModel<RefCell<Evaluator>, &HeldInputs> {
         let evaluator = variant(&self.model, self.order).evaluator;
         assert!(evaluator.pivots_are_positive());
@@ -180,7 +179,7 @@ impl TestMotion {
             .with_sides(self.sided_model(), tolerance)
     }
 
-    /// Returns the model with the sides of its surfaces at the declared parameters.
+    /// Returns the model with prescribed sides of its switching surfaces, at the declared parameters.
     fn sided_model(&self) -> Option<SidedModel> {
         let orders = Orders::Uniform(self.order);
         let compiled = CompiledModel::derive(self.model.clone(), orders).expect("the equations");
@@ -194,7 +193,7 @@ impl TestMotion {
         compiled.sided_model(&values).expect("sides")
     }
 
-    /// Simulates with the Runge-Kutta method of the general solver.
+    /// Simulates with the Runge-Kutta method of the general solvers.
     pub fn simulate_generally(
         &self,
         span: (f64, f64),
@@ -204,7 +203,7 @@ impl TestMotion {
         self.simulate_by_method(Method::DormandPrince853, span, times, tolerance)
     }
 
-    /// Simulates with the given method of the general solver.
+    /// Simulates with the given method of the general solvers.
     pub fn simulate_by_method(
         &self,
         method: Method,
@@ -221,7 +220,7 @@ impl TestMotion {
         simulate(&driven, &self.initial, span, times, &settings, &mut |_| {})
     }
 
-    /// Returns the energies at these times and states, J.
+    /// Returns the energies at these times and states, in J.
     pub fn energies(&self, times: &[f64], states: &[Vec<f64>]) -> Vec<f64> {
         let mut evaluator = variant(&self.model, self.order).evaluator;
         let mut values = vec![0.0; evaluator.program().observables.len()];
@@ -235,8 +234,8 @@ impl TestMotion {
     }
 }
 
-/// Simulates a machine from its declared initial state with its declared inputs and parameters, with this relative
-/// tolerance and longest step (s). The solver may stop early.
+/// Simulates a machine with declared initial state, inputs and parameters. `settings` are the relative tolerance and
+/// the longest step (s). The solver may stop early.
 pub fn simulate_declared(
     text: &str,
     times: &[f64],
@@ -259,21 +258,21 @@ pub fn simulate_declared(
     motion.unwrap_or_else(|error| panic!("{solver}: {error}\n{text}"))
 }
 
-/// Simulates as [`simulate_declared`] up to the last time.
+/// Simulates like [`simulate_declared`]; asserts that the solver reaches the last time.
 pub fn simulate_to_end(text: &str, times: &[f64], solver: Solver, settings: (f64, f64)) -> Motion {
     let motion = simulate_declared(text, times, solver, settings).into_complete();
     motion.unwrap_or_else(|error| panic!("{solver}: {error}\n{text}"))
 }
 
-/// Returns `count` equal steps from 0 to `until`, both included.
+/// Returns the ends of `count` equal steps from 0 to `until`, both included.
 pub fn grid(until: f64, count: usize) -> Vec<f64> {
     (0..=count)
         .map(|k| until * k as f64 / count as f64)
         .collect()
 }
 
-/// Returns the largest difference of two motions at their samples, relative to the largest
-/// magnitude of each state in the second one, or to `smallest` if that is larger.
+/// Returns the largest difference of two motions at their samples. The difference of a state is relative to its largest
+/// magnitude in the second motion, or to `smallest` if this is larger.
 pub fn difference(a: &[Vec<f64>], b: &[Vec<f64>], smallest: f64) -> f64 {
     assert_eq!(a.len(), b.len(), "samples");
     let states = b.first().map_or(0, Vec::len);

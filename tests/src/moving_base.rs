@@ -1,21 +1,22 @@
-//! Records of machines on a base with prescribed motion, from equations that are written by hand and integrated by the
-//! midpoint rule in small steps. Dry friction brings the first speed as close to zero in each step as its bounds permit.
+//! Records of machines on a base with prescribed motion. Hand-written equations are integrated by the midpoint rule
+//! with small steps. In each step, dry friction brings the first speed as close to zero as the bounds of the friction
+//! permit.
 
 use crate::random_numbers::NormalNumbers;
 
-/// Samples of a record.
+/// Number of samples per record.
 const SAMPLES: usize = 1500;
 
-/// Motion of a base from rest at 0: a sum of sines times a factor that rises from 0 to 1.
+/// Motion of the base: a sum of sines times a factor that increases from 0 to 1.
 struct Base {
-    /// Amplitude, m, frequency, Hz, and phase, rad, of each sine.
+    /// Amplitude (m), frequency (Hz) and phase (rad) of each sine.
     sines: [[f64; 3]; 3],
-    /// Time of the rise, s.
+    /// Time in which the factor increases, in s.
     rise: f64,
 }
 
 impl Base {
-    /// Returns the position, the speed and the acceleration at a time, s.
+    /// Returns position, velocity and acceleration at the time `t`, in s.
     fn evaluate(&self, t: f64) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for [amplitude, frequency, phase] in self.sines {
@@ -26,7 +27,7 @@ impl Base {
                 *slot += amplitude * value;
             }
         }
-        // A polynomial with two derivatives that are 0 at both ends.
+        // Factor: a polynomial whose first two derivatives are 0 at both ends.
         let r = (t / self.rise).min(1.0);
         let factor = r.powi(3) * (10.0 - 15.0 * r + 6.0 * r * r);
         let rate = 30.0 * (r * (1.0 - r)).powi(2) / self.rise;
@@ -39,20 +40,20 @@ impl Base {
     }
 }
 
-/// Forces at a motion of the base (position, rate and second rate), positions and rates.
+/// Function that returns the forces for a motion of the base (position, rate, second rate), positions and rates.
 pub type Forces<const N: usize> = dyn Fn([f64; 3], [f64; N], [f64; N]) -> [f64; N];
 
-/// A machine with its specification and its dataset file.
+/// Machine with its specification and dataset file.
 pub struct Machine<const N: usize, const C: usize> {
     /// Specification, without the hidden effect.
     pub specification: String,
     /// Names of the channels.
     pub channels: [&'static str; C],
-    /// Noise of the channels in SI, and their unit.
+    /// Standard deviation of the channels' noise in SI, and the unit of the channels.
     pub noise: (f64, &'static str),
     /// Uncertain parameters, as in a dataset file.
     pub sections: &'static str,
-    /// Largest amplitude of the base, m, and its frequencies, Hz.
+    /// Largest amplitude (m) and frequencies (Hz) of the base.
     pub base: (f64, [f64; 3]),
     /// Inertia of each coordinate.
     pub inertia: [f64; N],
@@ -60,7 +61,7 @@ pub struct Machine<const N: usize, const C: usize> {
     pub friction: f64,
     /// Forces without dry friction.
     pub force: Box<Forces<N>>,
-    /// Factors of the coordinates in each channel.
+    /// Factors of the coordinates in each channel, which is a linear combination.
     pub observed: [[f64; N]; C],
     /// Initial position of the first coordinate in the training and in the test record.
     pub initial: [f64; 2],
@@ -69,11 +70,11 @@ pub struct Machine<const N: usize, const C: usize> {
 /// Units and sampling of the records.
 #[derive(Clone, Copy)]
 pub struct Recording {
-    /// Time between samples, s.
+    /// Time between samples, in s.
     pub step: f64,
-    /// Fine steps of a sample.
+    /// Number of integration steps per sample.
     pub parts: usize,
-    /// Unit of the column of the base, and its size in m.
+    /// Unit of the column of the base motion, and its factor to m.
     pub unit: (&'static str, f64),
 }
 

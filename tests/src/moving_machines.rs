@@ -1,9 +1,9 @@
-//! Four machines on a moving base, most with a hidden force that the specification does not have.
+//! Four machines on a moving base, most of them with a hidden force that is missing in the specification.
 
 use crate::moving_base::Machine;
 
-/// Two masses above each other with springs and dampers; the sensors measure the distance from the ground. `hidden`:
-/// force on the lower mass at its distance from the base and its rate.
+/// Returns a tower: two masses above each other with springs and dampers. The sensors measure absolute positions.
+/// `hidden` is a force on the lower mass, a function of its distance from the base and the rate of this distance.
 pub fn tower(hidden: fn(f64, f64) -> f64) -> Machine<2, 2> {
     Machine {
         specification: r#"
@@ -48,7 +48,7 @@ link = "1/2*c_2*(dot(x_2) - dot(x_1))^2"
     }
 }
 
-/// A pendulum with a moving pivot, in which a dry friction of `torque` (N m) acts.
+/// Returns a pendulum with a moving pivot and dry friction `torque` (N m) in the pivot.
 pub fn pendulum(torque: f64) -> Machine<1, 1> {
     let (m, l, g, c) = (0.2, 0.3, 9.81, 1e-3);
     Machine {
@@ -89,8 +89,8 @@ pivot = "1/2*c*dot(theta)^2"
     }
 }
 
-/// A mass on a spring that rubs on the moving base; the sensor measures the distance from the base. `hidden`: force on the
-/// mass at this distance and its rate.
+/// Returns a mass on a spring with friction on the moving base. The sensor measures the distance from the base.
+/// `hidden` is a force on the mass, a function of this distance and its rate.
 pub fn slider(hidden: fn(f64, f64) -> f64) -> Machine<1, 1> {
     Machine {
         specification: r#"
@@ -124,8 +124,8 @@ friction = { on = "z", value = "-F*sign(dot(z))" }
     }
 }
 
-/// A clamped beam on the moving base in three modes; the sensors measure the deflection at the end and in the middle.
-/// `hidden`: force at the end at its deflection and rate.
+/// Returns a beam with three modes, clamped to the moving base. The sensors measure the deflection at the end and in
+/// the middle. `hidden` is a force at the end, a function of the end's deflection and rate.
 pub fn mast(hidden: fn(f64, f64) -> f64) -> Machine<3, 2> {
     let (rho, stiffness, l, d) = (0.8, 2.0, 0.5, 0.02);
     let roots: [f64; 3] = [
@@ -134,14 +134,14 @@ pub fn mast(hidden: fn(f64, f64) -> f64) -> Machine<3, 2> {
         7.854_757_438_237_613,
     ];
     let ratio = |z: f64| (z.cosh() + z.cos()) / (z.sinh() + z.sin());
-    // Deflection of a mode, whose square has the mean 1, at a part of the length.
+    // Mode shape with mean square 1, at the fraction `part` of the length.
     let shape = |z: f64, part: f64| {
         let at = z * part;
         at.cosh() - at.cos() - ratio(z) * (at.sinh() - at.sin())
     };
     let end = roots.map(|z| shape(z, 1.0));
     let middle = roots.map(|z| shape(z, 0.5));
-    // Integral of the mode.
+    // Integral of the mode shape.
     let mass = roots.map(|z| 2.0 * rho * l * ratio(z) / z);
     let springs = roots.map(|z| stiffness * (z / l).powi(4) * l);
     Machine {

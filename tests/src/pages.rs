@@ -1,5 +1,5 @@
-//! README.md and the pages of docs/: printed commands with the output shown there, files that the
-//! reader saves, links and pictures.
+//! README.md and the pages of docs/: commands with their printed output, files that the reader saves, links and
+//! pictures.
 
 use std::path::{Path, PathBuf};
 
@@ -45,7 +45,7 @@ pub fn recipes() -> Vec<(String, String)> {
     pages
 }
 
-/// Returns whether a page or a picture belongs to a recipe.
+/// Returns true if a page or a picture belongs to a recipe.
 pub fn is_recipe(name: &str) -> bool {
     name.starts_with("docs/recipes/")
 }
@@ -56,7 +56,7 @@ pub fn name_in_project(path: &Path) -> String {
     name.display().to_string()
 }
 
-/// Returns all files below a folder, without those behind links.
+/// Returns all files below a folder. Symbolic links are not followed.
 pub fn files_in(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).expect("a folder") {
@@ -107,7 +107,7 @@ pub fn links(text: &str) -> Vec<(String, bool)> {
     found
 }
 
-/// Returns the anchors of a page's headings, as a browser or an editor derives them.
+/// Returns the anchors of a page's headings, as browsers and editors derive them.
 pub fn anchors(text: &str) -> Vec<String> {
     let outside: String = text.split("```").step_by(2).collect();
     let headings = outside.lines().filter(|line| line.starts_with('#'));
@@ -150,8 +150,7 @@ fn fenced_blocks(page: &str) -> Vec<FencedBlock<'_>> {
     blocks
 }
 
-/// Returns all commands in console blocks of `pages`, in their order, and the blocks without a
-/// command.
+/// Returns all commands in console blocks of `pages` in order, and the blocks without a command.
 pub fn commands_in_blocks_of(
     pages: &[(String, String)],
 ) -> (Vec<PrintedCommand>, Vec<OutputBlock>) {
@@ -219,7 +218,7 @@ pub fn commands_in_text_of(pages: &[(String, String)]) -> Vec<PrintedCommand> {
 
 /// Returns the code in running text and tables, with single spaces between words.
 pub fn inline_code(text: &str) -> Vec<String> {
-    // Without the blocks, odd parts of the text are between single backticks.
+    // After the fenced blocks are removed, every second part of the text is between single backticks.
     let prose: String = text.split("```").step_by(2).collect();
     let code = prose.split('`').skip(1).step_by(2);
     code.map(|code| code.split_whitespace().collect::<Vec<_>>().join(" "))

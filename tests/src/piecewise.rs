@@ -1,6 +1,6 @@
-//! Random machines with nested piecewise forces. All quantities are pure numbers from a small set
-//! of half-widths and offsets, so that functions are constant on whole regions, at zero and at
-//! thresholds of others.
+//! Random machines with nested piecewise forces. All quantities are dimensionless. Half-widths and offsets are from a
+//! small set. Therefore functions are often constant in a region, with the value zero or the threshold of another
+//! function.
 
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_validate::random::Random;
@@ -9,12 +9,11 @@ use crate::motions::TestMotion;
 
 const NUMBERS: [f64; 5] = [0.0, 0.125, 0.25, 0.5, 1.0];
 
-/// Arguments of functions. Rates are rare: a force that jumps with a rate can hold it at zero,
-/// which only the exact solver handles.
+/// Arguments of functions. Rates are rare, because a force that jumps with a rate can cause sticking, which only the
+/// exact solver handles.
 const LEAVES: [&str; 8] = ["x", "y", "x", "y", "(x - y)", "(x + y)", "tau*dot(x)", "u"];
 
-/// Returns a random machine of two masses with a random initial state and, in some cases, a held
-/// input.
+/// Returns a random machine of two masses with a random initial state and, in some cases, a piecewise constant input.
 pub fn machine(random: &mut Random, deepest: usize) -> TestMotion {
     let mut text = HEAD.to_owned();
     let count = 1 + (2.0 * random.unit()) as usize;
@@ -22,7 +21,7 @@ pub fn machine(random: &mut Random, deepest: usize) -> TestMotion {
         let on = if random.unit() < 0.5 { "x" } else { "y" };
         let size = 2.0 + 6.0 * random.unit();
         let term = piecewise(random, deepest);
-        // A jump with a rate can act on the same mass, like friction, or on the other.
+        // A force that jumps with a rate acts on the same mass (friction) or on the other mass.
         text +=
             &format!("f_{index} = {{ on = \"{on}\", value = \"-{size:.3}*J/s^2*({term})\" }}\n");
     }
@@ -40,7 +39,7 @@ pub fn machine(random: &mut Random, deepest: usize) -> TestMotion {
     subject
 }
 
-/// Returns a piecewise function of at most this nesting depth.
+/// Returns a random piecewise function of at most this nesting depth.
 pub fn piecewise(random: &mut Random, depth: usize) -> String {
     let inner = |random: &mut Random| {
         if depth <= 1 || random.unit() < 0.15 {

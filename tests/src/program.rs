@@ -1,4 +1,4 @@
-//! The `eomgen` program, built like the tests and run with a time limit.
+//! Runs the `eomgen` program, built like the tests, with a time limit.
 
 use std::path::{Path, PathBuf};
 use std::process::Output;
@@ -11,7 +11,7 @@ use crate::models::project;
 
 const LIMIT: Duration = Duration::from_secs(60);
 
-/// Returns the path of the program, after building it.
+/// Builds the program once and returns its path.
 pub fn path() -> &'static Path {
     static BUILT: OnceLock<PathBuf> = OnceLock::new();
     BUILT.get_or_init(build)
@@ -27,7 +27,7 @@ pub fn target() -> (PathBuf, String) {
     (target.to_owned(), profile.to_owned())
 }
 
-/// Returns the newest library of a crate among those compiled with the running test.
+/// Returns the newest compiled library of a crate in the target folder of the running test.
 pub fn compiled_library(name: &str) -> PathBuf {
     let test = std::env::current_exe().expect("the running test has a path");
     let folder = test.parent().expect("target/PROFILE/deps");

@@ -1,6 +1,6 @@
-//! Classical Runge-Kutta steps of machines that are written out in tests.
+//! Classical Runge-Kutta method for hand-written equations in tests.
 
-/// Integrates over a time in short steps of order 4; inputs are held.
+/// Integrates over a time with short steps of order 4; inputs are constant.
 pub fn integrate<const N: usize>(
     state: &mut [f64; N],
     length: f64,

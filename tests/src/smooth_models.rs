@@ -2,14 +2,14 @@
 //! generator follows the specification language only; it shares no code with the derivation, the
 //! oracle or their samplers.
 //!
-//! Each model has up to three coordinates, angles or lengths. Energies are quadratic in the rates,
-//! with masses that depend on the configuration, on time or on points, plus terms linear in the
-//! rates. Potentials use all functions, some with a domain around the initial state. Dissipation,
-//! forces on coordinates and points, inputs, definitions and derived parameters occur as well.
+//! Each model has up to three coordinates (angles or lengths). Kinetic energies are quadratic in the rates, with masses
+//! that depend on the configuration, on time or on points, plus terms linear in the rates. Potentials use all
+//! functions, some with a domain around the initial state. Models can also have dissipation, forces on coordinates and
+//! points, inputs, definitions and derived parameters.
 
 use std::fmt::Write;
 
-/// Text of a model and its terms.
+/// Specification of a random model, with a list of its terms.
 pub struct SmoothModel {
     /// Specification.
     pub text: String,
@@ -17,7 +17,7 @@ pub struct SmoothModel {
     pub terms: Vec<(&'static str, String, String)>,
 }
 
-/// Generator of models.
+/// Generator of random models.
 pub struct SmoothModels {
     state: u64,
 }
@@ -28,7 +28,7 @@ struct Coordinate {
 }
 
 impl Coordinate {
-    /// Returns the coordinate as a pure number.
+    /// Returns the coordinate as a dimensionless expression.
     fn pure(&self) -> String {
         match self.is_length {
             true => format!("{}/L", self.name),
@@ -43,7 +43,7 @@ impl Coordinate {
         }
     }
 
-    /// Returns the rate as a speed.
+    /// Returns the rate as an expression with the unit of a speed.
     fn speed(&self) -> String {
         match self.is_length {
             true => format!("dot({})", self.name),
@@ -53,14 +53,14 @@ impl Coordinate {
 }
 
 impl SmoothModels {
-    /// Starts the sequence of a seed.
+    /// Creates the sequence with the seed `seed`.
     pub fn new(seed: u64) -> Self {
         Self {
             state: seed.wrapping_mul(2).wrapping_add(1),
         }
     }
 
-    /// Returns the next model.
+    /// Returns the next random model.
     pub fn model(&mut self) -> SmoothModel {
         let coordinates = self.coordinates();
         let inputs = self.below(3);
@@ -95,7 +95,7 @@ impl SmoothModels {
         SmoothModel { text, terms: all }
     }
 
-    /// Draws from [0, 1) by Knuth's multiplicative generator with a shifted output.
+    /// Draws a number from [0, 1) with Knuth's linear congruential generator; only the high bits are used.
     fn unit(&mut self) -> f64 {
         self.state = self
             .state
@@ -174,7 +174,7 @@ impl SmoothModels {
         text
     }
 
-    /// Returns definitions of points, and pure numbers to be used as arguments.
+    /// Returns definitions of points, and dimensionless expressions to use as arguments.
     fn definitions(
         &mut self,
         coordinates: &[Coordinate],
@@ -201,7 +201,7 @@ impl SmoothModels {
         arguments
     }
 
-    /// Returns a pure number of the motion, of order one.
+    /// Returns a dimensionless expression of the motion, of order one.
     fn argument(&mut self, arguments: &[String], timed: bool) -> String {
         let (first, second) = (
             self.one_of(arguments).clone(),
@@ -220,8 +220,7 @@ impl SmoothModels {
         }
     }
 
-    /// Returns a smooth function, dimensionless; with `domain`, it may be defined only around the
-    /// initial state.
+    /// Returns a smooth dimensionless function. If `domain`, it may be defined only around the initial state.
     fn function(&mut self, arguments: &[String], timed: bool, domain: bool) -> String {
         let z = self.argument(arguments, timed);
         let inner = match self.chance(0.25) {
@@ -262,7 +261,7 @@ impl SmoothModels {
         }
     }
 
-    /// Returns a factor that is positive in its domain.
+    /// Returns a dimensionless factor that is positive in its domain.
     fn positive(&mut self, arguments: &[String], timed: bool) -> String {
         let z = self.argument(arguments, timed);
         let a = self.between(1.2, 2.0);
@@ -283,8 +282,7 @@ impl SmoothModels {
         for coordinate in coordinates {
             let timed = self.chance(0.2);
             let factor = match self.chance(0.12) {
-                // An inductance that decreases with the displacement: positive only near the
-                // initial state.
+                // An inductance that decreases with the displacement is positive only near the initial state.
                 true => format!("(1.6 + {})", self.one_of(&pure)),
                 false => self.positive(&pure, timed),
             };

@@ -22,8 +22,7 @@ use crate::table::Table;
 /// Specification of the stage without dry friction.
 const SPECIFICATION: &str = models::EMPS.text;
 
-/// Hidden dry friction in N. The force is a smooth function of the
-/// speed, unlike the effect in the catalogue.
+/// Hidden dry friction in N. The force is a smooth function of the speed, unlike the effect in the catalogue.
 const FRICTION: f64 = 12.0;
 
 /// Speed range in which the friction changes sign, in m/s.

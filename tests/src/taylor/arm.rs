@@ -1,13 +1,11 @@
-//! Constants of the arm and its reducer from Table I, prepared for the equations of motion.
+//! Constants of the equations of motion, computed from the parameters of the arm and its reducer (Table I).
 //!
-//! The inputs are doubles, as in a specification; derived constants are computed in the given
-//! arithmetic.
+//! Parameters are doubles, as in a specification. Derived constants are computed in the arithmetic of `T`.
 
 use super::modes::Mode;
 use super::scalar::Scalar;
 
-/// Parameters varied between runs. All others are from Table I or assumed, if the paper does not
-/// give them.
+/// Parameters that vary between runs. All others are from Table I, or assumed if the paper gives no value.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
     /// Number of modes, S.
@@ -18,7 +16,7 @@ pub struct Case {
     pub omega: f64,
 }
 
-/// Mode of the arm.
+/// Constants of one mode of the arm.
 #[derive(Clone, Copy, Debug)]
 pub struct ArmMode<T> {
     /// K/M, in rad^2/s^2.
@@ -57,12 +55,12 @@ pub struct Arm<T> {
     pub ripple: T,
     /// Frequency of the ripple, in rad/s.
     pub omega: T,
-    /// The modes of the arm.
+    /// Modes of the arm.
     pub modes: Vec<ArmMode<T>>,
 }
 
 impl<T: Scalar> Arm<T> {
-    /// Returns the arm of a case.
+    /// Computes the constants for a case.
     pub fn from_case(case: Case) -> Self {
         let number = T::from_f64;
         let pressure_angle = number(24.6) * T::PI / number(180.0);

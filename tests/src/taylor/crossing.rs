@@ -1,19 +1,18 @@
 //! First time at which a polynomial becomes positive.
 //!
-//! On an interval a polynomial is within the hull of its Bernstein coefficients. The number of its
-//! roots there equals the number of their sign changes minus an even number (Descartes' rule; Lane
-//! and Riesenfeld, "Bounds on a polynomial", BIT 21 (1981)). With no sign change there is no root,
-//! with one there is one root, and with more the interval is halved. So no root is missed, however
-//! close to another.
+//! On an interval a polynomial is within the hull of its Bernstein coefficients. The number of roots in the interval
+//! equals the number of sign changes of these coefficients minus an even number (Descartes' rule; Lane and Riesenfeld,
+//! "Bounds on a polynomial", BIT 21 (1981)). Without a sign change there is no root; with one sign change there is one
+//! root. With more sign changes the interval is halved. Therefore no root is missed, even close to another one.
 
 use super::scalar::Scalar;
 
-/// Number of halvings after which two unresolved roots are ignored.
+/// Number of halvings after which a pair of unresolved roots is ignored.
 const HALVINGS: u32 = 50;
 
-/// Returns the first u in 0..=1 at which the polynomial passes from at most zero to positive;
-/// coefficients are in ascending powers. A polynomial that starts above zero and rises, as after a
-/// step that ended on the root, gives 0.
+/// Returns the first u in 0..=1 at which the polynomial changes from at most zero to positive; coefficients are in
+/// ascending powers. If the polynomial starts above zero and increases, for example because the previous step ended on
+/// the root, the result is 0.
 pub fn first_rise<T: Scalar>(coefficients: &[T]) -> Option<T> {
     let zero = T::from_f64(0.0);
     if stays_negative(coefficients) {
@@ -26,23 +25,23 @@ pub fn first_rise<T: Scalar>(coefficients: &[T]) -> Option<T> {
     rise_within(coefficients, bernstein(coefficients), 0.0, 1.0, HALVINGS)
 }
 
-/// Returns true if the first coefficient is more negative than all others can compensate.
+/// Returns true if the first coefficient is negative and its magnitude exceeds the sum of the magnitudes of all others.
 fn stays_negative<T: Scalar>(coefficients: &[T]) -> bool {
     let mut doubles = coefficients.iter().map(|coefficient| coefficient.to_f64());
     let start = doubles.next().unwrap_or(0.0);
-    // The rounding of a sum of fifty doubles is below 1e-14 of it.
+    // The relative rounding error of a sum of fifty positive doubles is below 1e-14.
     start < 0.0 && doubles.map(f64::abs).sum::<f64>() < -0.999 * start
 }
 
-/// Returns the Bernstein coefficients on 0..=1 of a polynomial in powers: Pascal's transform of
-/// a_k/C(n, k), by additions.
+/// Returns the Bernstein coefficients on 0..=1 of a polynomial in powers: the binomial transform of a_k/C(n, k),
+/// computed by additions.
 fn bernstein<T: Scalar>(coefficients: &[T]) -> Vec<T> {
     let degree = coefficients.len() - 1;
     let mut binomial = 1.0;
     let mut values = Vec::with_capacity(coefficients.len());
     for (k, coefficient) in coefficients.iter().enumerate() {
         values.push(*coefficient / T::from_f64(binomial));
-        // Exact up to degree 56.
+        // The binomial coefficients are exact up to degree 56.
         binomial = binomial * (degree - k) as f64 / (k + 1) as f64;
     }
     for first in 1..=degree {
@@ -53,8 +52,8 @@ fn bernstein<T: Scalar>(coefficients: &[T]) -> Vec<T> {
     values
 }
 
-/// Returns the first rise within `from..=from + width`; `values` are the Bernstein coefficients
-/// there.
+/// Returns the first change to positive within `from..=from + width`; `values` are the Bernstein coefficients on this
+/// interval.
 fn rise_within<T: Scalar>(
     coefficients: &[T],
     values: Vec<T>,
@@ -96,7 +95,7 @@ fn halve<T: Scalar>(mut values: Vec<T>) -> (Vec<T>, Vec<T>) {
         }
         left.push(values[0]);
     }
-    // The remaining values are those of the right half.
+    // The remaining values are the coefficients on the right half.
     (left, values)
 }
 
@@ -111,8 +110,8 @@ fn value_and_slope<T: Scalar>(coefficients: &[T], at: T) -> (T, T) {
         })
 }
 
-/// Returns the only root in `low..=high` of a rising polynomial by Newton's method, with bisection
-/// if an iterate leaves the bracket.
+/// Returns the single root in `low..=high` of a polynomial that increases at the root. Newton's method is used, with
+/// bisection if an iterate leaves the bracket.
 fn root<T: Scalar>(coefficients: &[T], mut low: T, mut high: T) -> T {
     let mut at = (low + high).scaled_by(0.5);
     for _ in 0..200 {

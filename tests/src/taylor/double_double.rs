@@ -1,17 +1,17 @@
-//! Double-double numbers: unevaluated sums of two doubles with 106 bits. Only arithmetic; sine,
+//! Double-double numbers: unevaluated sums of two doubles with 106 bits. This module contains the arithmetic; sine,
 //! cosine and exponential are in [`elementary`](super::elementary).
 //!
-//! Sources: Dekker, "A floating-point technique for extending the available precision",
-//! Numer. Math. 18 (1971); Hida, Li, Bailey, "Library for double-double and quad-double
-//! arithmetic" (2000), whose accurate addition this is.
+//! Sources: Dekker, "A floating-point technique for extending the available precision", Numer. Math. 18 (1971); Hida,
+//! Li, Bailey, "Library for double-double and quad-double arithmetic" (2000), from which the accurate addition is
+//! taken.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// `high + low` with |low| at most half a unit in the last place of `high`, so that numbers are
-/// ordered like their pairs.
+/// Sum `high + low` with |low| at most half a unit in the last place of `high`. Therefore comparing the pairs
+/// lexicographically compares the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct DoubleDouble {
-    /// Nearest double.
+    /// Double nearest to the number.
     pub high: f64,
     /// Remainder.
     pub low: f64,
@@ -49,8 +49,8 @@ fn ordered_sum(a: f64, b: f64) -> DoubleDouble {
     }
 }
 
-/// Splits `a` into two halves of 26 bits, whose products are exact (Veltkamp). Overflows beyond
-/// 2^996, far above all quantities of the arm.
+/// Splits `a` into two halves of 26 bits, whose products are exact (Veltkamp). It overflows above 2^996, far above all
+/// quantities of the arm.
 fn halves(a: f64) -> (f64, f64) {
     const SPLITTER: f64 = 134_217_729.0; // 2^27 + 1
     let scaled = SPLITTER * a;
@@ -58,8 +58,8 @@ fn halves(a: f64) -> (f64, f64) {
     (high, a - high)
 }
 
-/// Returns a b and its rounding error, exactly (Dekker). Uses plain operations, because a fused
-/// multiply-add is a library call on processors without it.
+/// Returns a b and its rounding error, exactly (Dekker). It uses plain operations, because a fused multiply-add is a
+/// slow library call on processors without this instruction.
 fn exact_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     let (a_high, a_low) = halves(a);

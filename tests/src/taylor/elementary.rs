@@ -1,7 +1,7 @@
 //! Sine, cosine and exponential of double-double numbers, for arguments up to some hundreds.
 //!
-//! The argument is reduced by a multiple of pi/2 or ln 2, known to 106 bits. The reduced argument
-//! of x has an absolute error of about |x| 2^-107, like x itself.
+//! The argument is reduced by a multiple of pi/2 or ln 2, which are constants of 106 bits. For an argument x, the
+//! reduced argument has an absolute error of about |x| 2^-107, like x itself.
 
 use super::double_double::DoubleDouble;
 use super::scalar::Scalar;

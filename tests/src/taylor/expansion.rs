@@ -1,4 +1,4 @@
-//! Taylor series of the motion around a time, from the equations of motion within one regime.
+//! Taylor series of the motion about a time, from the equations of motion in one regime.
 //!
 //! With x_s = x_sp + x_pr + 2 x_c and x_p = x_pr + x_c, the balances of sun, planet,
 //! carrier and modes are
@@ -10,13 +10,13 @@
 //! M_i q_i'' + h_i th_c'' + K_i q_i = 0
 //! ```
 //!
-//! with x_c = r_c cos(alpha) th_c. Substituting the last equation into the third leaves the inertia
-//! I_tot - sum_i h_i^2/M_i and the load sum_i h_i K_i/M_i q_i on the carrier.
+//! with x_c = r_c cos(alpha) th_c. If the last equation is substituted into the third, the carrier has the inertia
+//! I_tot - sum_i h_i^2/M_i and the load sum_i h_i K_i/M_i q_i.
 //!
-//! Time is measured in a unit sigma, a power of two in seconds, so that the coefficients of the
-//! series have the magnitude of the displacements and a whole step is their sum. With u = (t -
-//! t_0)/sigma, the coefficients of x(u) follow from (k + 1)(k + 2) x_(k+2) = sigma^2 x''_k, and
-//! those of x' are (k + 1) x_(k+1)/sigma.
+//! The unit of time, sigma, is a power of two in seconds. In this unit the coefficients of the series have the
+//! magnitude of the displacements, and the state after a full step is their sum. With u = (t - t_0)/sigma, the
+//! coefficients of x(u) follow from (k + 1)(k + 2) x_(k+2) = sigma^2 x''_k, and the coefficients of x' are (k + 1)
+//! x_(k+1)/sigma.
 
 use super::arm::Arm;
 use super::scalar::Scalar;
@@ -43,7 +43,7 @@ impl Side {
     }
 }
 
-/// Displacements and rates in the order x_sp, x_pr, x_c, q_1, ..., q_S, in m and m/s.
+/// State: displacements and rates in the order x_sp, x_pr, x_c, q_1, ..., q_S, in m and m/s.
 #[derive(Clone, Debug)]
 pub struct State<T> {
     /// Displacements.
@@ -66,7 +66,7 @@ struct Scaled<T> {
     loads: Vec<T>,
 }
 
-/// Computes the series of one arm; stores the constants of all steps.
+/// Computes Taylor series for one arm; stores the constants that all steps share.
 #[derive(Clone, Debug)]
 pub struct Expander<T> {
     arm: Arm<T>,
@@ -79,7 +79,7 @@ pub struct Expander<T> {
     inverse_inertia: T,
 }
 
-/// Series of all displacements around a time.
+/// Taylor series of all displacements about a time.
 #[derive(Clone, Debug)]
 pub struct Series<T> {
     /// Time unit, in s.
@@ -143,7 +143,7 @@ impl<T: Scalar> Expander<T> {
         3 + self.arm.modes.len()
     }
 
-    /// Returns the series of the motion from `state` at `time` (in s) with these contact states of
+    /// Returns the series of the motion that starts from `state` at `time` (in s). `sides` are the contact states of
     /// the sun-planet and planet-ring meshes.
     pub fn expand(&self, time: T, state: &State<T>, sides: [Side; 2]) -> Series<T> {
         let width = self.width();
@@ -161,7 +161,7 @@ impl<T: Scalar> Expander<T> {
         }
     }
 
-    /// Returns sigma^2 (a_m + F_w sin(omega t))/r_s as a series around `time`.
+    /// Returns sigma^2 (a_m + F_w sin(omega t))/r_s as a series about `time`.
     fn torque(&self, time: T) -> Vec<T> {
         let (sin, cos) = (self.arm.omega * time).sin_cos();
         let mut factor = self.scaled.ripple;
@@ -179,7 +179,7 @@ impl<T: Scalar> Expander<T> {
         series
     }
 
-    /// Appends row k + 2 of the coefficients to rows 0 to k + 1.
+    /// Appends row k + 2 of the coefficients, computed from rows 0 to k + 1.
     fn next(&self, k: usize, torque: T, sides: [Side; 2], coefficients: &mut Vec<T>) {
         let (arm, scaled) = (&self.arm, &self.scaled);
         let (now, after) = coefficients[k * self.width()..].split_at(self.width());
@@ -205,7 +205,7 @@ impl<T: Scalar> Expander<T> {
         if side == Side::Free {
             return T::from_f64(0.0);
         }
-        // The edge of the backlash is constant, so only the first coefficient contains it.
+        // The half-width of the backlash is constant, so only the first coefficient contains it.
         let edge = if k == 0 { side.sign() } else { 0.0 };
         self.scaled.k * (deflection - self.arm.b.scaled_by(edge)) + self.scaled.c * rate
     }
@@ -225,15 +225,15 @@ impl<T: Scalar> Series<T> {
             .collect()
     }
 
-    /// Returns the largest of the last two rows of coefficients, in m; an upper bound of the
-    /// remainder of a whole step.
+    /// Returns the largest coefficient of the last two rows, in m. It is an upper bound of the remainder of a full
+    /// step.
     pub fn tail(&self) -> f64 {
         (self.coefficients.iter().rev().take(2 * self.width))
             .map(|coefficient| coefficient.to_f64().abs())
             .fold(0.0, f64::max)
     }
 
-    /// Returns the state at u = `at` in 0..=1, by Horner's rule.
+    /// Returns the state at u = `at` in 0..=1 (Horner's rule).
     pub fn state(&self, at: T) -> State<T> {
         let zero = T::from_f64(0.0);
         let mut positions = vec![zero; self.width];

@@ -1,10 +1,9 @@
-//! Modes of the clamped-free beam in the paper's normalisation, Eq. (17), over the unit span.
+//! Modes of the clamped-free beam in the paper's normalisation, Eq. (17), on the unit interval.
 //!
-//! phi(s) = sin zs - sinh zs + xi (cos zs - cosh zs). It satisfies phi'''' = z^4 phi, phi(0) =
-//! phi'(0) = 0 and phi''(1) = phi'''(1) = 0. Partial integration gives int s phi = z^-4 [s phi''' -
-//! phi''] = phi''(0)/z^4 = -2 xi/z^2 and int phi''^2 = z^4 int phi^2. With int phi^2 = phi(1)^2/4
-//! (Rayleigh, "The theory of sound", art. 173) and cos z cosh z = -1, phi(1) = 2 xi (-1)^r and int
-//! phi^2 = xi^2.
+//! phi(s) = sin zs - sinh zs + xi (cos zs - cosh zs). It satisfies phi'''' = z^4 phi, phi(0) = phi'(0) = 0 and phi''(1)
+//! = phi'''(1) = 0. Integration by parts gives int s phi = z^-4 [s phi''' - phi''] = phi''(0)/z^4 = -2 xi/z^2 and int
+//! phi''^2 = z^4 int phi^2. With int phi^2 = phi(1)^2/4 (Rayleigh, "The theory of sound", art. 173) and cos z cosh z =
+//! -1, phi(1) = 2 xi (-1)^r and int phi^2 = xi^2.
 
 use super::scalar::Scalar;
 
@@ -48,8 +47,8 @@ impl<T: Scalar> Mode<T> {
     }
 }
 
-/// Returns the r-th positive root of cos z + 1/cosh z by Newton's method from (r - 1/2) pi, whose
-/// error is 0.3 at r = 1 and 2 exp(-z) for larger r.
+/// Returns the r-th positive root of cos z + 1/cosh z by Newton's method. The initial value (r - 1/2) pi has an error
+/// of 0.3 at r = 1 and of 2 exp(-z) for larger r.
 fn root<T: Scalar>(r: usize) -> T {
     let one = T::from_f64(1.0);
     let mut z = T::PI.scaled_by(r as f64 - 0.5);

@@ -1,4 +1,4 @@
-//! Integration of the arm from rest at zero, from step to step and from switch to switch.
+//! Integration of the arm from rest at zero. Steps end at switches.
 
 use super::arm::{Arm, Case};
 use super::crossing::first_rise;
@@ -8,8 +8,8 @@ use super::scalar::Scalar;
 /// Maximum step size, in s.
 pub const MAX_STEP_S: f64 = 1.0 / 1024.0;
 
-/// Magnitude in m of the motions that steps resolve to the rounding of the arithmetic: 1/25 of the
-/// reference's half backlash.
+/// Magnitude in m of the smallest motion that steps resolve to rounding accuracy: 1/25 of the reference's half
+/// backlash.
 const RESOLUTION_M: f64 = 1e-6;
 
 /// Change of the contact state of a mesh.
@@ -23,7 +23,7 @@ pub struct Switch<T> {
     pub to: Side,
 }
 
-/// States at given times, and all switches up to the last of them.
+/// Result of a run: states at the requested times, and all switches up to the last time.
 #[derive(Clone, Debug)]
 pub struct Run<T> {
     /// One state per requested time.
@@ -37,8 +37,8 @@ pub struct Run<T> {
 }
 
 impl<T: Scalar> Run<T> {
-    /// Integrates from rest at zero through `times`, in s and ascending. Steps are at most
-    /// `longest`, in s and a power of two; with [`MAX_STEP_S`] the motion determines them.
+    /// Integrates from rest at zero through `times`, in s and ascending. `longest` is the maximum step size in s, a
+    /// power of two. With [`MAX_STEP_S`] the motion determines the step sizes.
     pub fn simulate(case: Case, times: &[f64], longest: f64) -> Self {
         let arm = Arm::<T>::from_case(case);
         let tips = arm.modes.iter().map(|mode| mode.tip).collect();
@@ -97,7 +97,7 @@ impl<T: Scalar> Motion<T> {
         }
     }
 
-    /// Advances by one series, to its end or to the first switch.
+    /// Advances the motion to the end of one series or to its first switch.
     fn step(&mut self, times: &[f64], run: &mut Run<T>) {
         let series = self.resolved_series();
         let sigma = self.expander.sigma();
@@ -123,8 +123,8 @@ impl<T: Scalar> Motion<T> {
         }
     }
 
-    /// Returns the series around the current time, in a time unit that makes the remainder
-    /// negligible. The unit decreases as faster motions appear and does not increase again.
+    /// Returns the series about the current time, with a time unit for which the remainder is negligible. The unit
+    /// decreases if the motion becomes faster and does not increase again.
     fn resolved_series(&mut self) -> Series<T> {
         loop {
             let series = self.expander.expand(self.time, &self.state, self.sides);
@@ -154,7 +154,7 @@ impl<T: Scalar> Motion<T> {
     }
 }
 
-/// Returns, per contact state reachable from `side`, the series of the distance beyond the edge.
+/// Returns each contact state that can follow `side`, with the series of the distance beyond the edge of the backlash.
 fn distances_beyond_edges<T: Scalar>(deflection: &[T], side: Side, b: T) -> Vec<(Vec<T>, Side)> {
     let beyond = |sign: f64, edge: T| {
         let mut outside: Vec<T> = deflection.iter().map(|x| x.scaled_by(sign)).collect();
@@ -174,9 +174,9 @@ fn distances_beyond_edges<T: Scalar>(deflection: &[T], side: Side, b: T) -> Vec<
     }
 }
 
-/// Returns the contact states at rest at zero. Without backlash it is the sign of the first nonzero
-/// derivative: both contacts have the same equations then, and up to that derivative the mesh
-/// carries no force.
+/// Returns the initial contact states at rest at zero. Without backlash, the side is the sign of the first nonzero
+/// derivative of the deflection. It can be computed with either side, because the mesh carries no force up to this
+/// derivative.
 fn initial_sides<T: Scalar>(expander: &Expander<T>, rest: &State<T>) -> [Side; 2] {
     let zero = T::from_f64(0.0);
     if expander.arm().b > zero {

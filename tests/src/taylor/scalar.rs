@@ -1,4 +1,4 @@
-//! Arithmetic of the integrator, and its implementation for doubles.
+//! Trait of the integrator's arithmetic, and its implementation for doubles.
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -19,8 +19,8 @@ pub trait Scalar:
     /// Maximum relative rounding error of one operation.
     const EPSILON: f64;
 
-    /// Degree of the Taylor polynomials: a step of two to five radians of the fastest mode leaves a
-    /// remainder below the rounding.
+    /// Degree of the Taylor polynomials. With this degree the remainder is below the rounding error for steps of two to
+    /// five radians of the fastest mode.
     const DEGREE: usize;
 
     /// Pi.
@@ -32,7 +32,7 @@ pub trait Scalar:
     /// Returns the nearest double.
     fn to_f64(self) -> f64;
 
-    /// Returns the product with a double, which is cheaper than one with a number of this type.
+    /// Returns the product with a double, which needs fewer operations than a product of two numbers of this type.
     fn scaled_by(self, factor: f64) -> Self;
 
     /// Returns sine and cosine of an angle in radians.
