@@ -1,13 +1,13 @@
-//! Compiles the engine of interactive pages to WebAssembly, if the compiler has the target. `EOMGEN_ENGINE` names a compiled
-//! engine instead.
+//! Compiles the engine of interactive pages to WebAssembly, if the compiler has this target. If the environment
+//! variable `EOMGEN_ENGINE` is set, it is the path of a compiled engine to use instead.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// Sources of the engine and of the crates that it uses, relative to the workspace. Cargo compiles only those with
-/// changes for the engine.
+/// Sources of the engine and of the crates that it depends on, relative to the workspace. A change in them
+/// reruns this script.
 const SOURCES: [&str; 14] = [
     "Cargo.lock",
     "Cargo.toml",
@@ -38,7 +38,7 @@ fn main() {
         std::fs::read(&file).map_err(|error| format!("cannot read {}: {error}", file.display()))
     });
     let engine = engine.unwrap_or_else(|reason| {
-        println!("cargo::warning=interactive pages will be refused: {reason}");
+        println!("cargo::warning=interactive pages are not available: {reason}");
         Vec::new()
     });
     if let Err(error) = std::fs::write(out.join("engine.wasm"), engine) {
@@ -71,7 +71,7 @@ fn compile(out: &Path) -> Result<PathBuf, String> {
         .args(["--package", "eomgen-engine", "--target", TARGET])
         .arg("--target-dir")
         .arg(&folder);
-    // Settings of the build that runs this script.
+    // Removes the settings of the build that runs this script.
     for (name, _) in std::env::vars_os() {
         let is_setting = name.to_str().is_some_and(|name| {
             name.starts_with("CARGO_PROFILE_")

@@ -15,11 +15,12 @@ pub struct AllowedMotions {
 }
 
 impl AllowedMotions {
-    /// Computes the motions with H x = 0. `held` is H row by row; the scale of a row is arbitrary. `sizes` are typical sizes
-    /// of the states, in which an entry of H far below the others of its row is rounding.
+    /// Computes the motions with H x = 0. `held` is H row by row; the scale of a row is arbitrary. `sizes` are
+    /// the typical sizes of the states: entries of H far below the others of their row, relative to these
+    /// sizes, are rounding.
     ///
     /// # Errors
-    /// A number of entries that is not a multiple of that of the states; entries that are not finite.
+    /// A number of entries that is not a multiple of the number of states; entries that are not finite.
     pub fn new(held: &[f64], sizes: &[f64]) -> Result<Self, AnalysisError> {
         let states = sizes.len();
         if states == 0 || !held.len().is_multiple_of(states) {
@@ -88,7 +89,7 @@ mod tests {
 
     #[test]
     fn held_coordinate_reduces_to_one_oscillator() {
-        // x'' = -9 x + 2 u with y = y' = 0. Outputs: x, and y as it would be with slope 7.
+        // x'' = -9 x + 2 u with y = y' = 0. Outputs are x, and a second one with slope 7 in y, which is 0.
         let a = [
             [0.0, 0.0, 1.0, 0.0],
             [0.0, 0.0, 0.0, 1.0],
@@ -115,7 +116,7 @@ mod tests {
 
     #[test]
     fn units_of_states_and_rounding_add_no_motion() {
-        // x = 0 and y = 0 in other units; the entries of the free z are rounding.
+        // x = 0 and y = 0 in other units. The entries of z, which is free, are rounding.
         for unit in [2.0_f64.powi(-30), 1.0, 2.0_f64.powi(30)] {
             let held = [[1.0, 0.0, 1e-17], [1.0, -unit, 1e-16]];
             let allowed = AllowedMotions::new(held.as_flattened(), &[1.0, 1.0 / unit, 1.0]);

@@ -9,7 +9,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::null_space::RANK_TOLERANCE;
 
-/// Largest number of sweeps over the states; three or four are usual.
+/// Maximum number of sweeps over the states; three or four are usual.
 const MAX_SWEEPS: usize = 100;
 
 /// A state matrix in scaled states and scaled time.
@@ -55,8 +55,8 @@ impl BalancedMatrix {
         }
     }
 
-    /// Returns the rate, 1/s, up to which an eigenvalue may count as 0: the null space of K then
-    /// contains motions with lambda^2 up to [`RANK_TOLERANCE`] times the square of the norm.
+    /// Returns the rate, 1/s, up to which an eigenvalue may count as 0. The null space of K then contains
+    /// motions with lambda^2 up to [`RANK_TOLERANCE`] times the squared norm.
     pub fn resolution(&self) -> f64 {
         self.per_second(RANK_TOLERANCE.sqrt() * self.matrix.norm())
     }

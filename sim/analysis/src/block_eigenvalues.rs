@@ -1,16 +1,16 @@
 //! Eigenvalues of a balanced matrix, computed for each group of coupled states.
 //!
-//! The error of a QR iteration is a rounding of the largest entry, which can exceed a slow
-//! eigenvalue. Uncoupled groups are therefore solved separately. In a group the fast states come
-//! first: the iteration then finds small eigenvalues last, to their own precision (graded matrices;
-//! G. W. Stewart, *Matrix Algorithms II*, 2.3).
+//! The error of a QR iteration is a rounding of the largest entry, which can exceed a slow eigenvalue.
+//! Uncoupled groups are therefore solved separately. In a group the fast states come first: the iteration then
+//! finds small eigenvalues last, with a relative error of rounding (graded matrices; G. W. Stewart, *Matrix
+//! Algorithms II*, 2.3).
 
 use nalgebra::{Complex, DMatrix};
 
 use crate::qr_iteration;
 
-/// Computes the eigenvalues of a balanced square matrix, in no order. Returns `None` if an
-/// iteration does not converge.
+/// Computes the eigenvalues of a balanced square matrix, unsorted. Returns `None` if an iteration does not
+/// converge.
 pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     let speeds: Vec<f64> = matrix.row_iter().map(|row| row.amax()).collect();
     let mut all = Vec::with_capacity(matrix.nrows());
@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn mutually_dependent_states_form_a_group() {
-        // 0 and 2 depend on each other, 1 on 0, 3 on none.
+        // States 0 and 2 depend on each other, 1 depends on 0, and 3 on none.
         let found = strongly_connected_groups(&[vec![2], vec![0], vec![0], vec![]]);
         let mut found: Vec<Vec<usize>> = found
             .into_iter()

@@ -15,7 +15,7 @@ pub enum Motion {
     },
     /// Motion with several frequencies without a common period.
     QuasiPeriodic,
-    /// Motion whose neighbouring motions separate exponentially.
+    /// Motion from which neighbouring motions separate exponentially.
     Chaotic,
     /// Insufficient or contradictory evidence.
     Undecided,
@@ -47,18 +47,18 @@ pub struct Verdict {
     pub sentence: String,
 }
 
-/// Least growth per forcing period that counts as growth: a factor e in 100 periods. The exponent
-/// of a neutral direction in a finite record is smaller.
+/// Smallest growth per forcing period that counts as growth: a factor e in 100 periods. In a finite record, the
+/// exponent of a neutral direction is smaller.
 pub const MIN_GROWTH_PER_PERIOD: f64 = 0.01;
 /// Largest growth per forcing period that the error of an exponent near zero may hide.
 pub const MAX_HIDDEN_GROWTH_PER_PERIOD: f64 = 0.1;
-/// Number of standard errors of a significant exponent.
+/// Number of standard errors above which an exponent is significant.
 pub const SIGNIFICANT_STANDARD_ERRORS: f64 = 3.0;
-/// Smallest K that indicates chaos without further evidence.
+/// Smallest K that indicates chaos without the spectrum.
 pub const MIN_CHAOTIC_K: f64 = 0.8;
-/// Largest K that indicates regular motion without further evidence.
+/// Largest K that indicates regular motion without the spectrum.
 pub const MAX_REGULAR_K: f64 = 0.2;
-/// Limit for K if the spectrum gives the same indication.
+/// Limit of K if the spectrum gives the same indication.
 pub const K_LIMIT_WITH_SPECTRUM: f64 = 0.5;
 /// Largest share of spectral lines in a continuous spectrum.
 pub const MAX_CONTINUOUS_LINE_SHARE: f64 = 0.5;
@@ -312,8 +312,8 @@ mod tests {
         vague[2].chaos_indicator = Some(0.6);
         (vague[3].chaos_indicator, vague[3].line_share) = (Some(0.4), None);
         vague[4].forcing = 0.0;
-        // 0.01 growth per period of 0.2 s is 0.05 1/s, 0.1 is 0.5 1/s. Here: an error that hides
-        // growth; diffusion with too little growth; no number.
+        // A growth of 0.01 per period of 0.2 s is 0.05 1/s, one of 0.1 is 0.5 1/s. The cases are an error that
+        // hides growth, diffusion with too little growth, and NaN.
         let thin = [(0.4, 0.2), (0.04, 0.0), (f64::NAN, 0.0)];
         let thin = thin.map(|(value, error)| growing(value, error));
         for evidence in thin.iter().chain(&vague).chain([&repeating]) {

@@ -1,8 +1,8 @@
 //! Natural modes of a linearised machine with constraints.
 //!
-//! The constraints C x = 0 determine some states by the others, which `independent_states` chooses:
-//! x = N y with the identity in the rows of the independent states y. The modes are the natural modes
-//! of y' = S A N y, where S selects these rows. States count relative to their typical sizes.
+//! The constraints C x = 0 determine some states by the others, which `independent_states` selects: x = N y
+//! with the identity in the rows of the independent states y. The modes are the natural modes of y' = S A N y,
+//! where S selects these rows. States are measured relative to their typical sizes.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -18,8 +18,7 @@ use crate::rounding::product_without_rounding;
 /// coordinates q. A multiple eigenvalue is listed once per shape. `sizes` are typical sizes of the
 /// states, powers of two.
 ///
-/// # Errors
-/// As [`natural_modes`].
+/// # Errors Same as [`natural_modes`].
 pub fn constrained_modes(
     matrix: &[f64],
     held: &[f64],

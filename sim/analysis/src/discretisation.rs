@@ -1,16 +1,16 @@
 //! Discrete form of a linear system whose inputs are held between samples (zero-order hold).
 //!
-//! With A_d = exp(A h) and B_d = (integral of exp(A s) over 0..h) B, states at the samples follow
-//! x_(k+1) = A_d x_k + B_d u_k. Both are blocks of one exponential,
-//! exp([[A, B], [0, 0]] h) = [[A_d, B_d], [0, 1]] (C. F. Van Loan, IEEE Trans. Autom. Control 23 (1978) 395-404).
-//! States are balanced and inputs scaled before, so that units do not limit the accuracy.
+//! With A_d = exp(A h) and B_d = (integral of exp(A s) over 0..h) B, states at the samples follow x_(k+1) = A_d
+//! x_k + B_d u_k. Both are blocks of one exponential, exp([[A, B], [0, 0]] h) = [[A_d, B_d], [0, 1]] (C. F. Van
+//! Loan, IEEE Trans. Autom. Control 23 (1978) 395-404). States are balanced and inputs scaled first, so that
+//! units do not limit the accuracy.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::allowed_motions::row_by_row;
 use crate::balancing::BalancedMatrix;
 
-/// Largest norm of A h in balanced states: the angles of faster oscillations have few correct digits.
+/// Largest norm of A h in balanced states. For faster oscillations the angles would have few correct digits.
 const MAX_NORM: f64 = 1e9;
 
 /// Matrices of x_(k+1) = A_d x_k + B_d u_k, row by row.
@@ -22,13 +22,13 @@ pub struct DiscreteSystem {
     pub b: Vec<f64>,
 }
 
-/// Reason why a system has no discrete form.
+/// Reason why a system cannot be discretised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DiscretisationError {
-    /// A period that is not a finite number above 0.
+    /// The period is not a finite positive number.
     #[error("expected a time in s above 0")]
     Period,
-    /// Matrices that do not fit, or entries that are not finite.
+    /// The matrices have different sizes, or entries that are not finite.
     #[error("the matrices have other sizes, or entries that are not finite")]
     Matrices,
     /// Motions that are too fast for the period.
@@ -37,15 +37,14 @@ pub enum DiscretisationError {
          right: give a shorter period"
     )]
     TooLong,
-    /// Motions that overflow within a period.
+    /// A motion overflows within a period.
     #[error("the motion exceeds the largest number within one period: give a shorter period")]
     Overflow,
 }
 
 /// Computes the discrete form of x' = A x + B u for inputs held over `period` (s). `a` and `b` are row by row.
 ///
-/// # Errors
-/// An inadmissible period, matrices that do not fit, and motions that are too fast for the period.
+/// # Errors An inadmissible period, matrices of different sizes, and motions that are too fast for the period.
 pub fn hold_inputs(
     a: &[f64],
     b: &[f64],

@@ -51,7 +51,7 @@ pub enum AnalysisError {
     TooManyStates {
         /// Number of states of the part.
         states: usize,
-        /// Largest number.
+        /// Largest permitted number.
         limit: usize,
     },
     /// Natural frequencies do not ascend.

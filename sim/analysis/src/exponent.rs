@@ -11,11 +11,11 @@ pub struct Exponent {
     pub standard_error: f64,
 }
 
-/// Numbers of batches, shortest batches first, with Student's factor: the standard error times the
-/// factor covers the true value in 68 % of all cases.
+/// Numbers of batches, shortest batches first, with Student's factor: the standard error times this factor
+/// covers the true value in 68 % of all cases.
 ///
-/// Between 10 and 30, additional batches gain little, and batches should be long (B. Schmeiser,
-/// "Batch size effects in the analysis of simulation output", Oper. Res. 30 (1982) 556-568).
+/// Between 10 and 30, additional batches gain little, and batches should be long (B. Schmeiser, "Batch size
+/// effects in the analysis of simulation output", Oper. Res. 30 (1982) 556-568).
 const BATCH_COUNTS_AND_FACTORS: [(usize, f64); 3] = [(20, 1.027), (10, 1.059), (5, 1.142)];
 
 /// Smallest number of growths for an exponent.
@@ -24,8 +24,8 @@ pub const MIN_GROWTHS: usize = BATCH_COUNTS_AND_FACTORS[0].0;
 /// Computes the mean exponent of the growths ln(|v_k| / |v_(k-1)|) over equal intervals (s), with
 /// its standard error by non-overlapping batch means.
 ///
-/// The n growths are divided into B batches of m = floor(n/B). The first n - m B, nearest to the
-/// transient, are omitted. With l_b the growth rate of batch b over m intervals T,
+/// The n growths are divided into B batches of m = floor(n/B) growths. The first n - m B growths, nearest to
+/// the transient, are omitted. With l_b the growth rate of batch b over m intervals T,
 ///
 /// ```text
 /// l_b = sum of the batch / (m T),     mean = sum_b l_b / B
@@ -33,11 +33,10 @@ pub const MIN_GROWTHS: usize = BATCH_COUNTS_AND_FACTORS[0].0;
 /// value = the mean for B = 20,     standard_error = max(error_20, error_10, error_5)
 /// ```
 ///
-/// with Student's factor s_B. The error is too small if the batches are shorter than the
-/// correlation of the growths, and rises with longer batches: a nearly undamped vibration switches
-/// chaos on and off over hundreds of forcing periods. For uncorrelated growths, the greatest of
-/// three errors is 25 % too large. The error does not cover a transient, nor a correlation
-/// longer than a fifth of the series.
+/// with Student's factor s_B. If the batches are shorter than the correlation time of the growths, the error is
+/// too small, and it increases with longer batches. For example, a nearly undamped vibration switches chaos on
+/// and off over hundreds of forcing periods. For uncorrelated growths, the largest of three errors is 25 % too
+/// large. The error does not cover a transient, nor a correlation longer than a fifth of the series.
 ///
 /// # Errors
 ///
@@ -79,8 +78,7 @@ mod tests {
             .collect();
         let exponent = mean_exponent(&growths, 1.0)?;
         let ln_two = std::f64::consts::LN_2;
-        // Four standard errors: exceeded once in 1000 by Student's distribution with 19 degrees of
-        // freedom.
+        // Student's distribution with 19 degrees of freedom exceeds four standard errors once in 1000 cases.
         assert!((exponent.value - ln_two).abs() < 4.0 * exponent.standard_error);
         assert!(exponent.standard_error < 5e-3, "{exponent:?}");
         Ok(())
@@ -113,8 +111,8 @@ mod tests {
     fn independent_growths_have_the_textbook_error() -> Result<(), AnalysisError> {
         let exponent = mean_exponent(&noise(40_013), 1.0)?;
         let textbook = (1.0 / 3.0 / 40_000_f64).sqrt();
-        // Lower limit: three times the 16 % scatter of an error from 20 batches. Upper limit: twice
-        // the 35 % scatter of an error from 5 batches, because the greatest counts.
+        // Lower limit: three times the 16 % scatter of an error from 20 batches. Upper limit: twice the 35 %
+        // scatter of an error from 5 batches, because the largest error is used.
         let ratio = exponent.standard_error / textbook;
         assert!((0.5..2.0).contains(&ratio), "{exponent:?}");
         assert!(exponent.value.abs() < 4.0 * textbook, "{exponent:?}");
@@ -148,7 +146,7 @@ mod tests {
         };
         let scatter = square(&|exponent| exponent.value);
         let stated = square(&|exponent| exponent.standard_error);
-        // 200 series determine the scatter to 5 %. Only batches of 20 would give 0.61 of it.
+        // The scatter of 200 series is known to 5 %. With 20 batches only, the ratio would be 0.61.
         assert!(
             (0.85..1.3).contains(&(stated / scatter)),
             "{stated} {scatter}"

@@ -1,12 +1,12 @@
-//! Independent parts of a linearised machine. Separate solutions cost the sum of their work, while
-//! the cost of one matrix grows with the cube of its size.
+//! Independent parts of a linearised machine. The cost of one matrix grows with the cube of its size, so
+//! separate solutions of the parts are cheaper.
 
 use nalgebra::DMatrix;
 
 pub(crate) struct Part {
-    /// A of the part's coordinates, their rates and its first-order states.
+    /// Matrix A for the coordinates of the part, their rates and its first-order states.
     pub matrix: DMatrix<f64>,
-    /// Rows of C of these states.
+    /// Rows of C for these states.
     pub constraints: DMatrix<f64>,
     /// Number of coordinates.
     pub degrees: usize,

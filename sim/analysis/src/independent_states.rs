@@ -5,24 +5,24 @@ use nalgebra::DMatrix;
 
 use crate::null_space::equilibrate_rows;
 
-/// Largest remainder of a scaled constraint that counts as none. Redundant constraints differ by the
-/// error of the point at which they are linearised.
+/// Largest remainder of a scaled constraint that counts as zero. Redundant constraints differ by the error of
+/// the point of linearisation.
 const MAX_DEPENDENT_REMAINDER: f64 = 1e-6;
 
 /// Independent states of a machine with constraints.
 pub(crate) struct IndependentStates {
-    /// Indices of the states: coordinates whose rates are independent too, these rates, then other
-    /// coordinates and first-order states.
+    /// Indices of the independent states: first coordinates whose rates are independent too, then these rates,
+    /// then other coordinates and first-order states.
     pub states: Vec<usize>,
     /// Number of coordinates whose rates are independent.
     pub degrees: usize,
-    /// All states (rows) by the independent ones (columns).
+    /// Matrix from the independent states (columns) to all states (rows).
     pub basis: DMatrix<f64>,
 }
 
-/// Selects the independent states of (q, q', z) with C (q, q', z) = 0. `held` is C; `degrees` is the
-/// number of coordinates q. The rates of dependent coordinates are dependent. States have similar sizes: an entry far below
-/// the largest of its row is rounding.
+/// Selects the independent states of (q, q', z) with C (q, q', z) = 0. `held` is C; `degrees` is the number of
+/// coordinates q. The rates of dependent coordinates are dependent. The states must have similar sizes: an
+/// entry far below the largest of its row is rounding.
 pub(crate) fn independent_states(held: &DMatrix<f64>, degrees: usize) -> IndependentStates {
     let states = held.ncols();
     let mut elimination = Elimination::new(held);
@@ -56,7 +56,7 @@ pub(crate) fn independent_states(held: &DMatrix<f64>, degrees: usize) -> Indepen
 
 /// Gauss-Jordan elimination of scaled constraints.
 struct Elimination {
-    /// Scaled constraints, reduced by the pivots up to now.
+    /// Scaled constraints, reduced by the pivots so far.
     matrix: DMatrix<f64>,
     /// Row and column of each pivot.
     pivots: Vec<(usize, usize)>,
@@ -70,8 +70,7 @@ impl Elimination {
         }
     }
 
-    /// Eliminates columns with the largest pivots of the rows that have none, until no pivot exceeds
-    /// rounding.
+    /// Eliminates columns by the largest pivots of rows without a pivot, until no pivot exceeds rounding.
     fn eliminate(&mut self, rows: &[usize], columns: impl Iterator<Item = usize>) {
         let columns: Vec<usize> = columns.collect();
         loop {
@@ -105,7 +104,7 @@ impl Elimination {
         self.pivots.iter().map(|(_, column)| *column).collect()
     }
 
-    /// Returns all states by the independent ones.
+    /// Returns the matrix from the independent states to all states.
     fn solve_for(&self, independent: &[usize]) -> DMatrix<f64> {
         let mut basis = DMatrix::zeros(self.matrix.ncols(), independent.len());
         for (place, state) in independent.iter().enumerate() {
@@ -124,7 +123,7 @@ mod tests {
 
     #[test]
     fn coordinates_without_constraint_are_independent() {
-        // y_1 = 2 y_0 and y_0 = 0, with their rates, and a free coordinate x that rounding adds.
+        // y_1 = 2 y_0 and y_0 = 0, with their rates. Rounding adds the free coordinate x.
         let held = [
             [1e-17, 2.0, -1.0, 0.0, 0.0, 0.0],
             [-1e-16, 5.0, 0.0, 0.0, 0.0, 0.0],
@@ -139,7 +138,7 @@ mod tests {
 
     #[test]
     fn rates_of_dependent_coordinates_are_dependent() {
-        // One direction of a ring at 45 degrees, where both coordinates are equally good.
+        // Motion in the direction of 45 degrees on a ring: both coordinates can be the independent one.
         let held = [[1.0, 1.0, 0.0, 0.0], [1e-17, 0.0, 1.0, 1.0 + 1e-15]];
         let held = DMatrix::from_row_slice(2, 4, held.as_flattened());
         let found = independent_states(&held, 2);

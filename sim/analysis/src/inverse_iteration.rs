@@ -1,14 +1,14 @@
-//! Eigenvectors of known eigenvalues by inverse iteration (G. H. Golub, C. F. Van Loan, *Matrix
-//! Computations*, 7.6), with factors within the band of the matrix. For a chain, the cost is
-//! proportional to its length.
+//! Eigenvectors of known eigenvalues by inverse iteration (G. H. Golub, C. F. Van Loan, *Matrix Computations*,
+//! 7.6), with triangular factors within the band of the matrix. For a chain, the cost is proportional to its
+//! length.
 
 use nalgebra::{Complex, DVector};
 
-/// Relative distance of the shift from the eigenvalue. At this distance the matrix is not singular,
-/// and each step gains as many digits.
+/// Relative distance of the shift from the eigenvalue. At this distance the matrix is nonsingular, and each
+/// step gains 11 digits.
 const RELATIVE_SHIFT: f64 = 1e-11;
 
-/// Number of steps; usually the second changes nothing.
+/// Number of steps; the second step usually changes nothing.
 const ITERATION_STEPS: usize = 4;
 
 /// Nonzero entries of a square matrix row by row, with their columns.
@@ -22,7 +22,7 @@ pub(crate) fn null_vector(
     earlier: &[DVector<Complex<f64>>],
 ) -> DVector<Complex<f64>> {
     let factors = Factors::new(&matrix(eigenvalue * (1.0 + RELATIVE_SHIFT)));
-    // The start vector has no symmetry that a machine might share.
+    // The start vector has no symmetry, because a symmetric one could be orthogonal to a mode.
     let mut vector = DVector::from_fn(factors.steps.len(), |row, _| {
         Complex::new(1.0 + (1.7 * (row + earlier.len()) as f64).sin() / 2.0, 0.1)
     });
@@ -50,7 +50,7 @@ struct Factors {
 }
 
 struct Step {
-    /// Row exchanged with this one.
+    /// Row exchanged with this row.
     pivot_row: usize,
     /// Multipliers of the rows below.
     below: Vec<(usize, Complex<f64>)>,
@@ -102,7 +102,7 @@ impl Factors {
     }
 }
 
-/// Eliminates a column from the rows below, which have no entries beyond `last_column`.
+/// Eliminates a column from the rows below, whose entries end at `last_column`.
 fn eliminate(rows: &mut [Vec<Complex<f64>>], place: usize, last_column: usize) -> Step {
     let zero = Complex::from(0.0);
     let sizes = rows[place..].iter().map(|row| row[place].norm());

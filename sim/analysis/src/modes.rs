@@ -1,4 +1,4 @@
-//! Dominant mode of a flexible body, by its share in the tip deflection and by frequency bands.
+//! Dominant mode of a flexible body, by its contribution to the tip deflection and by frequency bands.
 
 use super::error::{AnalysisError, check_values, mean};
 use super::spectrum::PowerSpectrum;
@@ -12,7 +12,7 @@ pub struct TipShares {
     pub variance: Vec<f64>,
 }
 
-/// Power of a deflection in the bands of natural frequencies, counted from 0.
+/// Power of a deflection in the bands around natural frequencies, counted from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BandPower {
     /// Power in the band of each natural frequency, in the squared unit.
@@ -24,15 +24,15 @@ pub struct BandPower {
 }
 
 impl TipShares {
-    /// Returns the mode with the greatest mean square, or `None` if all are 0.
+    /// Returns the mode with the largest mean square, or `None` if all are 0.
     pub fn dominant(&self) -> Option<usize> {
         greatest(&self.mean_square)
     }
 }
 
 impl BandPower {
-    /// Returns the natural frequency whose band has the most power, or `None` without power in any
-    /// band.
+    /// Returns the index of the natural frequency with the most power in its band, or `None` if no band has
+    /// power.
     pub fn dominant(&self) -> Option<usize> {
         greatest(&self.power)
     }
@@ -41,8 +41,8 @@ impl BandPower {
 /// Computes the contribution of each modal coordinate to the tip: `coordinates[i]` are samples of
 /// q_i, and `at_tip[i]` is phi_i(l).
 ///
-/// The mean squares of the modes do not sum to that of the tip, because correlated modes also
-/// contribute by their products.
+/// The sum of the mean squares differs from the mean square of the tip, because products of correlated modes
+/// contribute as well.
 ///
 /// # Errors
 ///
@@ -72,9 +72,8 @@ pub fn tip_shares(coordinates: &[&[f64]], at_tip: &[f64]) -> Result<TipShares, A
 
 /// Computes the power of a deflection in the bands of ascending `natural` frequencies (Hz).
 ///
-/// Neighbouring bands meet at the geometric mean of their frequencies. The first band extends as
-/// far below its frequency, by ratio, as above; the last as far above as below. A single band is an
-/// octave wide.
+/// Neighbouring bands meet at the geometric mean of their frequencies. The first and the last band extend
+/// equally far, by ratio, to both sides of their frequencies. A single band is an octave wide.
 ///
 /// # Errors
 ///
@@ -145,7 +144,7 @@ mod tests {
     use super::*;
     use crate::spectrum::{Trend, welch};
 
-    /// `mean + amplitude sin(2 pi f t)` over whole periods, 4096 samples per second.
+    /// Returns `mean + amplitude sin(2 pi f t)` over whole periods, with 4096 samples per second.
     fn wave(mean: f64, amplitude: f64, frequency: f64) -> Vec<f64> {
         (0..4096)
             .map(|n| mean + amplitude * (TAU * frequency * f64::from(n) / 4096.0).sin())

@@ -18,22 +18,22 @@ use crate::inverse_iteration::null_vector;
 use crate::null_space::zero_eigenvalues;
 use crate::pencil::Pencil;
 
-/// Relative difference of eigenvalues that share a space of shapes.
+/// Relative difference of eigenvalues below which they are a multiple eigenvalue.
 const MAX_EQUAL_EIGENVALUE_DIFFERENCE: f64 = 1e-7;
 
-/// Largest number of states of a connected part. The work of the eigenvalues grows with its cube.
+/// Largest number of states of a connected part. The cost of the eigenvalues grows with its cube.
 pub const MAX_CONNECTED_STATES: usize = 1200;
 
 /// Natural mode: the motion exp(lambda t) v, or its real part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NaturalMode {
-    /// lambda, 1/s. Of a conjugate pair, the one with positive imaginary part.
+    /// Eigenvalue lambda, 1/s. For a conjugate pair, the one with positive imaginary part.
     pub eigenvalue: Complex<f64>,
-    /// v: amplitudes of the coordinates in SI units, scaled so that the largest is 1, then those of
-    /// first-order states. If no coordinate moves, the largest of these is 1.
+    /// Shape v: amplitudes of the coordinates in SI units, scaled so that the largest is 1, then amplitudes of
+    /// the first-order states. If no coordinate moves, the largest of these is 1.
     pub shape: Vec<Complex<f64>>,
-    /// Rate, 1/s, up to which an eigenvalue counts as 0, because rounding of the fastest motion hides
-    /// it.
+    /// Rate, 1/s, up to which an eigenvalue counts as 0, because it is below the rounding of the fastest
+    /// motion.
     pub resolution: f64,
 }
 
@@ -92,8 +92,7 @@ pub fn natural_modes(matrix: &[f64], degrees: usize) -> Result<Vec<NaturalMode>,
 /// Collects the modes of all parts, lowest frequency first. `count` is the number of coordinates
 /// and first-order states of the machine.
 ///
-/// # Errors
-/// As for the modes of a part.
+/// # Errors Errors of the modes of a part.
 pub(crate) fn collect_modes(
     count: usize,
     parts: Vec<Part>,
@@ -200,7 +199,7 @@ mod tests {
             rows[place * states + degrees + place] = 1.0;
             rows[(degrees + place) * states + place] = -2.0;
         }
-        // Without springs between them, each mass is a part of its own.
+        // Without springs between them, each mass is a separate part.
         assert_eq!(
             natural_modes(&rows, degrees).map(|modes| modes.len()),
             Ok(degrees)
@@ -226,7 +225,7 @@ mod tests {
             rows[place * states + degrees + place] = 1.0;
             rows[(degrees + place) * states + place] = -stiffness(place);
             if place > 0 {
-                // Each mass drives the next one only: the eigenvalues are those of single masses.
+                // Each mass drives only the next one: the eigenvalues are those of single masses.
                 rows[(degrees + place) * states + place - 1] = 0.01;
             }
         }
@@ -257,7 +256,7 @@ mod tests {
 
     #[test]
     fn two_masses_on_a_spring_have_one_rigid_motion() -> Result<(), AnalysisError> {
-        // Masses 1 and 3 with stiffness 1e6, and a second pair softer by a factor of a million.
+        // Masses 1 and 3 with stiffness 1e6, and the same masses with a stiffness of 1e-3.
         for (k, c) in [(1e6, 0.0), (1e6, 2.0), (1e-3, 0.0)] {
             let (stiffness, damping) = (
                 [[-k, k], [k / 3.0, -k / 3.0]],

@@ -4,11 +4,11 @@ use nalgebra::DMatrix;
 
 use crate::qr_iteration;
 
-/// Largest singular value, relative to the greatest, that counts as rounding.
+/// Largest singular value that counts as rounding, relative to the largest one.
 pub(crate) const RANK_TOLERANCE: f64 = 1e-12;
 
-/// Counts the eigenvalue 0 with Jordan chains of any length: null spaces are removed until none
-/// remains. Returns `None` if they cannot be computed.
+/// Counts the multiplicity of the eigenvalue 0 with Jordan chains of any length: null spaces are removed until
+/// none remains. Returns `None` if they cannot be computed.
 pub(crate) fn zero_eigenvalues(mut matrix: DMatrix<f64>) -> Option<usize> {
     let mut count = 0;
     loop {

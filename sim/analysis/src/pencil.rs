@@ -7,16 +7,16 @@ use crate::inverse_iteration::SparseRows;
 use crate::null_space::{RANK_TOLERANCE, equilibrate_rows, null_space};
 use crate::qr_iteration;
 
-/// lambda^2 - lambda D - K in balanced coordinates. First-order states follow, with lambda instead
-/// of lambda^2.
+/// Quadratic pencil lambda^2 - lambda D - K in balanced coordinates. First-order states follow, with lambda
+/// instead of lambda^2.
 pub(crate) struct Pencil {
     /// Columns of possible nonzeros in each row: the diagonal, and those of K and D.
     columns: Vec<Vec<usize>>,
-    /// (K F; G H)
+    /// Block matrix (K F; G H).
     stiffness: DMatrix<f64>,
-    /// (D 0; E 0)
+    /// Block matrix (D 0; E 0).
     damping: DMatrix<f64>,
-    /// Balanced q' per q, from the upper rows; 1 for first-order states.
+    /// Ratio of balanced q' to q, from the upper rows; 1 for first-order states.
     ratio: DVector<f64>,
     /// SI value of a balanced unit.
     sizes: DVector<f64>,

@@ -1,15 +1,15 @@
-//! Stroboscopic section of a forced motion: period, extent and dimension of the points seen once
-//! per forcing period.
+//! Stroboscopic section of a forced motion: period, extent and dimension of the points sampled once per forcing
+//! period.
 
 use super::error::{AnalysisError, check_positive, check_values};
 
-/// Longest period searched, in forcing periods, and largest number of clusters counted.
+/// Longest period that is searched, in forcing periods, and largest number of clusters that are counted.
 pub const LONGEST_PERIOD: usize = 64;
-/// Number of last points used for the dimension: two million pairs.
+/// Number of last points used for the dimension; they form two million pairs.
 const MAX_DIMENSION_POINTS: usize = 2000;
 /// Smallest number of points for an estimate of the dimension.
 const MIN_DIMENSION_POINTS: usize = 200;
-/// Shares of the pairs whose distances bound the estimate of the dimension.
+/// Shares of the pairs whose largest distances bound the range for the estimate of the dimension.
 const DIMENSION_PAIR_SHARES: (f64, f64) = (0.01, 0.05);
 
 /// States once per forcing period, in order of time.
@@ -17,7 +17,7 @@ const DIMENSION_PAIR_SHARES: (f64, f64) = (0.01, 0.05);
 /// Omit a coordinate that drifts, such as an angle of rotation, and use its rate.
 #[derive(Clone, Copy, Debug)]
 pub struct Section<'a> {
-    /// Points one after another, each with as many coordinates as `scale`.
+    /// Points in order, each with the number of coordinates of `scale`.
     pub points: &'a [f64],
     /// Extent of each coordinate over the trajectory. The extent on the section is zero for a
     /// motion with the forcing period.
@@ -27,12 +27,12 @@ pub struct Section<'a> {
 /// Properties of a section.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
-    /// Smallest n, at most 64, for which each point is within the tolerance of one of the first n
-    /// points, the one a multiple of n periods before; `None` if there is none.
+    /// Smallest n, at most 64, for which each point is within the tolerance of one of the first n points, an
+    /// integer number of n periods earlier; `None` if there is none.
     pub period: Option<usize>,
     /// Number of clusters of points; `None` for more than 64.
     pub clusters: Option<usize>,
-    /// Least and greatest value of each coordinate, in its unit.
+    /// Smallest and largest value of each coordinate, in its unit.
     pub extent: Vec<(f64, f64)>,
     /// Correlation dimension: near 0 for finitely many points, 1 for a closed curve, not an integer
     /// for a strange attractor, 2 or more for a cloud. `None` for fewer than 200 points, or points
@@ -44,15 +44,15 @@ impl Section<'_> {
     /// Describes the section. Points are equal if no coordinate differs by more than `tolerance` of
     /// its scale.
     ///
-    /// With d(i, k) the greatest difference of the coordinates of points i and k, each divided by
-    /// its scale, the period is the smallest n with d(k mod n, k) <= tolerance for all k, if there
-    /// are at least 2n points. A slow drift is therefore no period. Clusters are counted in order of time: a point farther than the
-    /// tolerance from the first point of every cluster begins another.
+    /// With d(i, k) the largest difference of the coordinates of points i and k, each divided by its scale, the
+    /// period is the smallest n with d(k mod n, k) <= tolerance for all k, if there are at least 2n points.
+    /// Therefore a slow drift does not count as a period. Clusters are counted in order of time: a point
+    /// farther than the tolerance from the first point of every cluster starts a new one.
     ///
-    /// The dimension is that of P. Grassberger and I. Procaccia (Physica D 9 (1983) 189-208): with
-    /// r_1 and r_2 the distances that 1 % and 5 % of the pairs do not reach, ln 5 / ln(r_2/r_1). It
-    /// uses at most the last 2000 points, each coordinate divided by its extent on the section. The
-    /// cost is quadratic in the number of points.
+    /// The dimension is that of P. Grassberger and I. Procaccia (Physica D 9 (1983) 189-208): the dimension is
+    /// ln 5 / ln(r_2/r_1), where 1 % of the pairs are closer than r_1 and 5 % closer than r_2. It uses at most
+    /// the last 2000 points, each coordinate divided by its extent on the section. The cost is quadratic in the
+    /// number of points.
     ///
     /// # Errors
     ///
@@ -115,7 +115,7 @@ impl Section<'_> {
         if recent.len() < MIN_DIMENSION_POINTS * width {
             return None;
         }
-        // A coordinate that varies by less than the tolerance is constant: its noise has no
+        // A coordinate that varies by less than the tolerance counts as constant: its noise must not affect the
         // dimension.
         let own: Vec<f64> = extent
             .iter()
@@ -142,7 +142,7 @@ fn scaled(points: &[f64], scale: &[f64]) -> Vec<f64> {
     points.iter().zip(scales).map(|(x, s)| x / s).collect()
 }
 
-/// Returns the greatest difference of the coordinates.
+/// Returns the largest difference of the coordinates.
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
     differences.fold(0.0, f64::max)
@@ -173,7 +173,7 @@ fn clusters(points: &[&[f64]], tolerance: f64) -> Option<usize> {
     Some(leaders.len())
 }
 
-/// Returns the value that this share of the values does not reach.
+/// Returns the quantile: a share `share` of the values is below it.
 fn quantile(values: &mut [f64], share: f64) -> Option<f64> {
     let index = (share * values.len() as f64) as usize;
     if index >= values.len() {
@@ -202,7 +202,7 @@ mod tests {
             assert_eq!(found.period, Some(period), "r = {r}");
             assert_eq!(found.clusters, Some(period), "r = {r}");
         }
-        // The window of period 3 begins at 1 + sqrt 8.
+        // The period-3 window starts at 1 + sqrt 8.
         assert_eq!(shape(&logistic(3.835, 400), &[1.0]).period, Some(3));
         let chaos = shape(&logistic(4.0, 2000), &[1.0]);
         assert_eq!((chaos.period, chaos.clusters), (None, None));
@@ -210,7 +210,7 @@ mod tests {
 
     #[test]
     fn slow_drift_is_no_period() {
-        // Three periods turn by nearly a circle.
+        // Three periods turn by nearly one revolution.
         let points = circle(1.0 / 3.0 + 1e-4, 0.0, 300);
         let section = Section {
             points: &points,
@@ -234,7 +234,7 @@ mod tests {
             .collect();
         let found = shape(&points, &[6.0, 2e-3]);
         assert_eq!((found.period, found.clusters), (None, None));
-        // 1 % of 2000 points is 20 neighbours: counted to one in 20 on a line.
+        // 1 % of 2000 points is 20 neighbours, which limits the accuracy on a line to 5 %.
         let dimension = found.dimension.unwrap();
         assert!((dimension - 1.0).abs() < 0.1, "{dimension}");
         let (low, high) = found.extent[0];
@@ -254,7 +254,7 @@ mod tests {
         // 1.21 in the limit; local slopes at these distances scatter by 10 %.
         assert!((strange - 1.21).abs() < 0.12, "{strange}");
         let cloud = shape(&noise(4000), &[2.0, 2.0]).dimension.unwrap();
-        // A square at distances up to a tenth of its side: edges cost a few per cent.
+        // A square, at distances up to a tenth of its side: the edges cause an error of a few per cent.
         assert!((cloud - 2.0).abs() < 0.15, "{cloud}");
     }
 

@@ -1,20 +1,19 @@
 //! Schur forms, eigenvalues and singular values of small dense matrices, by QR iterations of
 //! bounded length.
 //!
-//! The iteration of `nalgebra` has no exceptional shifts. It may cycle if eigenvalues are
-//! symmetric, as those of undamped machines. A change of basis ends the cycle.
+//! The iteration of `nalgebra` has no exceptional shifts. It may cycle if the eigenvalues are symmetric, as for
+//! undamped machines. A change of basis ends the cycle.
 
 use nalgebra::{Complex, ComplexField, DMatrix, DVector, Dyn, SVD, Schur, SymmetricEigen};
 
-/// Largest number of iterations per eigenvalue; two or three are usual.
+/// Maximum number of iterations per eigenvalue; two or three are usual.
 const MAX_ITERATIONS_PER_EIGENVALUE: usize = 400;
 
-/// Number of reflections that are tried.
+/// Maximum number of reflections that are tried.
 const MAX_REFLECTIONS: usize = 3;
 
-/// Computes the Schur form Q T Q^H of a square matrix: unitary Q, and upper triangular T (with
-/// blocks of two on the diagonal for a real matrix). Returns `None` if the iteration converges in
-/// no basis.
+/// Computes the Schur form Q T Q^H of a square matrix: unitary Q, and upper triangular T (with blocks of two on
+/// the diagonal for a real matrix). Returns `None` if the iteration converges in no tried basis.
 pub fn schur_form<T: ComplexField<RealField = f64>>(
     matrix: &DMatrix<T>,
 ) -> Option<(DMatrix<T>, DMatrix<T>)> {
@@ -26,8 +25,7 @@ pub fn schur_form<T: ComplexField<RealField = f64>>(
     })
 }
 
-/// Computes the eigenvalues of a square matrix, in no order. Returns `None` without a
-/// [`schur_form`].
+/// Computes the eigenvalues of a square matrix, unsorted. Returns `None` if there is no [`schur_form`].
 pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     let schur = converge_schur(matrix)?.schur;
     Some(schur.complex_eigenvalues().iter().copied().collect())
@@ -53,7 +51,7 @@ pub fn symmetric_eigen(matrix: &DMatrix<f64>) -> Option<SymmetricEigen<f64, Dyn>
     SymmetricEigen::try_new(matrix.clone(), f64::EPSILON, most)
 }
 
-/// Converged iteration of the matrix, or of its reflection.
+/// Schur form of the matrix or of its reflection, after convergence.
 struct ConvergedSchur<T: ComplexField<RealField = f64>> {
     reflection: Option<DMatrix<T>>,
     schur: Schur<T, Dyn>,
@@ -108,7 +106,7 @@ mod tests {
         let found = eigenvalues(&matrix).expect("another basis");
         let fastest = found.iter().map(|e| e.norm()).fold(0.0, f64::max);
         assert!((fastest / (2.0 * 251.31233257696744_f64).sqrt() - 1.0).abs() < 1e-14);
-        // Four zeros, in two pairs with one eigenvector each: rounding moves them by its root.
+        // Two pairs of eigenvalues 0, with one eigenvector each: rounding displaces them by its square root.
         assert_eq!(found.iter().filter(|e| e.norm() < 1e-6).count(), 4);
     }
 

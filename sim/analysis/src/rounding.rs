@@ -1,13 +1,13 @@
-//! Products of matrices without rounding where their terms cancel.
+//! Matrix products with cancelled entries set to zero.
 
 use nalgebra::DMatrix;
 
-/// Largest rounding of a product of matrices, in units of the last place of its terms. Each entry of
-/// a linearisation has a rounding of a few units.
+/// Largest rounding of a product of matrices, in units of the last place of its terms. Each entry of a
+/// linearisation has a rounding of a few such units.
 const MAX_ROUNDINGS: f64 = 16.0;
 
-/// Multiplies two matrices. Entries whose terms cancel up to rounding are 0, so that null spaces are
-/// found by them.
+/// Multiplies two matrices. Entries whose terms cancel up to rounding are set to 0, so that null spaces can be
+/// computed from the product.
 pub(crate) fn product_without_rounding(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
     let terms = a.abs() * b.abs();
     (a * b).zip_map(&terms, |entry, terms| {

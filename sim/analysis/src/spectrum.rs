@@ -27,14 +27,14 @@ pub enum Trend {
     Line,
 }
 
-/// Half-width of a line under the Hann window, in frequency steps.
+/// Half-width of a spectral line under the Hann window, in frequency steps.
 const LINE_HALF_WIDTH: usize = 2;
 /// Half-width of the background of a line, in frequency steps.
 const BACKGROUND_REACH: usize = 24;
-/// Largest share of the power that counts as rounding: 1e-9 of the amplitude.
+/// Largest share of the power that counts as rounding: 1e-9 of the amplitude, squared.
 const MAX_ROUNDING_POWER_SHARE: f64 = 1e-18;
-/// Least ratio of a line to its background. A density of noise averaged over eight or more segments
-/// exceeds four times its median once in about 10^6 values.
+/// Smallest ratio of a line to its background. A density of noise averaged over eight or more segments exceeds
+/// four times its median once in about 10^6 values.
 const MIN_PEAK_OVER_BACKGROUND: f64 = 20.0;
 
 /// Estimates the density of `values`, sampled every `interval` s, from segments of `segment`
@@ -145,9 +145,9 @@ fn mean_power(segments: impl Iterator<Item = Vec<f64>>, length: usize) -> Vec<f6
     power
 }
 
-/// Subtracts the mean over all periods of `period` samples: the forcing line and its harmonics,
-/// which every forced motion has. Samples after the last whole period are omitted. Returns `None`
-/// if only rounding remains, for a motion with the forcing period, or if there is no whole period.
+/// Subtracts the mean over all periods of `period` samples: the forcing line and its harmonics, which every
+/// forced motion contains. Samples after the last whole period are omitted. Returns `None` if only rounding
+/// remains, as for a motion with the forcing period, or if there is no whole period.
 pub fn subtract_harmonics(values: &[f64], period: usize) -> Option<Vec<f64>> {
     let periods = values.len().checked_div(period)?;
     let mut repeated = vec![0.0; period];
@@ -191,19 +191,18 @@ impl PowerSpectrum {
 
     /// Returns the share of the power in spectral lines, between 0 and 1, or `None` without power.
     ///
-    /// A line is a density that is the greatest within two frequency steps (half the main lobe of
-    /// the window) and at least 20 times the median density within 24 steps. Its power is that of
-    /// these five densities above the median. Periodic and quasi-periodic motions have a share near
-    /// 1, chaotic motions less. Lines closer than about ten steps count as a continuum, so segments
-    /// must be long enough. With fewer than about eight segments, peaks of noise may count as
-    /// lines.
+    /// A line is a density that is the largest within two frequency steps (half the main lobe of the window)
+    /// and at least 20 times the median density within 24 steps. Its power is the power of these five densities
+    /// above the median. Periodic and quasi-periodic motions have a share near 1, chaotic motions less. Lines
+    /// closer than about ten steps count as a continuum, so segments must be long enough. With fewer than about
+    /// eight segments, peaks of noise may count as lines.
     pub fn line_share(&self) -> Option<f64> {
         let total: f64 = self.density.iter().sum();
         if !(total > 0.0 && total.is_finite()) {
             return None;
         }
         let lines = (0..self.density.len()).filter_map(|k| self.line_density(k));
-        // Starts at 0, because the sum of no values is -0.
+        // The fold starts at 0, because the sum of an empty iterator is -0.
         let sum = lines.fold(0.0, |sum, line| sum + line);
         Some((sum / total).clamp(0.0, 1.0))
     }
@@ -217,7 +216,7 @@ impl PowerSpectrum {
             self.density.get(k.saturating_sub(reach)..end)
         };
         let lobe = around(LINE_HALF_WIDTH)?;
-        // Only the first of equal neighbours is a peak.
+        // Among equal neighbours only the first is a peak.
         let before = self.density.get(k.saturating_sub(LINE_HALF_WIDTH)..k)?;
         if lobe.iter().any(|other| *other > peak) || before.contains(&peak) {
             return None;
@@ -312,8 +311,8 @@ mod tests {
         // Uniform on [-1, 1): variance 1/3.
         let spectrum = welch(&noise(count), interval, segment, Trend::Mean)?;
         let level = 2.0 * interval / 3.0;
-        // The scatter of 1023 overlapping segments is 1.06/sqrt(1023), 3.3 %; the limit is five
-        // times this.
+        // The standard deviation of a mean over 1023 overlapping segments is 1.06/sqrt(1023), 3.3 %; the limit
+        // is five times this.
         for (k, density) in spectrum.density.iter().enumerate().take(128).skip(3) {
             assert!((density / level - 1.0).abs() < 0.17, "{k}: {density}");
         }
@@ -368,7 +367,7 @@ mod tests {
             .map(|(noise, sine)| noise + sine)
             .collect();
         let share = welch(&mixed, 1e-3, 1000, Trend::Mean)?.line_share();
-        // 130 segments: the noise under the line is subtracted to within 1 %.
+        // With 130 segments, the noise under the line is subtracted to within 1 %.
         assert!((share.unwrap() - 0.5).abs() < 0.02, "{share:?}");
         Ok(())
     }
@@ -376,7 +375,7 @@ mod tests {
     #[test]
     fn removed_harmonics_reveal_noise() -> Result<(), AnalysisError> {
         let (count, period) = (1 << 16, 50);
-        // Harmonics a hundred times as strong as the rest, which is noise or another line.
+        // Harmonics a hundred times as strong as the remainder, which is noise or another line.
         let forced = |rest: &[f64]| -> Vec<f64> {
             let harmonics = |n: usize| {
                 let angle = TAU * n as f64 / period as f64;

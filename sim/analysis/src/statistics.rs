@@ -22,8 +22,8 @@ impl Summary {
         sorted.sort_by(f64::total_cmp);
         let (low, high) = (*sorted.first()?, *sorted.last()?);
         let count = sorted.len() as f64;
-        // Values relative to the lowest keep the digits of the spread. Division by the range, in
-        // halves, avoids overflow.
+        // Values relative to the lowest value keep the digits of the spread. Division by the range, in halves,
+        // avoids overflow.
         let half = if high > low {
             high / 2.0 - low / 2.0
         } else {
@@ -42,9 +42,8 @@ impl Summary {
         })
     }
 
-    /// Returns the quantile of a probability, by linear interpolation between the sorted values:
-    /// the seventh definition of R. J. Hyndman and Y. Fan, The American Statistician 50 (1996)
-    /// 361-365.
+    /// Returns the quantile for the probability `part`, by linear interpolation between the sorted values: the
+    /// seventh definition of R. J. Hyndman and Y. Fan, The American Statistician 50 (1996) 361-365.
     pub fn quantile(&self, part: f64) -> f64 {
         let place = part.clamp(0.0, 1.0) * (self.sorted.len() - 1) as f64;
         let (below, above) = (place.floor(), place.ceil());
@@ -54,9 +53,8 @@ impl Summary {
     }
 }
 
-/// Computes Spearman's rank correlation coefficient, from -1 to 1; equal values get their mean
-/// rank. Pairs with a number that is not finite are omitted. Returns `None` if either series is
-/// constant.
+/// Computes Spearman's rank correlation coefficient, from -1 to 1; equal values get the mean of their ranks.
+/// Pairs with a number that is not finite are omitted. Returns `None` if either series is constant.
 pub fn rank_correlation(one: &[f64], other: &[f64]) -> Option<f64> {
     let pairs = one
         .iter()
@@ -74,7 +72,7 @@ pub fn rank_correlation(one: &[f64], other: &[f64]) -> Option<f64> {
     (size > 0.0).then(|| (product(&one, &other) / size).clamp(-1.0, 1.0))
 }
 
-/// Returns the rank of each value from 1 on; equal values get their mean rank.
+/// Returns the rank of each value, from 1 on; equal values get the mean of their ranks.
 fn ranks(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));

@@ -1,4 +1,4 @@
-//! 0-1 test for chaos: a walk driven by a chaotic series spreads like diffusion.
+//! 0-1 test for chaos: a walk driven by a chaotic series spreads like Brownian motion.
 //!
 //! G. A. Gottwald, I. Melbourne, "On the implementation of the 0-1 test for chaos", SIAM J. Appl.
 //! Dyn. Syst. 8 (2009) 129-145. Sample the series once per forcing period: a flow sampled many
@@ -10,9 +10,9 @@ use super::error::{AnalysisError, check_values, mean};
 
 /// Number of angles c for the median, as in the paper.
 const ANGLE_COUNT: usize = 100;
-/// Smallest number of values with enough lags for a correlation.
+/// Smallest number of values that gives enough lags for a correlation.
 const MIN_VALUES: usize = 100;
-/// Largest variation, relative to the greatest magnitude, that counts as rounding.
+/// Largest variation that counts as rounding, relative to the largest magnitude.
 const MAX_CONSTANT_VARIATION: f64 = 1e-10;
 
 /// Computes the growth rate K: near 1 for chaos, near 0 for periodic and quasi-periodic motion.
@@ -25,10 +25,10 @@ const MAX_CONSTANT_VARIATION: f64 = 1e-10;
 /// K_c = correlation of (1 .. L) with (D(1) .. D(L))
 /// ```
 ///
-/// and K is the median of K_c. Without the mean, D is the modified displacement of the paper, which
-/// lacks the oscillating term (mean phi)^2 (1 - cos n c)/(1 - cos c). The angles follow the
-/// golden-ratio sequence, so K is deterministic. A series that is constant to 10^-10 of its
-/// magnitude (a fixed point of the section) has K = 0. The cost is about 10 N^2 steps.
+/// and K is the median of K_c. Because the mean is subtracted, D is the modified displacement of the paper,
+/// without the oscillating term (mean phi)^2 (1 - cos n c)/(1 - cos c). The angles follow the golden-ratio
+/// sequence, so K is deterministic. A series that is constant to 10^-10 of its magnitude (a fixed point of the
+/// section) has K = 0. The cost is about 10 N^2 steps.
 ///
 /// # Errors
 ///
@@ -52,14 +52,14 @@ pub fn chaos_indicator(values: &[f64]) -> Result<f64, AnalysisError> {
     Ok(mean(middle))
 }
 
-/// Returns the golden-ratio sequence on (pi/5, 4 pi/5). It is even for any number of angles, and
+/// Returns the golden-ratio sequence on (pi/5, 4 pi/5). It is evenly distributed for any number of angles, and
 /// not resonant with motions of short period.
 fn angles() -> impl Iterator<Item = f64> {
     let golden = (5_f64.sqrt() - 1.0) / 2.0;
     (1..=ANGLE_COUNT).map(move |i| PI / 5.0 + 3.0 * PI / 5.0 * (i as f64 * golden).fract())
 }
 
-/// Computes K_c, the linearity of the growth of the mean-square displacement.
+/// Computes K_c, the correlation of the mean-square displacement with time.
 fn growth(series: &[f64], angle: f64) -> f64 {
     let walk = walk(series, angle);
     let lags = series.len() / 10;
@@ -91,7 +91,7 @@ fn walk(series: &[f64], angle: f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Computes the correlation coefficient of the values with 1, 2, 3, ...; 0 if they are equal.
+/// Computes the correlation coefficient of the values with 1, 2, 3, ...; 0 if the values are equal.
 fn correlation_with_index(values: &[f64]) -> f64 {
     let average = mean(values);
     let middle = (values.len() as f64 - 1.0) / 2.0;
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn chaotic_maps_have_k_near_one() -> Result<(), AnalysisError> {
-        // The series of the paper have 2000 values and K = 0.99.
+        // In the paper, series of 2000 values have K = 0.99.
         let x: Vec<f64> = henon(2000).iter().map(|point| point[0]).collect();
         for (name, series) in [("logistic", logistic(4.0, 2000)), ("Henon", x)] {
             let k = chaos_indicator(&series)?;
@@ -137,7 +137,7 @@ mod tests {
             ("circle map", rotation),
         ] {
             let k = chaos_indicator(&series)?;
-            // Bounded displacements leave a correlation of the order 1/sqrt(200).
+            // Bounded displacements have a remaining correlation of the order 1/sqrt(200).
             assert!(k.abs() < 0.1, "{name}: {k}");
         }
         Ok(())
@@ -147,7 +147,7 @@ mod tests {
     fn k_is_independent_of_origin_and_unit() -> Result<(), AnalysisError> {
         let series = logistic(3.97, 500);
         let micro: Vec<f64> = series.iter().map(|x| 1e-6 * x + 1e-3).collect();
-        // The offset costs three of sixteen digits, the sums two more.
+        // The offset costs three of sixteen digits, the sums cost two more.
         assert!((chaos_indicator(&series)? - chaos_indicator(&micro)?).abs() < 1e-9);
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Functions for scripts. A script passes addresses in the engine's memory, which it reads and writes between calls.
 //!
-//! Emitted modules share the memory. The script imports their functions to the engine as `host.prepare`, `host.rates`,
-//! `host.observables` and `host.guards`, with the number of the module as first argument.
+//! Emitted modules use the same memory. The script imports their functions to the engine as `host.prepare`,
+//! `host.rates`, `host.observables` and `host.guards`, with the module number as first argument.
 
 #![allow(unsafe_code)]
 
@@ -25,13 +25,13 @@ unsafe extern "C" {
 /// Addresses of the arrays of an emitted module, in the order of [`Array`].
 type Addresses = [usize; 6];
 
-/// Emitted module that shares the memory.
+/// Emitted module that uses the engine's memory.
 struct SharedModule {
     number: u32,
     at: Addresses,
 }
 
-// SAFETY: all four call functions of a module that the script attached under this number.
+// SAFETY: all four functions call a module that the script attached under this number.
 impl ModuleFunctions for SharedModule {
     fn prepare(&self) {
         unsafe { prepare(self.number) }
@@ -51,8 +51,8 @@ impl ModuleFunctions for SharedModule {
 
     fn write(&self, array: Array, numbers: &[f64]) {
         let to = self.at[array as usize] as *mut f64;
-        // SAFETY: the module's array has one number for each quantity of its program, as `numbers`, and nothing else
-        // refers to it.
+        // SAFETY: the module's array has an element for each quantity of its program, as `numbers` has, and
+        // nothing else refers to it.
         unsafe { to.copy_from_nonoverlapping(numbers.as_ptr(), numbers.len()) }
     }
 
@@ -63,7 +63,7 @@ impl ModuleFunctions for SharedModule {
     }
 }
 
-/// Reserves memory for so many bytes, at a multiple of 8, until the page is closed.
+/// Reserves memory for `bytes` bytes, at a multiple of 8, until the page is closed.
 #[unsafe(no_mangle)]
 extern "C" fn reserve(bytes: usize) -> *mut f64 {
     vec![0.0; bytes.div_ceil(8)].leak().as_mut_ptr()
@@ -81,8 +81,8 @@ unsafe extern "C" fn create(bytes: *const u8, length: usize, tolerance: f64) -> 
     made.map_or(std::ptr::null_mut(), |made| Box::into_raw(Box::new(made)))
 }
 
-/// Uses emitted modules for the model's programs: the first has the number 0, that with sides the number 1. `addresses` has
-/// six addresses for each, in the order of [`Array`].
+/// Uses emitted modules for the model's programs: module 0 for the program itself, module 1 for the program
+/// with sides. `addresses` has six addresses for each module, in the order of [`Array`].
 ///
 /// # Safety
 /// The motion is from [`create`], and the addresses are those of modules of its programs.
@@ -104,7 +104,7 @@ unsafe extern "C" fn attach(motion: *mut PageMotion, addresses: *const Addresses
     motion.set_code(code);
 }
 
-/// Exports functions of a motion.
+/// Exports functions that act on a motion.
 macro_rules! export {
     ($($(#[$doc:meta])* $name:ident($motion:ident $(, $argument:ident: $kind:ty)*) -> $result:ty = $act:expr;)*) => {$(
         $(#[$doc])*
@@ -137,11 +137,11 @@ export! {
     event_count(motion) -> usize = motion.event_count();
     /// Starts at a time, s; see [`PageMotion::start`].
     start(motion, t: f64) -> Status = motion.start(t);
-    /// Continues with the parameters.
+    /// Applies the parameters from the time reached on.
     set_parameters(motion) -> Status = motion.set_parameters();
-    /// Continues with the inputs, held.
+    /// Holds the inputs from the time reached on.
     hold(motion) -> Status = motion.hold();
-    /// Continues with so many signals.
+    /// Drives the inputs by this number of signals from the time reached on.
     drive(motion, count: usize) -> Status = motion.drive(count);
     /// Continues to a time, s.
     advance(motion, until: f64) -> Status = motion.advance(until);

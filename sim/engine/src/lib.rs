@@ -1,9 +1,10 @@
-//! Engine of interactive pages: moves an exported model with the solvers of `eomgen simulate`, as a WebAssembly module
-//! for `wasm32-unknown-unknown`.
+//! Engine of interactive pages, a WebAssembly module for `wasm32-unknown-unknown`: it simulates an exported
+//! model with the solvers of `eomgen simulate`.
 //!
-//! `boundary` exports the functions for scripts, with unsafe code; it is empty for other targets. `page_motion` is a motion
-//! with its numbers for scripts, `signals` are inputs over time, and `module_code` calls the emitted modules of the
-//! model's programs, which share the memory of the engine. The crate `page` compiles and embeds it.
+//! `boundary` exports the functions for scripts, with unsafe code; it is empty for other targets. `page_motion`
+//! is a motion whose numbers scripts can read and write, `signals` are inputs as functions of time, and
+//! `module_code` calls the emitted modules of the model's programs, which use the engine's memory. The crate
+//! `page` compiles and embeds the engine.
 
 #[cfg(target_family = "wasm")]
 mod boundary;

@@ -1,4 +1,4 @@
-//! Emitted modules of the model's programs as machine code of the evaluator.
+//! Emitted modules of the model's programs, used as machine code by the evaluator.
 
 use eomgen_codegen::program::evaluator::{MachineCode, Places, Point, Stage};
 use eomgen_codegen::program::{Op, Program};
@@ -16,7 +16,7 @@ pub enum Array {
     Rates,
     /// Observables.
     Observables,
-    /// Switching surfaces.
+    /// Switching functions.
     Guards,
 }
 
@@ -31,7 +31,7 @@ pub trait ModuleFunctions: Send + Sync {
     /// Computes the observables at a time, s.
     fn observables(&self, t: f64);
 
-    /// Computes the switching surfaces at a time, s.
+    /// Computes the switching functions at a time, s.
     fn guards(&self, t: f64);
 
     /// Writes numbers to the start of an array.
@@ -41,11 +41,11 @@ pub trait ModuleFunctions: Send + Sync {
     fn read(&self, array: Array, numbers: &mut [f64]);
 }
 
-/// Machine code of a program: rates, observables and switching surfaces by its emitted module.
+/// Machine code of a program: its emitted module computes rates, observables and switching functions.
 pub struct ModuleCode<F> {
     functions: F,
     stages: Vec<Stage>,
-    /// Places in the evaluator's memory.
+    /// Indices in the evaluator's memory.
     parameters: Vec<usize>,
     observables: Vec<usize>,
     guards: Vec<usize>,
@@ -55,7 +55,8 @@ impl<F: ModuleFunctions> ModuleCode<F> {
     /// Combines a program with the functions of its module.
     pub fn new(program: &Program, functions: F) -> Self {
         let places = Places::new(program);
-        // A parameter that no value depends on has no place; its number is the specification's.
+        // A parameter without effect on any value has no index in memory; the number in the specification is
+        // used.
         let mut parameters = vec![usize::MAX; program.parameters.len()];
         for id in program.ids() {
             if let Op::Parameter(place) = program.value(id).op {
@@ -125,7 +126,7 @@ impl<F: ModuleFunctions> MachineCode for ModuleCode<F> {
                 self.functions.guards(point.t);
                 self.read_into(Array::Guards, &self.guards, memory);
             }
-            // The evaluator computes the other stages; rates have their own function.
+            // The evaluator computes the other stages; the rates have a separate function.
             _ => {}
         }
     }

@@ -1,4 +1,4 @@
-//! A motion with its numbers for scripts.
+//! A motion whose numbers scripts can read and write.
 
 use eomgen_compiled_model::{
     Error, ExportedCode, ExportedModel, ExportedMotion, InitialChange, SolverOptions,
@@ -13,21 +13,21 @@ use crate::signals::{SIGNAL_LENGTH, Signal, inputs};
 pub enum Status {
     /// The motion continues.
     Continues = 0,
-    /// The motion continues, and the state was moved onto the constraints.
+    /// The motion continues, and the state was projected onto the constraints.
     Moved = 1,
-    /// The motion ended or cannot start, for a reason.
+    /// The motion ended or cannot start; see [`PageMotion::reason`].
     Stopped = 2,
 }
 
-/// A motion with its numbers. Scripts write parameters, inputs, signals and the initial state, and then call a function that
-/// uses them; state and observables are those at the time reached.
+/// A motion whose numbers scripts can read and write. Scripts write parameters, inputs, signals and the initial
+/// state, and then call a function that uses them. State and observables are those at the time reached.
 pub struct PageMotion {
     motion: ExportedMotion,
     /// Independent parameters, SI.
     pub parameters: Vec<f64>,
     /// Inputs, SI.
     pub inputs: Vec<f64>,
-    /// Numbers of the signals, [`SIGNAL_LENGTH`] for each.
+    /// Numbers that describe the signals, [`SIGNAL_LENGTH`] for each.
     pub signals: Vec<f64>,
     /// State, SI.
     pub state: Vec<f64>,
@@ -84,13 +84,13 @@ impl PageMotion {
         self.settle(started)
     }
 
-    /// Continues with the parameters.
+    /// Applies the parameters from the time reached on.
     pub fn set_parameters(&mut self) -> Status {
         let set = self.motion.set_parameters(&self.parameters);
         self.settle(set)
     }
 
-    /// Continues with the inputs, held from the time reached on.
+    /// Holds the inputs from the time reached on.
     pub fn hold(&mut self) -> Status {
         let t = self.motion.time();
         let before = self.motion.inputs().evaluate(t).into_owned();
@@ -100,13 +100,13 @@ impl PageMotion {
         self.follow(|motion| motion.set_inputs(inputs))
     }
 
-    /// Continues with the first of the signals.
+    /// Drives the inputs by the first `count` signals from the time reached on.
     pub fn drive(&mut self, count: usize) -> Status {
         self.signal_count = count;
         let t = self.motion.time();
         let before = self.motion.inputs().evaluate(t).into_owned();
         let inputs = inputs(&self.driving_signals(), (t, &before));
-        // A start begins with the values before the first output of a controller.
+        // The start has the values before the first output of a controller.
         for (place, value) in inputs.evaluate(t).iter().enumerate() {
             if !self.motion.drives(place) {
                 self.inputs[place] = *value;
@@ -136,12 +136,12 @@ impl PageMotion {
         self.motion.event_count()
     }
 
-    /// Returns why the motion ended or cannot start; empty if it continues.
+    /// Returns the reason why the motion ended or cannot start; empty if it continues.
     pub fn reason(&self) -> &str {
         self.reason.as_deref().unwrap_or_default()
     }
 
-    /// Continues the motion, unless it ended.
+    /// Applies `act` to the motion, unless it has ended.
     fn follow(&mut self, act: impl FnOnce(&mut ExportedMotion) -> Result<(), Error>) -> Status {
         let followed = act(&mut self.motion);
         if self.reason.is_some() {

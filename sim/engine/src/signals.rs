@@ -1,4 +1,4 @@
-//! Inputs over time: constant, sine or step. The rates of an input are those of its signal.
+//! Inputs as functions of time: constant, sine or step. The rates of an input are the rates of its signal.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -8,30 +8,30 @@ use eomgen_sim::inputs::{HeldInputs, InputFunction};
 /// Start of a step, s.
 const STEP_START_S: f64 = 1.0;
 
-/// Count of numbers of a signal for scripts.
+/// Number of numbers that describe a signal for scripts.
 pub const SIGNAL_LENGTH: usize = 8;
 
 /// Form of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// The value at all times.
+    /// Constant value.
     Constant,
-    /// A sine about the value.
+    /// Sine about the value.
     Sine,
-    /// A polynomial of degree 5 from the value, whose rates begin and end at 0.
+    /// Polynomial of degree 5 that starts at the value; its first and second rates are 0 at both ends.
     Step,
 }
 
 /// Signal of an input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Signal {
-    /// Indices of the input, its rate and its second rate among the inputs, as far as they are inputs.
+    /// Indices of the input, its rate and its second rate among the inputs; `None` if there is no such input.
     pub places: [Option<usize>; 3],
     /// Form.
     pub form: Form,
-    /// Value, or the middle or start, SI.
+    /// Constant value, mean value of a sine, or start value of a step, SI.
     pub value: f64,
-    /// Amplitude or height, SI.
+    /// Amplitude of a sine or height of a step, SI.
     pub change: f64,
     /// Period of a sine or duration of a step, s.
     pub duration: f64,
@@ -94,7 +94,7 @@ impl Signal {
     }
 }
 
-/// Value or a rate of a signal, as an input.
+/// A signal, or one of its rates, as an input.
 #[derive(Debug)]
 struct SignalInput {
     signal: Signal,
@@ -107,7 +107,8 @@ impl InputFunction for SignalInput {
     }
 }
 
-/// Returns the inputs of signals from a time (s) on. Constant ones are held and may jump there from those `before`.
+/// Returns the inputs of signals from a time (s) on. Constant signals are held and may jump there from the
+/// inputs `before`.
 pub(crate) fn inputs(signals: &[Signal], (t, before): (f64, &[f64])) -> HeldInputs {
     let mut after = before.to_vec();
     for signal in signals {

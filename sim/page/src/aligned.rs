@@ -4,8 +4,8 @@ use maud::{Markup, html};
 
 use crate::number::{Notation, rounded};
 
-/// Returns numbers with `digits` digits after the first, each with a width that aligns the decimal points;
-/// a dash for a missing number. If one has a power of ten, all do.
+/// Returns numbers with `digits` digits after the first, padded so that the decimal points align; a dash for a
+/// missing number. If one number has a power of ten, all have one.
 pub fn aligned(values: &[Option<f64>], digits: usize) -> Vec<Markup> {
     let notation = values
         .iter()

@@ -13,7 +13,8 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src dat
 const SCRIPT_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
                              script-src 'unsafe-inline' 'wasm-unsafe-eval'";
 
-/// Style without JavaScript: hides elements that only a script fills, and gives the controls their own height.
+/// Style without JavaScript: hides elements whose content is computed by a script, and lets the controls have
+/// their natural height.
 const UNSCRIPTED_STYLE: &str = ".scripted { display: none; } .controls { contain: none; }";
 
 /// Returns a complete document without scripts and external resources; its content security policy
@@ -28,13 +29,13 @@ pub fn document(title: &str, body: &Markup) -> String {
 pub struct ScriptedDocument<'a> {
     /// Title of the page.
     pub title: &'a str,
-    /// Additional style sheet; a constant of the program.
+    /// Additional style sheet: a constant of the program.
     pub style: &'a str,
     /// Body of the page.
     pub body: &'a Markup,
-    /// JSON in the element with the id `model`.
+    /// JSON text of the element with the id `model`.
     pub data: &'a str,
-    /// Script; a constant of the program, without external input.
+    /// Script: a constant of the program, without external input.
     pub script: &'a str,
 }
 

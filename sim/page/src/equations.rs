@@ -9,10 +9,10 @@ use crate::aligned::aligned;
 use crate::formula::{entry_name, formula};
 use crate::parts::stacked_table;
 
-/// Number of modes whose values are shown.
+/// Maximum number of modes whose values are shown.
 const MAX_SHOWN_MODES: usize = 8;
 
-/// Digits of a value after the first.
+/// Number of digits of a value after the first.
 const SHOWN_DIGITS: usize = 5;
 
 /// Returns the equations of a report, with formulas as MathML.
@@ -132,7 +132,7 @@ fn mass_matrix(entries: &[MassMatrixEntry]) -> Markup {
     section_under_heading(&heading, &rows)
 }
 
-/// Returns the name of an entry of the mass matrix. The column of a block of modes has its own index.
+/// Returns the name of an entry of the mass matrix. The column of a block of modes has a separate index.
 fn entry_of(entry: &MassMatrixEntry) -> Markup {
     let column = match &entry.row {
         Formula::Symbol(row) if !row.indices.is_empty() => entry.column.clone().split_by_columns(),

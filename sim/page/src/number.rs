@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use crate::formula::power_of_ten;
 
-/// Returns a number with `digits` digits after the first, with powers of ten in full.
+/// Returns a number with `digits` digits after the first; powers of ten are written as such.
 pub fn number(value: f64, digits: usize) -> Markup {
     if !value.is_finite() {
         return html! { (value.to_string()) };

@@ -19,7 +19,7 @@ pub fn table(headings: &[&str], rows: &Markup) -> Markup {
     table_of_class(None, headings, rows)
 }
 
-/// Returns a table. In a narrow window, the first cell of a row is above the others.
+/// Returns a table whose rows are stacked in a narrow window: the first cell is above the others.
 pub fn stacked_table(headings: &[&str], rows: &Markup) -> Markup {
     table_of_class(Some("stacked"), headings, rows)
 }
@@ -48,10 +48,9 @@ pub fn collapsible_file(summary: &str, text: &str, is_open: bool) -> Markup {
 /// Figure with its caption.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure<'a> {
-    /// SVG of `eomgen_plot`, which escapes its texts. It is the only text that becomes markup, with
-    /// `narrow`.
+    /// SVG of `eomgen_plot`, which escapes its texts. Only `svg` and `narrow` are inserted without escaping.
     pub svg: &'a str,
-    /// The same figure for narrow windows; empty if `svg` is for all.
+    /// The figure for narrow windows; empty if `svg` is used for all widths.
     pub narrow: &'a str,
     /// Caption; empty for none.
     pub caption: &'a str,

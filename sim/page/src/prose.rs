@@ -1,4 +1,5 @@
-//! Prose: names of quantities in it become symbols, other names become code, and a number keeps its unit.
+//! Text for pages: names of quantities become symbols, other names become code, and a number stays with its
+//! unit.
 
 use eomgen_codegen::symbolic::formula::letter;
 use maud::{Markup, html};
@@ -8,15 +9,15 @@ use crate::number::raised_digit;
 
 const NO_BREAK_SPACE: &str = "\u{a0}";
 
-/// Units that prefixes can precede.
+/// Units that can have a prefix.
 const UNITS: [&str; 17] = [
     "m", "g", "s", "N", "J", "W", "Hz", "Pa", "V", "A", "K", "F", "H", "C", "T", "rad", "deg",
 ];
 
 const PREFIXES: [char; 9] = ['p', 'n', 'µ', 'u', 'm', 'c', 'k', 'M', 'G'];
 
-/// Returns prose. The parts between backticks are code. Names of quantities, such as `T_c` and `theta`, are symbols.
-/// Lines do not break between a number and its unit.
+/// Returns text as markup. The parts between backticks are code. Names of quantities, such as `T_c` and
+/// `theta`, become symbols. Lines do not break between a number and its unit.
 pub fn prose(text: &str) -> Markup {
     html! {
         @for (place, part) in text.split('`').enumerate() {
@@ -95,7 +96,7 @@ fn is_symbol(name: &str) -> bool {
     }
 }
 
-/// Letters after "in" and "of" that are words or units.
+/// Letters after "in" and "of" that can be words or units.
 const WORDS_AND_UNITS: [&str; 5] = ["a", "g", "h", "m", "s"];
 
 /// Returns true for a letter after a preposition, which is a coordinate.

@@ -23,7 +23,7 @@ fn report(text: &str) -> Report {
     )
 }
 
-/// Returns every shipped specification, and one per feature of the language.
+/// Returns every shipped specification, and one specification per feature of the language.
 fn specifications() -> Vec<(String, String)> {
     let features = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/features");
     let entries = std::fs::read_dir(features).unwrap();
@@ -138,7 +138,7 @@ fn entry_of_mass_matrix_has_one_spelling() {
     let report = report(models::PLANETARY_ARM.text);
     let page = eomgen_page::equations(&report).into_string();
     let entry = "<msub><mi>M</mi><mrow><msub><mi>x</mi><mi>sp</mi></msub><mo>,</mo><msub><mi>x</mi><mi>sp</mi></msub></mrow></msub>";
-    // Its own line, the entries that contain it, and the pivot.
+    // The entry occurs in its own line, in the entries that contain it, and in the pivot.
     assert!(page.matches(entry).count() > 4, "{page}");
     let pivot = "<msub><mi>pivot</mi><mrow><msub><mi>x</mi><mi>c</mi></msub></mrow></msub>";
     assert!(page.matches(pivot).count() > 4, "{page}");
@@ -153,7 +153,7 @@ fn entry_of_mass_matrix_has_one_spelling() {
 fn numbers_and_integrals_are_at_their_places() {
     let report = report(models::PLANETARY_ARM.text);
     let carrier = formula(typeset(&report.terms, "T_carrier")).into_string();
-    // 1/2 is part of the fraction, and the exponent is at the cosine.
+    // 1/2 is part of the fraction, and the exponent follows the name of the cosine.
     assert!(carrier.starts_with("<math><mfrac><mrow>"), "{carrier}");
     assert!(carrier.contains("<mrow><mn>2</mn>"), "{carrier}");
     assert!(

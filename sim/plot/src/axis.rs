@@ -29,7 +29,7 @@ pub(super) struct Axis {
 }
 
 impl Scale {
-    /// Returns the coordinate along the axis: the value or its logarithm, NaN if there is none.
+    /// Returns the coordinate along the axis: the value or its logarithm; NaN if there is no logarithm.
     pub fn place(self, value: f64) -> f64 {
         match self {
             Self::Linear => value,
@@ -40,7 +40,7 @@ impl Scale {
 }
 
 impl Range {
-    /// Returns the range of the finite places; `None` without any.
+    /// Returns the range of the finite coordinates; `None` if there are none.
     pub fn from_places(places: impl Iterator<Item = f64>) -> Option<Self> {
         places
             .filter(|place| place.is_finite())
@@ -111,7 +111,7 @@ pub(super) fn ticks(scale: Scale, range: Range, count: usize) -> Vec<Tick> {
     }
 }
 
-/// Returns multiples of 1, 2 or 5 times a power of ten, with equal numbers of decimals.
+/// Returns multiples of 1, 2 or 5 times a power of ten, all with the same number of decimals.
 fn linear_ticks(range: Range, count: usize) -> Vec<Tick> {
     let step = round_step((range.high - range.low) / count.max(1) as f64);
     let decimals = (-(step.log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize;
@@ -123,7 +123,7 @@ fn linear_ticks(range: Range, count: usize) -> Vec<Tick> {
         .collect()
 }
 
-/// Returns the multiples of `step` in a range, those at its ends included in spite of rounding.
+/// Returns the multiples of `step` in a range, including those at its ends up to rounding.
 fn step_multiples(range: Range, step: f64) -> impl Iterator<Item = f64> {
     let first = (range.low / step - 1e-6).ceil();
     let last = (range.high / step + 1e-6).floor();
@@ -131,7 +131,7 @@ fn step_multiples(range: Range, step: f64) -> impl Iterator<Item = f64> {
     (first as i64..=last as i64).map(move |multiple| multiple as f64 * step)
 }
 
-/// Returns the nearest of 1, 2, 5 times a power of ten, by ratio.
+/// Returns the nearest of 1, 2 and 5 times a power of ten, by ratio.
 fn round_step(rough: f64) -> f64 {
     let power = 10f64.powi(rough.log10().floor() as i32);
     let mantissa = match rough / power {
@@ -143,7 +143,7 @@ fn round_step(rough: f64) -> f64 {
     mantissa * power
 }
 
-/// Returns powers of ten; below two decades also 2 and 5 times these.
+/// Returns powers of ten; for less than two decades also 2 and 5 times these.
 fn decade_ticks(range: Range, count: usize) -> Vec<Tick> {
     let decades = range.high.floor() - range.low.ceil();
     if decades < 1.0 {

@@ -7,7 +7,7 @@ use super::figure::Reference;
 use super::layout::{LABEL_SIZE, TICK_SIZE, TITLE_SIZE};
 use super::lettering::text_width;
 
-/// Histogram of numbers from 0 on.
+/// Histogram of numbers that start at 0.
 #[derive(Clone, Debug, Default)]
 pub struct Histogram<'a> {
     /// Title above the frame.
@@ -22,25 +22,26 @@ pub struct Histogram<'a> {
     pub marks: Vec<Reference>,
 }
 
-/// Wholes with shares of the same parts.
+/// Stacked bars, each divided into the same parts.
 #[derive(Clone, Debug, Default)]
 pub struct Shares {
     /// Title above the frame.
     pub title: String,
     /// Names of the parts, from left to right; at most four.
     pub parts: Vec<String>,
-    /// Name and shares (sum 1) of each whole; next to the bar is the sum of the first two.
+    /// Name and shares (with the sum 1) of each bar. The sum of the first two shares is written next to the
+    /// bar.
     pub rows: Vec<(String, Vec<f64>)>,
 }
 
 const WIDTH: f64 = 720.0;
 const HEIGHT: f64 = 330.0;
-/// Margins left and right, above and below the frame, in px.
+/// Margins to the left and right, and above and below the frame, in px.
 const MARGINS: ((f64, f64), (f64, f64)) = ((78.0, 24.0), (54.0, 62.0));
 /// Height of a row of shares and of its bar, in px.
 const ROW_HEIGHTS: (f64, f64) = (20.0, 14.0);
 pub(super) const COLUMN_COLOUR: &str = "#56a0d3";
-/// Two strong colours for the parts of interest, grey and a pale one; all differ in lightness.
+/// Two strong colours for the most important parts, grey and a pale one; all differ in lightness.
 const PART_COLOURS: [&str; 4] = ["#0b4f86", "#56a0d3", "#c4c4c4", "#f2cfae"];
 
 const MARK_STROKE: Stroke = Stroke::new("#555555", 1.0, "5 4");
@@ -151,7 +152,7 @@ pub(super) fn draw_level(canvas: &mut Canvas, tick: &Tick, up: &Axis, (left, rig
     write_text(canvas, &tick.label, at, Anchor::End);
 }
 
-/// Draws vertical lines with their names above the frame, without overlap.
+/// Draws vertical lines with their names above the frame; the names do not overlap.
 pub(super) fn draw_marks(canvas: &mut Canvas, marks: &[Reference], along: &Axis, up: &Axis) {
     let mut free_from = along.pixels.0;
     for mark in marks {
@@ -227,7 +228,7 @@ mod tests {
 
     use super::*;
 
-    /// Returns the position along `axis` and the extent of the rectangles of a colour.
+    /// Returns position and extent of the rectangles of a colour, from the attributes `at` and `extent`.
     fn rectangles(svg: &str, colour: &str, [at, extent]: [&str; 2]) -> Vec<(f64, f64)> {
         let document = Document::parse(svg).unwrap();
         let number = |node: roxmltree::Node<'_, '_>, name| {
@@ -253,7 +254,7 @@ mod tests {
         })
         .unwrap();
         let found = rectangles(&svg, COLUMN_COLOUR, ["y", "height"]);
-        // No column for a count of 0, one base line for all. Pixels have two decimals.
+        // A count of 0 has no column, and all columns have the same base line. Pixels have two decimals.
         let [two, eight, four] = found[..] else {
             panic!("{found:?}")
         };

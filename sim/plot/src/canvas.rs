@@ -1,4 +1,4 @@
-//! Writer of SVG elements. Attributes are numbers and constants of the callers. Text is escaped.
+//! Writer of SVG elements. Attributes are numbers and constants of the program. Text is escaped.
 
 use std::fmt::Write;
 
@@ -129,7 +129,7 @@ impl Canvas {
         ));
     }
 
-    /// Draws a PNG, stretched to a size from its upper left corner, without interpolation.
+    /// Draws a PNG, stretched to a size, without interpolation. The point is its upper left corner.
     pub fn image(&mut self, (x, y): Point, (width, height): Point, png: &[u8]) {
         self.element(format_args!(
             "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" \
@@ -148,7 +148,7 @@ impl Canvas {
         self.write_text(text, angle, &spans);
     }
 
-    /// Draws text without subscripts and Greek letters of names.
+    /// Draws text as it is: names get no subscripts and Greek letters.
     pub fn verbatim_text(&mut self, text: Text<'_>) {
         self.write_text(text, 0.0, &escape_xml(text.text));
     }

@@ -1,4 +1,4 @@
-//! Decimation of samples to the first, lowest, highest and last one of each column of pixels.
+//! Decimation of samples to the first, lowest, highest and last sample of each pixel column.
 
 use std::collections::BTreeSet;
 
@@ -76,12 +76,13 @@ pub(super) fn polylines(samples: impl Iterator<Item = Point>, width: f64) -> Vec
     lines
 }
 
-/// Minimum distance between points of an orbit, in px.
+/// Minimum distance of points of an orbit, in px.
 const MIN_ORBIT_STEP_PX: f64 = 1.0;
-/// Distance below which points are indistinguishable, in px.
+/// Distance below which points look the same, in px.
 const MIN_POINT_DISTANCE_PX: f64 = 0.5;
 
-/// Returns lines without samples near the last one kept, interrupted where one is not finite.
+/// Returns lines without the samples close to the last drawn one. A sample that is not finite interrupts the
+/// line.
 pub(super) fn thin_orbit(samples: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
     let mut lines: Vec<Vec<Point>> = Vec::new();
     let mut line: Vec<Point> = Vec::new();
@@ -100,7 +101,7 @@ pub(super) fn thin_orbit(samples: impl Iterator<Item = Point>) -> Vec<Vec<Point>
     lines
 }
 
-/// Returns separate samples, one of each group of indistinguishable ones.
+/// Returns one sample of each group of samples that look the same, as separate points.
 pub(super) fn separate_points(samples: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
     let mut taken = BTreeSet::new();
     // Pixels are small, so the cast cannot overflow.

@@ -27,10 +27,10 @@ pub struct Distribution<'a> {
 
 const WIDTH: f64 = 720.0;
 const HEIGHT: f64 = 360.0;
-/// Margins left and right, above and below the frame, in px.
+/// Margins to the left and right, and above and below the frame, in px.
 const MARGINS: ((f64, f64), (f64, f64)) = ((78.0, 70.0), (58.0, 62.0));
 const COLUMN_COUNT_RANGE: (usize, usize) = (5, 60);
-/// Points of the curve; more would be indistinguishable.
+/// Number of points of the curve; more points would not be visible.
 const MAX_CURVE_POINTS: usize = 400;
 
 const CURVE: Stroke = Stroke::new("#d55e00", 1.6, "");
@@ -135,8 +135,8 @@ fn scale_mark(mark: &Reference, scale: f64) -> Reference {
     }
 }
 
-/// Returns the number of values in each column. The width of the columns follows D. Freedman and P.
-/// Diaconis (1981): twice the interquartile range divided by the cube root of the number of values.
+/// Returns the number of values in each column. The column width follows D. Freedman and P. Diaconis (1981):
+/// twice the interquartile range divided by the cube root of the number of values.
 fn count_columns(sorted: &[f64], range: Range) -> Vec<usize> {
     let at = |part: f64| sorted[(part * (sorted.len() - 1) as f64).round() as usize];
     let width = 2.0 * (at(0.75) - at(0.25)) / (sorted.len() as f64).cbrt();
@@ -167,7 +167,7 @@ fn draw_columns(canvas: &mut Canvas, counts: &[usize], range: Range, axes: &Axes
     }
 }
 
-/// Returns the cumulative share as a staircase with few steps.
+/// Returns the cumulative share as a staircase with a limited number of steps.
 fn cumulative_curve(
     sorted: &[f64],
     Axes {
@@ -209,7 +209,7 @@ mod tests {
             assert_eq!(counts.iter().sum::<usize>(), values.len());
             assert!((COLUMN_COUNT_RANGE.0..=COLUMN_COUNT_RANGE.1).contains(&counts.len()));
         }
-        // Even spacing: columns are at most 2 * 499/10 wide, so there are eleven.
+        // Evenly spaced values: columns are at most 2 * 499/10 wide, so there are eleven.
         let even: Vec<f64> = (0..1000).map(f64::from).collect();
         let whole = Range {
             low: 0.0,

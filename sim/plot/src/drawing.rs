@@ -1,4 +1,4 @@
-//! Drawings of lines, circles, arrows and words at given places.
+//! Drawings of lines, circles, arrows and text at given positions.
 
 use super::canvas::{Anchor, Canvas, Stroke, Text};
 use super::decimate::Point;
@@ -11,18 +11,18 @@ pub struct Drawing {
     pub title: String,
     /// Width and height, in px.
     pub size: (f64, f64),
-    /// Parts; later ones cover earlier ones.
+    /// Parts; later parts cover earlier ones.
     pub parts: Vec<Part>,
 }
 
-/// Part of a drawing, with places in px from the upper left corner.
+/// Part of a drawing, with positions in px from the upper left corner.
 #[derive(Clone, Debug)]
 pub enum Part {
     /// Line through points.
     Line(LineStyle, Vec<Point>),
-    /// Line through points with a head at its end.
+    /// Line through points with an arrowhead at its end.
     Arrow(LineStyle, Vec<Point>),
-    /// Text at a place; -1, 0 or 1 aligns its start, its middle or its end.
+    /// Text at a position. -1, 0 or 1 aligns its start, its middle or its end with the position.
     Text(Point, i8, String),
     /// Larger bold text.
     Heading(Point, String),
@@ -33,11 +33,11 @@ pub enum Part {
 pub enum LineStyle {
     /// Outline of a body.
     Body,
-    /// Displaced body, thicker.
+    /// Displaced body, with thicker lines.
     Displaced,
     /// Dimension or direction.
     Dimension,
-    /// Imaginary line: an axis or a rest position.
+    /// Axis or rest position.
     Imaginary,
 }
 

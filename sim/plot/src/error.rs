@@ -7,16 +7,16 @@ use super::figure::{Panel, Series, SeriesStyle};
 /// Error of a figure. Panels and samples are counted from 0.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum PlotError {
-    /// A figure without panels.
+    /// The figure has no panels.
     #[error("the figure has no panels")]
     NoPanels,
-    /// A panel without series.
+    /// A panel has no series.
     #[error("panel {panel} of the figure has no series")]
     NoSeries {
         /// Index of the panel.
         panel: usize,
     },
-    /// A series without a drawable sample.
+    /// A series has no sample that can be drawn.
     #[error("the series `{series}` in panel {panel} of the figure has no sample that can be drawn")]
     Empty {
         /// Index of the panel.
@@ -24,7 +24,7 @@ pub enum PlotError {
         /// Label of the series.
         series: String,
     },
-    /// A series with different numbers of values and abscissae.
+    /// A series has different numbers of values and abscissae.
     #[error(
         "the series `{series}` in panel {panel} of the figure has {values} values but {abscissae} abscissae"
     )]
@@ -38,7 +38,7 @@ pub enum PlotError {
         /// Number of values.
         values: usize,
     },
-    /// An abscissa that is not finite, or smaller than the previous one.
+    /// An abscissa is not finite, or is smaller than the previous one.
     #[error(
         "the series `{series}` in panel {panel} of the figure: abscissa {sample} is not finite or is smaller \
          than the previous one"
@@ -51,7 +51,7 @@ pub enum PlotError {
         /// Index of the sample.
         sample: usize,
     },
-    /// A map with different numbers of values and cells.
+    /// A map has different numbers of values and cells.
     #[error("the map has {values} values for {columns} columns and {rows} rows")]
     Cells {
         /// Number of values along the horizontal axis.
@@ -61,7 +61,7 @@ pub enum PlotError {
         /// Number of values in the cells.
         values: usize,
     },
-    /// Values along an axis of a map that do not ascend, or cannot be drawn on it.
+    /// The values along an axis of a map do not ascend, or cannot be drawn on it.
     #[error(
         "value {index} of `{axis}` along an axis of the map is not greater than the previous one, or cannot be \
          drawn on the axis"
@@ -72,7 +72,7 @@ pub enum PlotError {
         /// Index of the value.
         index: usize,
     },
-    /// A figure that could not be rendered as PNG.
+    /// The figure could not be rendered as PNG.
     #[error("the figure could not be rendered as PNG: {reason}")]
     Encoding {
         /// Message of the renderer or the encoder.
@@ -80,7 +80,7 @@ pub enum PlotError {
     },
 }
 
-/// Returns true if a value is small enough to compute axes from it without overflow.
+/// Returns true if axes can be computed from a value without overflow.
 pub(super) fn is_drawable(value: f64) -> bool {
     value.abs() < 1e100
 }

@@ -32,7 +32,7 @@ pub enum FrequencyAxis {
     Logarithmic,
 }
 
-/// Width of a figure. Lettering has the same size in px in both.
+/// Width of a figure. Text has the same size in px in both widths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FigureWidth {
     /// 900 px, for wide windows and printing.
@@ -48,7 +48,7 @@ pub enum SeriesRole {
     /// No role: the colour follows the order of the series.
     #[default]
     Plain,
-    /// Measurement: a broad curve, which does not hide a simulation.
+    /// Measurement, drawn as a broad curve, which remains visible behind a simulation.
     Measured,
     /// Original model.
     Before,
@@ -68,7 +68,7 @@ pub enum SeriesStyle {
     Points,
 }
 
-/// Frame with its curves.
+/// Frame with axes and curves.
 #[derive(Clone, Debug, Default)]
 pub struct Panel<'a> {
     /// Title above the frame; empty for none.
@@ -92,7 +92,7 @@ pub struct Series<'a> {
     pub abscissa: &'a [f64],
     /// Values in the panel's unit, one per abscissa; a value that is not finite leaves a gap.
     pub values: &'a [f64],
-    /// Role in a comparison. Series are drawn in their order, so a measurement is the first.
+    /// Role in a comparison. Series are drawn in this order, so a measurement must be the first one.
     pub role: SeriesRole,
 }
 

@@ -18,11 +18,12 @@ pub(super) const LEGEND_ROW: f64 = 20.0;
 
 const TITLE_ROW: f64 = 24.0;
 const TICK_MARGIN_PX: f64 = 36.0;
-/// Distance of the lines of a label, in px.
+/// Line spacing of labels, in px.
 pub(super) const LABEL_ROW: f64 = 18.0;
 const LARGEST_REFERENCE_LABEL: f64 = 110.0;
 const LARGEST_LEGEND_LABEL: f64 = 260.0;
-/// Maximum characters for the curves of a figure, and for the four points of a pixel column.
+/// Maximum number of characters for the curves of a figure, and number of characters for the four points of a
+/// pixel column.
 const CURVE_CHARACTERS: f64 = 180_000.0;
 const COLUMN_CHARACTERS: f64 = 60.0;
 
@@ -81,9 +82,9 @@ pub(super) struct Layout {
     pub places: Vec<Place>,
     pub width: f64,
     pub height: f64,
-    /// Left end of the titles: that of the frames, or of the figure if it is narrow.
+    /// Left end of the titles: that of the frames; in a narrow figure that of the figure.
     pub title_edge: f64,
-    /// Width of the columns for the decimation of curves.
+    /// Width of the pixel columns for the decimation of curves.
     pub column: f64,
     pub is_overlaid: bool,
     pub style: SeriesStyle,
@@ -94,7 +95,7 @@ pub(super) struct Place {
     pub ordinate: Axis,
     pub quantity: Quantity,
     pub ticks: Vec<Tick>,
-    /// Lines of the title with their base lines.
+    /// Lines of the title with the positions of their base lines.
     pub title: Vec<(f64, String)>,
     pub legend: Vec<((f64, f64), String)>,
 }
@@ -161,7 +162,7 @@ impl Layout {
 }
 
 impl Ordinate {
-    /// Returns the vertical axis of a panel from scales, number of ticks and space at the top.
+    /// Returns the vertical axis of a panel from its scales, number of ticks and space at the top.
     fn new(
         index: usize,
         panel: &Panel<'_>,
@@ -208,7 +209,7 @@ impl Ordinate {
 }
 
 impl Place {
-    /// Computes the positions of a panel from `(top, frame height)`, the left end of titles, and left and
+    /// Computes the positions of a panel from `(top, frame height)`, the left end of titles, and the left and
     /// right `edges`.
     fn new(
         (panel, ordinate): (&Panel<'_>, Ordinate),

@@ -1,11 +1,11 @@
-//! Text in a figure: conservative width, truncation, and SVG with subscripts.
+//! Text in a figure: upper bound of its width, truncation, and SVG with subscripts.
 
 use eomgen_model_spec::hidden_characters::escape_hidden;
 use maud::html;
 
 use super::symbol::Symbol;
 
-/// Width of a character relative to the font size: a digit in a wide sans serif font.
+/// Width of a character relative to the font size, that of a digit in a wide sans serif font.
 const CHARACTER_WIDTH: f64 = 0.62;
 /// Font size of subscripts, relative to the text.
 pub(super) const SUBSCRIPT_SIZE: f64 = 0.8;
@@ -56,8 +56,8 @@ pub(super) fn wrap_to_width(text: &str, size: f64, available: f64) -> Vec<String
     lines
 }
 
-/// Splits the label of an axis into lines of at most `available` px: one, or the name and its unit. A
-/// longer line is truncated.
+/// Splits the label of an axis into lines of at most `available` px: one line, or a line for the name and one
+/// for the unit. A longer line is truncated.
 pub(super) fn wrap_label(label: &str, size: f64, available: f64) -> Vec<String> {
     let whole = truncate_to_width(label, size, available);
     match label.rsplit_once(" [") {
@@ -68,7 +68,7 @@ pub(super) fn wrap_label(label: &str, size: f64, available: f64) -> Vec<String> 
     }
 }
 
-/// Returns the maximum width of a character in units of the usual width.
+/// Returns the maximum width of a character, relative to [`CHARACTER_WIDTH`].
 fn relative_width(c: char) -> f64 {
     match c {
         'm' | 'w' | 'M' | 'W' | '@' | '%' | '\u{2e80}'.. => 1.6,
@@ -123,7 +123,7 @@ pub(super) struct Run {
     pub is_subscript: bool,
 }
 
-/// Splits text into words and separators. Names are split into head and subscript.
+/// Splits text into words and separators. Names are split into letter and subscript.
 pub(super) fn split_runs(text: &str) -> impl Iterator<Item = Run> {
     let in_word = |c: char| c.is_alphanumeric() || c == '_';
     let mut rest = text;

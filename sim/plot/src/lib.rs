@@ -1,4 +1,5 @@
-//! Figures as self-contained SVG: time histories, power spectra, maps over parameters. PNG of them.
+//! Figures as self-contained SVG (time histories, power spectra, maps over parameters), and their rendering as
+//! PNG.
 //!
 //! ```
 //! use eomgen_plot::{Panel, Series, TimeHistory, time_history};
@@ -24,13 +25,12 @@
 //! # Ok::<(), eomgen_plot::PlotError>(())
 //! ```
 //!
-//! Modules in the order of drawing a figure: [`figure`] (content), `quantity` (SI prefixes and axis
-//! labels), `axis` (positions and ticks), `decimate` (fewer points), `layout` (positions of all
-//! parts), `panel` (drawing), `canvas` (SVG elements). `symbol` and `lettering` write names and
-//! text. [`mod@plate`] arranges frames with separate axes. [`bars`] contains histograms and shares,
-//! [`mod@distribution`] distributions of numbers, [`mod@modes`] shapes of natural modes, [`map`]
-//! maps and scatter plots, and [`mod@drawing`] free drawings. [`render_png`] renders the SVG of any
-//! of them. This crate does not depend on models.
+//! Modules in the order of drawing a figure: [`figure`] (content), `quantity` (SI prefixes and axis labels),
+//! `axis` (positions and ticks), `decimate` (fewer points), `layout` (positions of all parts), `panel`
+//! (drawing), `canvas` (SVG elements). `symbol` and `lettering` write names and text. [`mod@plate`] arranges
+//! frames with separate axes. [`bars`] contains histograms and shares, [`mod@distribution`] distributions of
+//! numbers, [`mod@modes`] shapes of natural modes, [`map`] maps and scatter plots, and [`mod@drawing`] free
+//! drawings. [`render_png`] renders any of these SVG documents. This crate does not depend on models.
 //!
 //! The SVG has no script, identifier or external reference, so a page can contain it several times. Its
 //! only style sheet replaces the colours (`palette`) if the reader prefers a dark scheme. The crate writes it directly: plotting crates round points to whole pixels or

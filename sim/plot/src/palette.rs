@@ -3,7 +3,7 @@
 //! Figures are drawn in the light colours, as attributes of SVG elements. [`dark_style`] replaces them if the
 //! reader prefers a dark scheme, in a page and in an SVG file.
 
-/// Light colours with the dark colours that replace them.
+/// Light colours, each with the dark colour that replaces it.
 const DARK_COLOURS: [(&str, &str); 19] = [
     ("#ffffff", "#14181c"),
     ("#222222", "#e4e8ec"),
@@ -26,7 +26,7 @@ const DARK_COLOURS: [(&str, &str); 19] = [
     ("#f2cfae", "#7d6145"),
 ];
 
-/// Returns a style element with the dark colours of the colours that occur in `body`.
+/// Returns a style element that replaces the light colours in `body` by dark ones.
 pub(super) fn dark_style(body: &str) -> String {
     let used = DARK_COLOURS
         .iter()
@@ -39,7 +39,7 @@ pub(super) fn dark_style(body: &str) -> String {
     format!("<style>@media (prefers-color-scheme:dark){{{rules}}}</style>\n")
 }
 
-/// Removes the style element: a PNG has the light colours.
+/// Removes the style element, so that a PNG has the light colours.
 pub(super) fn without_style(svg: &str) -> String {
     match svg.split_once("<style>") {
         Some((before, rest)) => {

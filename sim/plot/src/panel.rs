@@ -11,7 +11,7 @@ use super::layout::{
 };
 use super::lettering::{text_width, wrap_label};
 
-/// Okabe and Ito's colours for colour-blind readers, without the pale yellow.
+/// Colours of Okabe and Ito for colour-blind readers, without the pale yellow.
 const COLOURS: [&str; 7] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
 ];
@@ -183,7 +183,7 @@ fn draw_references(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout
     let mut free_from = f64::NEG_INFINITY;
     for (y, label) in lines {
         canvas.segments(&[((left, y), (right, y))], REFERENCE_STROKE);
-        // Move the labels of close lines down, so that they do not overlap.
+        // Moves the labels of close lines down, so that they do not overlap.
         let base = (y + 0.35 * TICK_SIZE).max(free_from);
         free_from = base + TICK_SIZE + 2.0;
         canvas.text(Text {

@@ -7,7 +7,7 @@ use super::figure::{FigureWidth, Panel, Reference, SeriesStyle};
 use super::layout::{Abscissa, Format, Layout};
 use super::panel;
 
-/// The margins fit the usual labels, so that the frames of a column align.
+/// Format of a frame. The margins fit the usual labels, so that the frames of a column align.
 const FORMAT: Format = Format {
     width: 580.0,
     frame: 210.0,
@@ -17,7 +17,7 @@ const FORMAT: Format = Format {
     is_overlaid: false,
     style: SeriesStyle::Curve,
 };
-/// Format in a narrow figure, which has one column.
+/// Format of a frame in a narrow figure, which has one column.
 const NARROW_FORMAT: Format = Format {
     width: 330.0,
     frame: 190.0,
@@ -48,7 +48,7 @@ pub struct Frame<'a> {
     pub axes: Axes,
     /// Vertical lines with names, for example natural frequencies; abscissae in SI, ascending.
     pub marks: Vec<Reference>,
-    /// True if curves can overlap: later ones are then dashed.
+    /// True if curves can overlap; later ones are then dashed.
     pub is_overlaid: bool,
     /// Style of the series.
     pub style: SeriesStyle,
@@ -64,7 +64,7 @@ pub enum Axes {
     Growth,
     /// Density over frequency in Hz, both logarithmic.
     Frequency,
-    /// Logarithm of a positive quantity over a number with this name.
+    /// Logarithm of a positive quantity over a count with this name.
     Count(&'static str),
     /// Quantity over another quantity.
     Quantity {

@@ -20,7 +20,7 @@ const PREFIXES: [(i32, &str); 10] = [
     (12, "T"),
 ];
 
-/// Units with prefixes; true if prefixes above 1 are usual (not for ks or krad).
+/// Units that can have prefixes; true if prefixes above 1 are usual (false for s and rad, for example).
 const PREFIXABLE_UNITS: [(&str, bool); 10] = [
     ("m", true),
     ("N", true),
@@ -43,7 +43,7 @@ impl Quantity {
         }
     }
 
-    /// Creates a label with a prefix, so that ticks up to `largest` in SI are between 1 and 1000.
+    /// Creates a label with the prefix for which ticks up to `largest` (SI) are between 1 and 1000.
     pub fn with_prefix(name: &str, unit: &str, largest: f64) -> Self {
         let (scale, unit) = scaled_unit(unit, largest);
         Self {
@@ -53,9 +53,8 @@ impl Quantity {
     }
 }
 
-/// Returns the multiple of a unit in which a magnitude is between 1 and 1000, and its notation. The
-/// notation is for example `µm`, or `10⁻⁶ kg` for a unit without prefixes; empty for a
-/// dimensionless number.
+/// Returns the multiple of a unit in which a magnitude is between 1 and 1000, and its notation. The notation is
+/// for example `µm`, or `10⁻⁶ kg` for a unit without prefixes; it is empty for a dimensionless number.
 pub fn scaled_unit(unit: &str, largest: f64) -> (f64, String) {
     let exponent = engineering_exponent(largest);
     let unit = unit.trim();
@@ -75,13 +74,14 @@ fn format_label(name: &str, unit: &str) -> String {
     }
 }
 
-/// Returns the multiple of 3 that scales a magnitude to between 1 and 1000; 0 near 0.
+/// Returns the exponent, a multiple of 3, that scales a magnitude to between 1 and 1000; 0 for magnitudes near
+/// 0.
 fn engineering_exponent(largest: f64) -> i32 {
     if !(1e-100..1e100).contains(&largest) {
         return 0;
     }
     let exponent = (largest.log10() / 3.0 + 1e-12).floor();
-    // Between -34 and 34 after the test above.
+    // The exponent is between -34 and 34 after this test.
     exponent as i32 * 3
 }
 
@@ -169,7 +169,7 @@ mod tests {
         ] {
             let quantity = Quantity::with_prefix("x_sp", unit, largest);
             assert_eq!(quantity.label, label, "{largest} {unit}");
-            // One rounding in 10^n and one in the literal.
+            // The tolerance covers one rounding in 10^n and one in the literal.
             assert!(
                 (quantity.scale / scale - 1.0).abs() < 1e-14,
                 "{largest} {unit}"

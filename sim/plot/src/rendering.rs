@@ -9,8 +9,8 @@ use resvg::usvg::{ImageKind, Node, Options, Tree};
 use super::PlotError;
 use super::palette::without_style;
 
-/// Renders an SVG document of this crate as PNG with its width and height in px. The font is
-/// DejaVu Sans, which is part of the program; fonts of the machine are not used.
+/// Renders an SVG document of this crate as PNG with its width and height in px. The font is DejaVu Sans, which
+/// is part of the program; system fonts are not used.
 ///
 /// # Errors
 ///
@@ -33,7 +33,7 @@ pub fn render_png(svg: &str) -> Result<Vec<u8>, PlotError> {
     for node in tree.root().children() {
         draw_node(&mut pixmap, node)?;
     }
-    // The background is opaque, so premultiplied colours are colours.
+    // The background is opaque, so premultiplied and plain colours are equal.
     let pixels = pixmap.pixels().iter();
     let bytes: Vec<u8> = pixels
         .flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()])
@@ -41,8 +41,8 @@ pub fn render_png(svg: &str) -> Result<Vec<u8>, PlotError> {
     encode_png((size.width(), size.height()), png::ColorType::Rgb, &bytes)
 }
 
-/// Draws an element of the document. Images are drawn here, because `resvg` without decoders for
-/// JPEG, GIF and WebP omits all images.
+/// Draws an element of the document. This function draws images itself, because `resvg` omits all images if its
+/// decoders for JPEG, GIF and WebP are disabled.
 fn draw_node(pixmap: &mut Pixmap, node: &Node) -> Result<(), PlotError> {
     let children = match node {
         Node::Group(group) => group.children(),

@@ -38,7 +38,7 @@ pub(super) const DOT_ABOVE: char = '\u{307}';
 pub(super) const TWO_DOTS_ABOVE: char = '\u{308}';
 
 impl Symbol {
-    /// Splits an identifier at its first underscore; further ones become commas of the subscript.
+    /// Splits an identifier at its first underscore. Further underscores become commas in the subscript.
     pub fn parse(name: &str) -> Self {
         if let Some(stem) = name.strip_suffix("_ddot").filter(|stem| !stem.is_empty()) {
             return Self::parse(stem).with_mark(TWO_DOTS_ABOVE);

@@ -296,13 +296,13 @@ fn overlaid_curves_are_dashed() -> Result<(), Box<dyn std::error::Error>> {
             .map(|n| n.has_attribute("stroke-dasharray"))
             .collect())
     };
-    // Curves, then lines of the legend.
+    // Curves first, then lines of the legend.
     assert_eq!(dashes(true)?, [false, true, false, true]);
     assert_eq!(dashes(false)?, [false; 4]);
     Ok(())
 }
 
-/// Returns the smallest font size of a figure and its width, px.
+/// Returns the smallest font size of a figure, and its width, px.
 fn smallest_lettering(svg: &str) -> Result<(f64, f64), Box<dyn std::error::Error>> {
     let document = Document::parse(svg)?;
     let sizes = document

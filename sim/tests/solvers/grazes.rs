@@ -1,5 +1,5 @@
-//! Contacts much shorter than a step: an oscillator reaches a stiff wall only at the end of its
-//! swing. Its period is known in closed form, with and without contact.
+//! Contacts much shorter than a step: an oscillator reaches a stiff wall only near its turning point. Its
+//! period is known in closed form, with and without contact.
 
 use std::f64::consts::PI;
 
@@ -39,8 +39,8 @@ impl System for Oscillator {
     }
 }
 
-/// Returns the period for the amplitude 1: a flight of frequency 1 and a contact of frequency
-/// sqrt(1 + k).
+/// Returns the period for the amplitude 1: free motion with the angular frequency 1 and a contact with the
+/// angular frequency sqrt(1 + k).
 fn period(wall: f64, stiffness: f64) -> f64 {
     let speed = ((1.0 - wall) * (1.0 + wall)).sqrt();
     let flight = 2.0 * PI - 2.0 * speed.atan2(wall);
@@ -83,8 +83,8 @@ fn contact_shorter_than_step_is_detected() {
     }
 }
 
-/// The energy is 0.5 J for every distance of the wall from the turning point. Each step may err by
-/// the tolerance; the energy of a contact is more sensitive by the root of the stiffness.
+/// The energy is 0.5 J for every distance of the wall from the turning point. The error of each step may reach
+/// the tolerance. The energy in a contact is more sensitive by the square root of the stiffness.
 #[test]
 fn grazing_contact_conserves_energy() {
     let tolerance = 1e-9;
@@ -132,7 +132,7 @@ fn swing_short_of_wall_has_no_contact() {
     }
 }
 
-/// x'' = 500, minus v beyond a wall far from the origin.
+/// x'' = 500 before a wall far from the origin, and x'' = 500 - 100 v beyond it, with the speed v.
 #[derive(Default)]
 struct FarWall(FixedSides);
 

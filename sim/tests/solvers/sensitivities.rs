@@ -26,7 +26,7 @@ fn values(model: &Model, exact: &PiecewiseLinear) -> Vec<f64> {
         .collect()
 }
 
-/// Returns the largest difference and the largest magnitude.
+/// Returns the largest difference from the central difference quotient, and its largest magnitude.
 fn compare(derivative: &[f64], plus: &[f64], minus: &[f64], step: f64) -> (f64, f64) {
     let quotient = plus.iter().zip(minus).map(|(a, b)| (a - b) / (2.0 * step));
     derivative
@@ -51,8 +51,8 @@ fn initial_state_derivatives_match_difference_quotients() {
         let found = propagator
             .simulate_with_derivatives(&initial, (0.0, 0.06), &samples, &none, vec![direction])
             .expect("sensitivities");
-        // Steps well above the rounding of a trajectory and well below the effect of an event:
-        // positions in m, rates in m/s.
+        // Steps of the difference quotient: well above the rounding of a trajectory and well below the effect
+        // of an event; positions in m, rates in m/s.
         let step = if state < initial.len() / 2 {
             1e-10
         } else {
@@ -69,7 +69,7 @@ fn initial_state_derivatives_match_difference_quotients() {
         let (plus, minus) = (shifted(1.0), shifted(-1.0));
         for (k, derivative) in found.derivatives.iter().enumerate() {
             let (worst, size) = compare(&derivative[0], &plus.states[k], &minus.states[k], step);
-            // Rounding of 1e-14 m divided by the step, and the step times the curvature.
+            // The error is a rounding of 1e-14 m divided by the step, plus the step times the curvature.
             assert!(worst < 1e-3 * size, "{state}: {worst:e} of {size:e}");
         }
     }
@@ -96,8 +96,8 @@ fn lyapunov_exponents_of_damped_oscillator_equal_its_decay() {
     let growth = propagator
         .measure_lyapunov(&[0.1, 0.0], 0.0, &HeldInputs::zero(0), &request)
         .expect("exponents");
-    // Both exponents are -c/(2 m), up to the rotation of a vector within the last interval divided
-    // by the whole time.
+    // Both exponents are -c/(2 m), up to the rotation of a vector within the last interval divided by the total
+    // time.
     for growths in &growth.growth_exponents {
         let mean = growths.iter().sum::<f64>() / (growths.len() as f64 * growth.interval);
         assert!((mean + 0.2).abs() < 5e-3, "{mean}");

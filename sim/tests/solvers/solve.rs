@@ -27,13 +27,13 @@ fn error_follows_tolerance_and_work_follows_order() {
     for tolerance in [1e-5, 1e-9, 1e-13] {
         let trajectory = run(&system, &[1.0], 20.0, tolerance).expect("a trajectory");
         let error = (trajectory.final_state[0] - 20.0_f64.sin().exp()).abs();
-        // Each step errs by at most twice the tolerance times e, and y grows by at most e^2.
+        // The error of each step is at most twice the tolerance times e, and y grows by at most e^2.
         let steps = trajectory.statistics.steps as f64;
         let bound = 2.0 * tolerance * steps * 3.0_f64.exp();
         assert!(error < bound, "{error:e} at {tolerance:e}");
         evaluations.push(trajectory.statistics.evaluations as f64);
     }
-    // Order 8: four more digits need 10^(4/8) = 3.2 times the steps.
+    // Order 8: four more digits need 10^(4/8) = 3.2 times the number of steps.
     for pair in evaluations.windows(2) {
         assert!((2.0..4.5).contains(&(pair[1] / pair[0])), "{evaluations:?}");
     }
@@ -59,7 +59,7 @@ fn samples_are_as_accurate_as_steps_and_do_not_change_them() {
     .expect("a trajectory");
     assert_eq!((with.times.as_slice(), last), (samples.as_slice(), 10.0));
     for (t, state) in with.times.iter().zip(&with.states) {
-        // A few dozen steps at the tolerance.
+        // The motion takes a few dozen steps, each with an error of the tolerance.
         assert!(
             (state[0] - t.sin()).abs() < 1e-10,
             "at {t}: {}",
@@ -100,7 +100,7 @@ fn dead_zone_oscillator_keeps_its_period() {
     assert!(first.guard == 0 && first.to == SurfaceMode::Positive);
     // The free flight is exact up to rounding.
     assert!((first.t - b / speed).abs() < 1e-12 * first.t, "{first:?}");
-    // A few thousand steps of 1e-12, as a drift of the speed over the whole time.
+    // Bound: a few thousand steps with an error of 1e-12, as a drift of the speed over the whole time.
     let drift = 1e-10 * speed;
     assert!(
         (trajectory.final_state[1] - speed).abs() < drift,
@@ -117,7 +117,7 @@ fn dead_zone_oscillator_keeps_its_period() {
 #[test]
 fn dry_friction_reduces_amplitude_equally_per_half_cycle() {
     let trajectory = run(&dry_friction(0.05), &[1.0, 0.0], 4.0 * PI, 1e-11).expect("a trajectory");
-    // Turning points at multiples of pi, each closer to the middle by twice the friction.
+    // The turning points are at multiples of pi, each closer to the middle by twice the friction.
     let turns: Vec<f64> = trajectory.events.iter().map(|switch| switch.t).collect();
     assert!((3..=4).contains(&turns.len()), "{turns:?}");
     for (number, turn) in (1..).zip(turns) {
@@ -126,7 +126,7 @@ fn dry_friction_reduces_amplitude_equally_per_half_cycle() {
             "turn {number} at {turn}"
         );
     }
-    // Two dozen steps of 1e-11.
+    // Bound: two dozen steps with an error of 1e-11.
     assert!(
         (trajectory.final_state[0] - 0.6).abs() < 1e-9,
         "{:?}",
@@ -136,7 +136,7 @@ fn dry_friction_reduces_amplitude_equally_per_half_cycle() {
 
 #[test]
 fn sticking_without_support_is_an_error() {
-    // It turns at pi and stops at 2 pi, at which the spring force is below the friction.
+    // The motion turns at pi and stops at 2 pi, where the spring force is below the friction.
     let error = run(&dry_friction(0.3), &[1.0, 0.0], 100.0, 1e-9).expect_err("it stops");
     let SolveError::Sticking { t, guard: 0 } = error else {
         panic!("{error:?}")
@@ -153,15 +153,15 @@ fn sticking_without_support_is_an_error() {
         })
     };
     assert!(said(surface(SurfaceKind::Speed)).contains("on which `v` is zero: it sticks"));
-    // Only users of adams see its name.
+    // The message names the method `adams` only if the method cannot compute sticking.
     assert!(!said(surface(SurfaceKind::Speed)).contains("adams"));
-    // A motion that chatters at a speed at which it can rest is no missing support.
+    // If sticking is supported, chattering at the speed 0 is not reported as missing support.
     let message = said(surface(SurfaceKind::HeldSpeed));
     assert!(
         message.contains("without end") && !message.contains("piecewise"),
         "{message}"
     );
-    // A position is no friction.
+    // A position is not reported as friction.
     assert!(
         said(surface(SurfaceKind::Function)).contains("chatters")
             && !said(surface(SurfaceKind::Function)).contains("tanh")
@@ -171,7 +171,7 @@ fn sticking_without_support_is_an_error() {
 
 #[test]
 fn no_step_crosses_a_breakpoint() {
-    // A staircase: the integral of the number of whole tenths.
+    // The rate is a staircase, the number of whole tenths.
     let breakpoints: Vec<f64> = (1..=10).map(|i| f64::from(i) / 10.0).collect();
     let stairs = breakpoints.clone();
     let staircase = smooth_between(breakpoints, 1, move |t, _, out| {
@@ -192,13 +192,13 @@ fn stiff_system_is_slow_but_no_error() {
     // y' = -2e4 (y - cos t): steps are limited by stability, y follows cos t.
     let system = smooth(1, |t, y, out| out[0] = -2e4 * (y[0] - t.cos()));
     let trajectory = run(&system, &[1.0], 2.0, 1e-6).expect("a trajectory");
-    // A few thousand steps at the limit of stability, about 6/2e4 long.
+    // The solver takes a few thousand steps at the stability limit, each about 6/2e4 long.
     assert!(
         (5_000..20_000).contains(&trajectory.statistics.steps),
         "{:?}",
         trajectory.statistics
     );
-    // The lag of cos t is (sin t)/2e4; plus the tolerance.
+    // y lags behind cos t by (sin t)/2e4; the tolerance is added.
     let followed = 2.0_f64.cos() + 2.0_f64.sin() / 2e4;
     assert!(
         (trajectory.final_state[0] - followed).abs() < 1e-5,
@@ -228,7 +228,7 @@ fn non_finite_rates_are_reported() {
     let from_the_start = smooth(2, |_, _, out| out.copy_from_slice(&[0.0, f64::NAN]));
     let error = run(&from_the_start, &[0.0, 0.0], 1.0, 1e-9).expect_err("no number");
     assert_eq!(error, SolveError::NotFinite { t: 0.0, state: 1 });
-    // The root of a term that is negative after t = 0.5.
+    // A square root whose argument is negative after t = 0.5.
     let later = smooth(1, |t, _, out| out[0] = (0.5 - t).sqrt());
     let error = run(&later, &[0.0], 1.0, 1e-9).expect_err("no number");
     let SolveError::NotFinite { t, state: 0 } = error else {
@@ -329,7 +329,7 @@ fn rows_before_a_stop_are_kept() {
 
 #[test]
 fn stiffness_is_reported_before_step_limit() {
-    // The first state follows a cosine within 1e-7 s; the second is slow.
+    // The first state follows a cosine with a decay time of 1e-7 s; the second is slow.
     let evaluations = Cell::new(0_u64);
     let system = smooth(2, |t, y, out| {
         evaluations.set(evaluations.get() + 1);
@@ -464,7 +464,7 @@ fn rows_between_steps_meet_tolerance_at_a_cost_per_step() {
         let (with, without) = (at(&rows), at(&[]));
         let (work, steps) = (with.statistics, without.statistics);
         let interiors = work.evaluations - steps.evaluations;
-        // Three for the interior, and some 40 where it is not accurate enough; rows cost none.
+        // Three evaluations for the dense output, and about 40 where it is not accurate enough; rows need none.
         assert!(interiors <= 12 * steps.steps, "{work:?} for {steps:?}");
         assert_eq!(work.trial_steps, 0);
         assert_eq!(
@@ -475,7 +475,7 @@ fn rows_between_steps_meet_tolerance_at_a_cost_per_step() {
         let errors = with.times.iter().zip(&with.states);
         let errors = errors.map(|(t, state)| (state[0] - t.sin().exp()).abs());
         let worst = errors.fold(0.0, f64::max);
-        // Errors of the steps add up and grow by e^2.
+        // Errors of the steps accumulate and grow by e^2.
         let bound = 2.0_f64.exp() * with.statistics.steps as f64 * tolerance;
         assert!(worst < bound, "{worst:e} at {tolerance:e}");
         let ends = (1..=100).map(|k| {
@@ -485,18 +485,18 @@ fn rows_between_steps_meet_tolerance_at_a_cost_per_step() {
             (found.expect("a trajectory").final_state[0] - t.sin().exp()).abs()
         });
         let ends = ends.fold(0.0, f64::max);
-        // One order less than at the ends of the longest steps.
+        // The dense output has one order less than the ends of the longest steps.
         assert!(
             worst < 20.0 * ends,
             "{worst:e} and {ends:e} at {tolerance:e}"
         );
         longest = f64::max(longest, 10.0 / with.statistics.steps as f64);
     }
-    // Many rows per step.
+    // Many output rows are in one step.
     assert!(longest > 0.2, "{longest}");
 }
 
-/// x'' = -c x' - k x with a surface that it never reaches.
+/// x'' = -c x' - k x with a switching surface that it never reaches.
 fn swinging(c: f64, k: f64) -> impl System {
     Functions {
         guard_count: 1,
@@ -524,11 +524,11 @@ fn samples_near_surface_are_as_accurate_as_steps() {
         }
         found.statistics
     };
-    // Most steps that resolve a swing allow interpolation.
+    // Most steps that resolve an oscillation allow interpolation.
     let work = of(&swinging(0.0, 1.0), [1.0, 0.0], &|t| t.cos());
     assert!(work.trial_steps < samples.len() as u64 / 10, "{work:?}");
-    // Steps limited by stability, for x = 2 exp(-10 t) - exp(-20 t), are accurate at their ends
-    // and may oscillate between.
+    // If stability limits the steps, as for x = 2 exp(-10 t) - exp(-20 t), they are accurate at their ends, but
+    // the interpolation may oscillate.
     let decay = |t: f64| 2.0 * (-10.0 * t).exp() - (-20.0 * t).exp();
     of(&swinging(30.0, 200.0), [1.0, 0.0], &decay);
 }

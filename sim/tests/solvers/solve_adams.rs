@@ -1,4 +1,4 @@
-//! The Adams method on problems with known solutions, and compared with Runge-Kutta.
+//! Adams method on problems with known solutions, and compared with Runge-Kutta.
 
 use std::f64::consts::PI;
 
@@ -36,13 +36,13 @@ fn error_and_order_follow_tolerance() {
         } = trajectory;
         let error = last[0].hypot(last[1] - 1.0);
         println!("{tolerance:e}: {error:e}, {work:?}");
-        // Errors add up in an undamped oscillator.
+        // Errors accumulate in an undamped oscillator.
         let bound = 2.0 * tolerance * work.steps as f64;
         assert!(error < bound, "{error:e} at {tolerance:e}");
         evaluations.push(work.evaluations as f64);
     }
-    // A method of fixed order p needs 10^(4/(p+1)) times the steps for four more digits. Less than
-    // 2.5 times means an order above 9 at the end.
+    // A method of fixed order p needs 10^(4/(p+1)) times the number of steps for four more digits. A factor
+    // below 2.5 means that the final order exceeds 9.
     assert!(evaluations[1] < 4.0 * evaluations[0], "{evaluations:?}");
     assert!(evaluations[2] < 2.5 * evaluations[1], "{evaluations:?}");
 }
@@ -62,7 +62,7 @@ fn interpolated_states_meet_tolerance_without_evaluations() {
     )
     .expect("a trajectory");
     for (t, state) in with.times.iter().zip(&with.states) {
-        // A few hundred steps of twice the tolerance times e, growing by at most e^2.
+        // Bound: a few hundred steps with an error of twice the tolerance times e, which grows by at most e^2.
         let error = state[0] - t.sin().exp();
         assert!(error.abs() < 1e-8, "at {t}: {error:e}");
     }
@@ -85,7 +85,7 @@ fn dead_zone_oscillator_keeps_its_period() {
     assert!(first.guard == 0 && first.to == SurfaceMode::Positive);
     // The free flight is exact up to rounding.
     assert!((first.t - b / speed).abs() < 1e-12 * first.t, "{first:?}");
-    // About ten thousand steps of 1e-12, as a drift of the speed over the whole time.
+    // Bound: about ten thousand steps with an error of 1e-12, as a drift of the speed over the whole time.
     let drift = 1e-8 * speed;
     assert!((trajectory.final_state[1] - speed).abs() < drift);
     assert!(trajectory.final_state[0].abs() < drift * cycles * period);
@@ -99,7 +99,7 @@ fn dry_friction_turns_at_known_points_until_it_sticks() {
     assert_eq!(turns.len(), 3);
     for (number, turn) in (1..).zip(turns) {
         let error = turn - PI * f64::from(number);
-        // About two hundred steps of 1e-11.
+        // Bound: about two hundred steps with an error of 1e-11.
         assert!(error.abs() < 1e-8, "turn {number} is late by {error:e}");
     }
     let error = run(&dry_friction(0.3), &[1.0, 0.0], 100.0, &adams(1e-9)).expect_err("it stops");
@@ -111,7 +111,7 @@ fn dry_friction_turns_at_known_points_until_it_sticks() {
 
 #[test]
 fn no_step_or_history_crosses_a_breakpoint() {
-    // A staircase of ramps: y' has a jump and a kink at every tenth.
+    // A piecewise linear rate that jumps at every tenth.
     let breakpoints: Vec<f64> = (1..=10).map(|i| f64::from(i) / 10.0).collect();
     let stairs = breakpoints.clone();
     let ramps = smooth_between(breakpoints, 1, move |t, _, out| {
@@ -145,12 +145,12 @@ fn singularities_are_reported_at_their_times() {
 
 #[test]
 fn stiff_system_is_slow_but_no_error() {
-    // y' = -1e4 (y - cos t): steps are limited by stability, y follows cos t.
+    // y' = -1e4 (y - cos t): stability limits the steps, y follows cos t.
     let system = smooth(1, |t, y, out| out[0] = -1e4 * (y[0] - t.cos()));
     let trajectory = run(&system, &[1.0], 1.0, &adams(1e-6)).expect("a trajectory");
-    // The lag of cos t is (sin t)/1e4; plus the tolerance.
+    // y lags behind cos t by (sin t)/1e4; the tolerance is added.
     let followed = 1.0_f64.cos() + 1.0_f64.sin() / 1e4;
     assert!((trajectory.final_state[0] - followed).abs() < 1e-5);
-    // Steps of 1/1e4 to 2/1e4.
+    // The step size is between 1/1e4 and 2/1e4.
     assert!((5_000..20_000).contains(&trajectory.statistics.steps));
 }

@@ -101,7 +101,7 @@ fn van_der_pol_matches_test_set() {
     // VDPOL of the Test Set for IVP Solvers (Mazzia and Magherini, Bari) with 1e6 and its
     // reference solution at t = 2.
     let reference = [1.706_167_732_170_469, -0.892_809_701_024_812_5];
-    // The time of a jump, which x passes within 1e-6, magnifies errors by a few hundred.
+    // x passes a jump within 1e-6, so its timing magnifies errors by a few hundred.
     for (tolerance, most) in [(1e-6, 5_000), (1e-8, 12_000), (1e-10, 35_000)] {
         let found = run(&van_der_pol(1e-6), &[2.0, 0.0], &[2.0], &radau(tolerance));
         let found = found.expect("an end");
@@ -116,7 +116,7 @@ fn van_der_pol_matches_test_set() {
 
 #[test]
 fn rows_of_stiff_systems_meet_tolerance_without_evaluations() {
-    // The second state follows a cosine within 1e-7 s.
+    // The second state follows a cosine with a decay time of 1e-7 s.
     let system = stiff(
         2,
         |t: f64, y: &[f64], out: &mut [f64]| {
@@ -149,7 +149,7 @@ fn steps_have_order_5_and_error_estimates_order_3() {
     let at = |tolerance| run(&system, &[1.0, 0.0], &end, &radau(tolerance)).expect("an end");
     let (rough, fine) = (at(1e-5), at(1e-9));
     let steps = (fine.statistics.steps as f64 / rough.statistics.steps as f64).log10();
-    // Ten times the steps per four digits of tolerance give five digits.
+    // For order 5, four more digits in the tolerance multiply the steps by 10, which gives five digits.
     assert!((0.8..1.2).contains(&steps), "{steps}");
     let error = |found: &Trajectory| (found.final_state[0] - 1.0).hypot(found.final_state[1]);
     let order = (error(&rough) / error(&fine)).log10() / steps;
@@ -157,7 +157,7 @@ fn steps_have_order_5_and_error_estimates_order_3() {
     assert!(error(&fine) < 1e-9);
 }
 
-/// A pendulum (1/s^2) with dry friction (1/s^2) that is smoothed over a speed (rad/s).
+/// A pendulum (1/s^2) with dry friction (1/s^2) that is smoothed over a range of speeds (rad/s).
 fn smoothed_friction(friction: f64, speed: f64) -> impl System {
     stiff(
         2,
@@ -175,7 +175,7 @@ fn smoothed_friction(friction: f64, speed: f64) -> impl System {
 
 #[test]
 fn smoothed_dry_friction_needs_few_evaluations() {
-    // Ten seconds, at rest for more than half of it; an explicit method needs millions of
+    // The motion takes ten seconds, more than half of it at rest. An explicit method would need millions of
     // evaluations.
     let (friction, speed) = (2.0, 1e-6);
     let system = smoothed_friction(friction, speed);
@@ -185,10 +185,10 @@ fn smoothed_dry_friction_needs_few_evaluations() {
         "{:?}",
         found.statistics
     );
-    // At rest it creeps at the speed at which the smoothed friction balances the weight.
+    // At rest the pendulum creeps at the speed at which the smoothed friction balances the weight.
     let creep = -speed * (9.81 * found.final_state[0].sin() / friction).atanh();
     assert!((found.final_state[1] - creep).abs() < 1e-2 * creep.abs());
-    // Before the rest, compared with the explicit method of order 8; after it only creep.
+    // Before the rest, the solution is compared with the explicit method of order 8; later there is only creep.
     let rests = 2.5;
     let explicit = Settings::with_tolerance(1e-10);
     let until = |settings| run(&system, &[1.0, 0.0], &[rests], settings).expect("an end");
@@ -234,8 +234,7 @@ fn loudspeaker_with_small_inductance_matches_matrix_exponential() {
         "{:?}",
         found.statistics
     );
-    // Matrix exponentials over hundredths of a second, with the voltage as a fifth, constant
-    // state.
+    // Reference: matrix exponentials over intervals of 0.01 s, with the voltage as a fifth, constant state.
     let mut augmented = nalgebra::Matrix5::<f64>::zeros();
     for (i, row) in matrix.iter().enumerate() {
         for (j, entry) in row.iter().enumerate() {
@@ -311,7 +310,7 @@ fn falls_on(spring: f64, damper: f64) -> impl System {
 
 #[test]
 fn nearly_rigid_contact_conserves_energy() {
-    // Contacts of 3e-6 s between flights of half a second.
+    // Contacts of 3e-6 s between free flights of half a second.
     let (frequency, height, g) = (1e6, 0.3, 9.81_f64);
     let speed = (2.0 * g * height).sqrt();
     let contact = (PI + 2.0 * (g / (frequency * speed)).atan()) / frequency;
@@ -327,7 +326,8 @@ fn nearly_rigid_contact_conserves_energy() {
 
 #[test]
 fn fall_on_stiff_damper_ends_at_rest() {
-    // The contact creeps back within spring/damper = 1e-4 s; the speed decays within 1e-6 s.
+    // In contact, the position returns with the time constant damper/spring = 1e-4 s; the speed decays within
+    // 1e-6 s.
     let system = falls_on(1e10, 1e6);
     let found = run(&system, &[0.1, 0.0], &[1.0], &radau(1e-9)).expect("an end");
     assert!((found.final_state[0] + 9.81e-10).abs() < 1e-13);
@@ -361,7 +361,7 @@ fn singularities_are_reported_at_their_times() {
         let t = error.expect_err("a pole").time().expect("a time");
         assert!((t - 1.0).abs() < 10.0 * tolerance.max(1e-6), "{t}");
         assert!((98..=101).contains(&found.times.len()));
-        // Rates that are NaN after a time, and derivatives that are infinite or NaN.
+        // The rates are NaN after a certain time, and the derivatives are infinite or NaN.
         let root = stiff(
             1,
             |t: f64, _: &[f64], out: &mut [f64]| out[0] = (0.5 - t).sqrt(),
@@ -391,7 +391,7 @@ fn singular_iteration_matrix_is_avoided() {
     };
     let asked = (&[1e-9][..], (0.0, 1.0), &[][..]);
     let error = simulate_into(&mut found, &system, asked, &settings, &mut |_| {});
-    // It overflows: the growth is 1e317.
+    // The solution overflows: it grows by 1e317.
     let error = error.expect_err("no end");
     let t = rate * error.time().expect("a time");
     assert!((650.0..731.0).contains(&t), "{t}: {error}");

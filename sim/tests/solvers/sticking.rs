@@ -1,12 +1,13 @@
-//! Sticking and release under dry friction in the exact solver, compared with a set-valued time
-//! stepping without surfaces, regimes and events. The friction impulses of every step stay within
-//! their bounds and bring the speeds as near to zero as possible.
+//! Sticking and release under dry friction in the exact solver, compared with a time-stepping scheme with
+//! set-valued friction, without surfaces, regimes and events. The friction impulses of every step stay within
+//! their bounds and bring the speeds as close to zero as possible.
 
 use eomgen_model_spec::source::Source;
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::piecewise_linear::PiecewiseLinear;
 
-/// A motor drives a load through a shaft with play, with dry friction at one end or both.
+/// Returns the specification of a motor that drives a load through a shaft with play, with dry friction at one
+/// end or both.
 fn drive(more: &str) -> String {
     format!(
         r#"
@@ -44,13 +45,13 @@ load_rubs = {{ on = "l", value = "-T_l*sign(dot(l))" }}
     )
 }
 
-/// More friction: at the motor and in the shaft.
+/// Additional friction at the motor and in the shaft.
 const MORE: &str = r#"
 motor_rubs = { on = "m", value = "-T_m*sign(dot(m))" }
 shaft_rubs = { on = "twist", value = "-T_s*sign(dot(m) - dot(l))" }
 "#;
 
-/// Parameters of such a drive.
+/// Parameters of the drive in the specification.
 #[derive(Clone, Copy, Debug)]
 struct Drive {
     b: f64,
@@ -78,7 +79,7 @@ const K: f64 = 500.0;
 const D: f64 = 0.05;
 
 impl Drive {
-    /// Smooth torques, including those of the shaft.
+    /// Returns the smooth torques, including the torque of the shaft.
     fn torques(&self, t: f64, [m, l]: [f64; 2], [m_dot, l_dot]: [f64; 2]) -> [f64; 2] {
         let twist = m - l;
         let beyond = (twist.abs() - self.b).max(0.0).copysign(twist);
@@ -89,7 +90,7 @@ impl Drive {
         [motor - shaft, shaft]
     }
 
-    /// State after a number of steps: coordinates, then rates.
+    /// Returns the state after a number of steps: coordinates, then rates.
     fn stepped(&self, until: f64, steps: u32) -> [f64; 4] {
         let h = until / f64::from(steps);
         let rubbed = [
@@ -107,7 +108,7 @@ impl Drive {
             let middle = [q[0] + 0.5 * h * v[0], q[1] + 0.5 * h * v[1]];
             let t = (f64::from(step) + 0.25) * h;
             let mut next = v;
-            // Dampers act with the mean speed of the step.
+            // Damping uses the mean speed of the step, so it is iterated.
             for _ in 0..3 {
                 let mean = [0.5 * (v[0] + next[0]), 0.5 * (v[1] + next[1])];
                 let torques = self.torques(t, middle, mean);
@@ -138,8 +139,8 @@ impl Drive {
     }
 }
 
-/// Returns the speeds after the friction impulses of a step. Each impulse is within its bounds; if
-/// it is not at a bound, its speed is zero.
+/// Returns the speeds after the friction impulses of a step. Each impulse is within its bounds. If it is not at
+/// a bound, its speed is zero.
 fn with_friction(
     free: [f64; 2],
     h: f64,
@@ -191,9 +192,9 @@ fn exact(equations: &PiecewiseLinear, drive: &Drive, until: f64) -> (Vec<f64>, u
     (found.final_state, found.events.len())
 }
 
-/// Asserts that the time stepping converges to the exact motion. The largest difference, relative
-/// to the largest angles and speeds, has first order: less than a third for steps of an eighth,
-/// and is small at the end.
+/// Asserts that the time stepping converges to the exact motion. The largest difference, relative to the
+/// largest angles and speeds, is of first order: it falls below a third for steps of an eighth, and is small
+/// for the shortest steps.
 fn agree(drive: &Drive, until: f64) {
     let (wanted, _) = exact(&equations(MORE), drive, until);
     let sizes = [0.1, 0.1, 10.0, 10.0];
@@ -226,7 +227,7 @@ fn drives_of_a_parameter_grid_match_time_stepping() {
                 ..PLAIN
             };
             let (_, switches) = exact(&equations, &drive, 10.0);
-            // A few events per turn of the motor, and more if it bounces in the play.
+            // A few events occur per turn of the motor, and more if the shaft bounces in its play.
             assert!(switches < 10 * 500, "{drive:?}: {switches} switches");
         }
     }

@@ -1,7 +1,7 @@
 //! Boundary to the importer: instances behind pointers, messages to its logger, arrays, and panics.
 //!
-//! The standard defines which pointers the importer passes: instances and saved states from this library, texts that
-//! end with 0, and arrays of the given lengths. Null pointers are checked.
+//! The FMI standard defines the pointers that the importer passes: instances and saved states from this
+//! library, null-terminated texts, and arrays of the given lengths. Null pointers are rejected.
 #![allow(unsafe_code)]
 
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
@@ -41,7 +41,7 @@ pub struct Messages {
 pub struct Component {
     unit: Unit,
     messages: Messages,
-    /// True after a panic, which may have left the instance incomplete.
+    /// True after a panic, which may have left the instance in an inconsistent state.
     has_failed: bool,
 }
 
@@ -56,12 +56,13 @@ impl Messages {
     }
 
     pub fn log(&self, refusal: &Refusal) {
-        // A text of C ends at its first 0.
+        // A C string ends at its first null character.
         let text = CString::new(refusal.message.replace('\0', " ")).unwrap_or_default();
         let status = refusal.status as c_int;
         match self.logger {
             Logger::None => {}
-            // SAFETY: the importer's function, with the arguments that the standard defines; the format has one text.
+            // SAFETY: the importer's function, with the arguments that the standard defines; the format has one
+            // string argument.
             Logger::Two(logger) => unsafe {
                 logger(
                     self.environment,
@@ -83,7 +84,7 @@ impl Messages {
 /// Returns the text at a pointer; `None` for a null pointer.
 ///
 /// # Safety
-/// The pointer is null or that of a text that ends with 0.
+/// The pointer is null or points to a null-terminated text.
 unsafe fn text<'a>(pointer: *const c_char) -> Option<&'a CStr> {
     // SAFETY: by the contract of this function.
     (!pointer.is_null()).then(|| unsafe { CStr::from_ptr(pointer) })
@@ -95,7 +96,7 @@ unsafe fn text<'a>(pointer: *const c_char) -> Option<&'a CStr> {
 /// A null pointer for an array with elements.
 ///
 /// # Safety
-/// The pointer is null or that of so many elements.
+/// The pointer is null or points to `count` elements.
 pub unsafe fn array<'a, T>(pointer: *const T, count: usize, what: &str) -> Outcome<&'a [T]> {
     match (count, pointer.is_null()) {
         (0, _) => Ok(&[]),
@@ -111,7 +112,7 @@ pub unsafe fn array<'a, T>(pointer: *const T, count: usize, what: &str) -> Outco
 /// A null pointer for an array with elements.
 ///
 /// # Safety
-/// The pointer is null or that of so many elements, which nothing else uses during the call.
+/// The pointer is null or points to `count` elements, which nothing else uses during the call.
 pub unsafe fn array_mut<'a, T>(pointer: *mut T, count: usize, what: &str) -> Outcome<&'a mut [T]> {
     match (count, pointer.is_null()) {
         (0, _) => Ok(&mut []),
@@ -126,8 +127,7 @@ pub unsafe fn array_mut<'a, T>(pointer: *mut T, count: usize, what: &str) -> Out
 /// # Errors
 /// A null pointer.
 ///
-/// # Safety
-/// The pointer is null or that of a value.
+/// # Safety The pointer is null or points to a value.
 pub unsafe fn write<T>(pointer: *mut T, value: T, what: &str) -> Outcome {
     if pointer.is_null() {
         return Err(null_pointer(what));
@@ -141,10 +141,10 @@ fn null_pointer(what: &str) -> Refusal {
     invalid(format!("a null pointer in place of {what}"))
 }
 
-/// Creates an instance; returns null after a message if that fails.
+/// Creates an instance. Returns null after a message if the creation fails.
 ///
 /// # Safety
-/// The pointers are null or those of texts that end with 0.
+/// The pointers are null or point to null-terminated texts.
 pub unsafe fn instantiate(
     kind: Kind,
     (name, token, resources): (*const c_char, *const c_char, *const c_char),
@@ -188,7 +188,7 @@ pub unsafe fn free_instance(component: *mut c_void) {
     }
 }
 
-/// Calls `act` with an instance in one of these modes, logs a refusal, and returns the status.
+/// Calls `act` with an instance in one of these modes, logs a rejection, and returns the status.
 ///
 /// # Safety
 /// The pointer is null or from [`instantiate`], and no other call uses the instance.
@@ -230,7 +230,7 @@ fn internal_error() -> Refusal {
     invalid("internal error of the unit; the instance cannot be used any more: please report it")
 }
 
-/// Refuses a call for a reason.
+/// Rejects a call.
 ///
 /// # Safety
 /// Same as [`call`].
@@ -239,7 +239,7 @@ pub unsafe fn refuse(component: *mut c_void, refusal: Refusal) -> c_int {
     unsafe { call(component, (ANY, ""), |_| Err(refusal)) }
 }
 
-/// Accepts a call for no variables, and refuses one for variables of a type that the unit does not have.
+/// Accepts a call without variables, and rejects a call for variables of a type that the unit does not have.
 ///
 /// # Safety
 /// Same as [`call`].
@@ -253,10 +253,10 @@ pub unsafe fn accept_none(component: *mut c_void, count: usize, reason: &str) ->
     }
 }
 
-/// Reason for refusing variables of other types.
+/// Reason for a rejection of variables of other types.
 pub const NO_SUCH_TYPE: &str = "there are no variables of this type";
 
-/// Saves the state of an instance into a new saved state, or into the one that the pointer has.
+/// Saves the state of an instance into a new saved state, or into the one that `saved` points to.
 ///
 /// # Safety
 /// Same as [`call`]; `saved` is null or a pointer that is null or from this function.
@@ -395,8 +395,7 @@ pub struct Derivative {
 
 /// Writes directional or adjoint derivatives.
 ///
-/// # Safety
-/// Same as [`call`]; the arrays have as many elements as the variables to which they belong.
+/// # Safety Same as [`call`]; each array has one element for each of its variables.
 pub unsafe fn differentiate(component: *mut c_void, asked: &Derivative, name: &str) -> c_int {
     let (given, wanted) = match asked.backward {
         true => (asked.unknowns.1, asked.knowns.1),

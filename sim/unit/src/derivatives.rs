@@ -1,5 +1,6 @@
-//! Directional and adjoint derivatives of states, rates and observables by states, inputs and parameters, within the
-//! present modes of the surfaces: by the model's Jacobians, or by central differences while surfaces hold the motion.
+//! Directional and adjoint derivatives of states, rates and observables with respect to states, inputs and
+//! parameters, in the current modes of the surfaces. They are computed by the model's Jacobians, or by central
+//! differences while surfaces hold the motion.
 
 use std::collections::BTreeMap;
 
@@ -11,15 +12,15 @@ use crate::layout::Variable;
 use crate::refusal::{Outcome, invalid, unavailable};
 use crate::unit::{External, Unit};
 
-/// Step of a central difference, relative to the size of the variable: the third root of the rounding.
+/// Step of a central difference, relative to the size of the variable: the cube root of the unit roundoff.
 const DIFFERENCE_FRACTION: f64 = 6e-6;
 
-/// Rates, then observables.
+/// Values of the rates, then of the observables.
 type Values = Vec<f64>;
 
 impl Unit {
-    /// Returns the directional derivatives of the unknowns along the `seed` of the knowns; if `backward` the adjoint
-    /// derivatives of the knowns, for the `seed` of the unknowns.
+    /// Returns the directional derivatives of the unknowns along the `seed` of the knowns. If `backward` is
+    /// true, returns the adjoint derivatives of the knowns for the `seed` of the unknowns.
     pub fn differentiate(
         &mut self,
         backward: bool,
@@ -82,7 +83,7 @@ impl Unit {
         }
     }
 
-    /// Returns the derivatives of rates and observables by each of some variables.
+    /// Returns the derivatives of rates and observables with respect to each of these variables.
     fn columns(&mut self, knowns: &[Variable]) -> Outcome<Vec<Values>> {
         let (t, state) = (self.now.t, self.now.state.clone());
         let motion = self.external()?;
@@ -168,7 +169,7 @@ impl Unit {
             .collect())
     }
 
-    /// Returns rates and observables with another value of a variable, in the present modes.
+    /// Returns rates and observables with another value of a variable, in the current modes.
     fn values_with(&mut self, known: Variable, value: f64) -> Outcome<Values> {
         let (t, mut state) = (self.now.t, self.now.state.clone());
         let layout = self.layout;

@@ -15,7 +15,7 @@ const EVENT: u8 = Mode::Event as u8;
 const CONTINUOUS: u8 = Mode::Continuous as u8;
 const STEP: u8 = Mode::Step as u8;
 
-/// Kind of `fmi2GetRealStatus`: the time that the last step reached.
+/// Kind of `fmi2GetRealStatus`: the end time of the last successful step.
 const LAST_SUCCESSFUL_TIME: c_int = 2;
 
 /// `fmi2CallbackFunctions`.
@@ -196,7 +196,7 @@ pub unsafe extern "C" fn fmi2SetReal(
     }
 }
 
-/// Functions for variables of a type that no unit has.
+/// Exports functions that reject variables of a type that no unit has.
 macro_rules! refuse_type {
     ($($get:ident $set:ident)*) => {$(
         #[unsafe(no_mangle)]
@@ -490,7 +490,7 @@ pub unsafe extern "C" fn fmi2GetRealStatus(c: *mut c_void, kind: c_int, value: *
 
 const NO_STATUS: &str = "there is no such status";
 
-/// Functions for a status that the unit does not have.
+/// Exports functions that reject a status kind that the unit does not have.
 macro_rules! refuse_status {
     ($($name:ident)*) => {$(
         #[unsafe(no_mangle)]
@@ -503,5 +503,5 @@ macro_rules! refuse_status {
 
 refuse_status! { fmi2GetStatus fmi2GetIntegerStatus fmi2GetBooleanStatus fmi2GetStringStatus }
 
-// The importer compares with the values of the standard.
+// The values must be those of the FMI standard.
 const _: () = assert!(Status::Discard as c_int == 2 && Status::Error as c_int == 3);

@@ -213,7 +213,7 @@ fn check_counts(references: usize, values: usize) -> Outcome {
     }
 }
 
-/// Functions for variables of a type that no unit has.
+/// Exports functions that reject variables of a type that no unit has.
 macro_rules! refuse_type {
     ($($get:ident $set:ident)*) => {$(
         #[unsafe(no_mangle)]
@@ -256,7 +256,7 @@ refuse_type! {
     fmi3GetString fmi3SetString
 }
 
-/// Functions of clocks, which have one to three arrays after the value references.
+/// Exports functions of clocks, which have one to three arrays after the value references.
 macro_rules! refuse_clock {
     ($($name:ident($($array:ident),*))*) => {$(
         #[unsafe(no_mangle)]

@@ -9,11 +9,11 @@ use eomgen_sim::ode::{ExternalMotion, SurfaceMode};
 use crate::refusal::{Outcome, invalid, unavailable};
 use crate::unit::{BEFORE_START, External, Kind, Mode, Unit};
 
-/// Relative distance of times that count as equal.
+/// Relative difference of times that count as equal.
 const TIME_ROUNDING: f64 = 1e-9;
 
 impl Unit {
-    /// Moves the state onto the constraints and starts the motion.
+    /// Projects the state onto the constraints and starts the motion.
     pub fn end_initialization(&mut self) -> Outcome {
         self.forget_motion();
         match self.kind {
@@ -41,7 +41,7 @@ impl Unit {
         Ok(())
     }
 
-    /// Starts the simulation at the present time and state; controllers continue with their memory.
+    /// Starts the simulation at the current time and state; controllers continue with their memory.
     fn start_simulation(&mut self) -> Outcome {
         let options = SolverOptions {
             solver: Solver::Auto,
@@ -60,7 +60,7 @@ impl Unit {
         Ok(())
     }
 
-    /// Reads the point that the simulation reached.
+    /// Updates the instance to the point that the simulation reached.
     fn read_simulation(&mut self) {
         if let Some(simulation) = &self.simulation {
             self.now.t = simulation.time();
@@ -72,7 +72,7 @@ impl Unit {
         }
     }
 
-    /// Has the simulation follow the present inputs.
+    /// Applies the current inputs to the simulation.
     fn update_simulation(&mut self) -> Outcome {
         let Some(simulation) = &mut self.simulation else {
             return self.start_simulation();
@@ -82,7 +82,7 @@ impl Unit {
         Ok(followed?)
     }
 
-    /// Makes a communication step from a time, of a length (s).
+    /// Makes a communication step from a time (s), of a length (s).
     pub fn make_step(&mut self, from: f64, length: f64) -> Outcome {
         let (end, t) = (from + length, self.now.t);
         let slack = TIME_ROUNDING * (t.abs() + length.abs());
@@ -113,7 +113,7 @@ impl Unit {
         Ok(ended?)
     }
 
-    /// Returns true if the simulation has the present values.
+    /// Returns true if the simulation is at the current time and state of the instance.
     fn is_simulating(&self) -> bool {
         self.kind == Kind::CoSimulation && !self.is_in(BEFORE_START)
     }
@@ -149,7 +149,7 @@ impl Unit {
         Ok(observables)
     }
 
-    /// Returns the states of the controllers; before the start, their initial values.
+    /// Returns the states of the controllers; their initial values before the start.
     pub fn controller_states(&mut self) -> Outcome<Vec<f64>> {
         if self.is_simulating() {
             self.update_simulation()?;
@@ -170,7 +170,7 @@ impl Unit {
         Ok(indicators)
     }
 
-    /// Returns the motion for model exchange; it starts at the present point if there is none.
+    /// Returns the motion for model exchange; starts it at the current point if there is none.
     pub fn external(&mut self) -> Outcome<&mut External> {
         if self.external.is_none() {
             let modes = self.surface_modes();
@@ -181,7 +181,7 @@ impl Unit {
         motion.ok_or_else(|| invalid("the unit has no motion"))
     }
 
-    /// Starts a motion at the present point, at these parameters and modes of the surfaces.
+    /// Starts a motion at the current point, with the current parameters and modes of the surfaces.
     pub fn start_external(
         &mut self,
         parameters: &[f64],
@@ -198,7 +198,7 @@ impl Unit {
         Ok(ExternalMotion::start(system, at, modes, self.now.tolerance))
     }
 
-    /// Returns the modes of the surfaces; empty if the state decides.
+    /// Returns the modes of the surfaces; empty if the state determines them.
     pub fn surface_modes(&mut self) -> Vec<SurfaceMode> {
         if let Some(motion) = &mut self.external {
             return motion.modes();
@@ -209,7 +209,7 @@ impl Unit {
         }
     }
 
-    /// Keeps the surfaces that hold and the contacts that are closed for the next start of the motion.
+    /// Stores the modes of holding surfaces and closed contacts for the next start of the motion.
     pub fn keep_resting_modes(&mut self) {
         let mut modes = self.surface_modes();
         for mode in &mut modes {
@@ -223,20 +223,20 @@ impl Unit {
         };
     }
 
-    /// Has the motion for model exchange follow the present inputs.
+    /// Applies the current inputs to the motion for model exchange.
     pub fn follow_inputs(&mut self) {
         let inputs = HeldInputs::constant(self.now.inputs.clone());
         match &mut self.external {
             Some(motion) if self.now.mode == Mode::Continuous => {
                 motion.system_mut().set_inputs(inputs);
             }
-            // In event mode the event applies the jump.
+            // In event mode, the event applies the jump of the inputs.
             Some(_) if self.now.mode == Mode::Event => {}
             _ => self.external = None,
         }
     }
 
-    /// Enters event mode; inputs that change there jump.
+    /// Enters event mode; inputs that change in this mode jump.
     pub fn enter_event_mode(&mut self) {
         if self.now.mode != Mode::Event {
             self.now.earlier_inputs.clone_from(&self.now.inputs);
@@ -244,7 +244,7 @@ impl Unit {
         self.now.mode = Mode::Event;
     }
 
-    /// Applies the events at the present point. Returns true if the state changed.
+    /// Applies the events at the current point. Returns true if the state changed.
     pub fn apply_event(&mut self) -> Outcome<bool> {
         let (t, mut state) = (self.now.t, self.now.state.clone());
         let inputs = self.now.inputs.clone();

@@ -1,20 +1,20 @@
-//! Reasons why a call of the importer fails.
+//! Reasons for the rejection of a call.
 
 use eomgen_compiled_model::Error;
 
-/// Status of a call, with the values of the standard.
+/// Status of a call, with the values of the FMI standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum Status {
     /// The call succeeded.
     Ok = 0,
-    /// The call did not succeed here; the importer may try a shorter step or another state.
+    /// The call failed at this time or state; the importer may try a shorter step or another state.
     Discard = 2,
-    /// The call is invalid, and the instance is as before.
+    /// The call is invalid, and the instance is unchanged.
     Error = 3,
 }
 
-/// Refusal of a call, with a message for the importer's logger.
+/// Rejection of a call, with a message for the importer's logger.
 #[derive(Clone, Debug)]
 pub struct Refusal {
     pub status: Status,
@@ -23,7 +23,7 @@ pub struct Refusal {
 
 pub type Outcome<T = ()> = Result<T, Refusal>;
 
-/// Returns the refusal of an invalid call.
+/// Returns the rejection of an invalid call.
 pub fn invalid(message: impl Into<String>) -> Refusal {
     Refusal {
         status: Status::Error,
@@ -31,7 +31,7 @@ pub fn invalid(message: impl Into<String>) -> Refusal {
     }
 }
 
-/// Returns the refusal of a value that the unit cannot compute here.
+/// Returns the rejection of a value that the unit cannot compute at the current time and state.
 pub fn unavailable(message: impl Into<String>) -> Refusal {
     Refusal {
         status: Status::Discard,

@@ -18,8 +18,8 @@ pub fn token(program: &Program) -> String {
 
 /// Reads and derives the specification in a unit's resources. `location` is a path or a URI with the scheme `file`.
 ///
-/// # Errors
-/// No resources or specification there, an invalid specification, or one that does not belong to the token.
+/// # Errors No resources or no specification at the location, an invalid specification, or one that does not
+/// match the token.
 pub fn derive_specification(
     location: Option<&[u8]>,
     given: Option<&str>,
@@ -64,7 +64,7 @@ fn parse_orders(token: &str) -> Option<Vec<usize>> {
     orders.map(|order| order.parse().ok()).collect()
 }
 
-/// Returns the file of the specification, the only one of its kind.
+/// Returns the path of the specification, the only file with its extension in the folder.
 fn find_specification(folder: &Path) -> Outcome<PathBuf> {
     let shown = folder.display();
     let unreadable = |error: std::io::Error| {
@@ -98,7 +98,7 @@ fn parse_location(location: &[u8]) -> Outcome<PathBuf> {
         return to_path(location.to_vec());
     };
     let path = match uri.strip_prefix(b"//") {
-        // A host, empty or `localhost`, ends at the next slash.
+        // A host, which may be empty or `localhost`, ends at the next slash.
         Some(rest) => {
             let host = rest.iter().position(|byte| *byte == b'/');
             &rest[host.unwrap_or(rest.len())..]

@@ -1,5 +1,5 @@
-//! Saved states of an instance, also serialised: a mark, the token of the unit, the length of the condition, the condition,
-//! and a checksum, which detects truncated or modified data.
+//! Saved states of an instance, also in serialised form: a file mark, the token of the unit, the length of the
+//! encoded condition, the encoded condition, and a checksum, which detects truncated or modified data.
 
 use eomgen_codegen::program::encoding::Encoded;
 use eomgen_codegen::stable_hash::StableHash;
@@ -11,7 +11,7 @@ use crate::unit::{Condition, Kind, Mode, Unit};
 
 const MARK: &[u8] = b"eomgen 3";
 
-/// Bytes of a length, and of a checksum.
+/// Number of bytes of a length, and of a checksum.
 const NUMBER_LENGTH: usize = 8;
 
 const MODES: [Mode; 6] = [
@@ -40,7 +40,7 @@ pub struct SavedState {
 }
 
 impl Unit {
-    /// Saves the present state.
+    /// Saves the current state.
     pub fn save(&mut self) -> SavedState {
         let mut surface_modes = self.surface_modes();
         surface_modes.resize(self.layout.indicators, SurfaceMode::Unknown);

@@ -17,13 +17,13 @@ use crate::refusal::{Outcome, invalid};
 /// Kind of an instance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// The importer's solver moves the model.
+    /// The importer's solver simulates the model.
     ModelExchange,
-    /// The unit moves the model.
+    /// The unit simulates the model.
     CoSimulation,
 }
 
-/// Mode of an instance; the values are bits, so that a call can list its modes.
+/// Mode of an instance. The values are single bits, so that a call can list its permitted modes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Mode {
@@ -35,13 +35,13 @@ pub enum Mode {
     Terminated = 32,
 }
 
-/// All modes.
+/// Bits of all modes.
 pub const ANY: u8 = 63;
 
-/// Modes before the start of the motion.
+/// Bits of the modes before the start of the motion.
 pub const BEFORE_START: u8 = Mode::Instantiated as u8 | Mode::Initialization as u8;
 
-/// Variable part of an instance, the content of a saved state.
+/// Variable part of an instance: the content of a saved state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condition {
     pub mode: Mode,
@@ -49,17 +49,17 @@ pub struct Condition {
     pub t: f64,
     pub state: Vec<f64>,
     pub inputs: Vec<f64>,
-    /// Inputs before those that were set in event mode.
+    /// Inputs before event mode, in which inputs may jump.
     pub earlier_inputs: Vec<f64>,
     /// Independent parameters, SI.
     pub parameters: Vec<f64>,
     /// Relative tolerance.
     pub tolerance: f64,
-    /// Last time, s.
+    /// Stop time, s.
     pub stop: Option<f64>,
-    /// Modes of the surfaces with which the motion continues; empty if the state decides.
+    /// Modes of the surfaces with which the motion continues; empty if the state determines them.
     pub surface_modes: Vec<SurfaceMode>,
-    /// Memory of the controllers; `None` before the start of the motion and without controllers.
+    /// Memory of the controllers; `None` before the start of the motion, or without controllers.
     pub control: Option<ControlMemory>,
 }
 
@@ -72,11 +72,12 @@ pub struct Unit {
     pub layout: Layout,
     pub kind: Kind,
     pub now: Condition,
-    /// Model at the parameters; `None` after they changed.
+    /// Model with the current parameters; `None` after they changed.
     pub instance: Option<Instance<'static>>,
-    /// Motion at the present time and state; `None` after they or the parameters changed otherwise than by a motion.
+    /// Motion at the current time and state; `None` after the importer changed these or the parameters.
     pub external: Option<Box<External>>,
-    /// Simulation up to the present time; `None` before its start and after the same changes.
+    /// Simulation up to the current time; `None` before its start, and after the importer changed time, state
+    /// or parameters.
     pub simulation: Option<Box<Simulation<'static>>>,
     pub jacobians: Option<JacobianEvaluator>,
     begin: Condition,
@@ -93,10 +94,10 @@ pub fn find_surfaces(instance: &Instance<'_>) -> Result<Vec<Surface>, Error> {
 }
 
 impl Unit {
-    /// Creates an instance at the values of the specification.
+    /// Creates an instance with the values of the specification.
     ///
     /// # Errors
-    /// Invalid values, and model exchange of a model with controllers.
+    /// Invalid values, or model exchange of a model with controllers.
     pub fn new(compiled: CompiledModel, kind: Kind) -> Outcome<Self> {
         let controller = compiled.model().controllers.first();
         if let (Kind::ModelExchange, Some(controller)) = (kind, controller) {
@@ -133,7 +134,7 @@ impl Unit {
         })
     }
 
-    /// Checks that a call is allowed in the present mode.
+    /// Checks that a call is permitted in the current mode.
     pub fn check_mode(&self, modes: u8, call: &str) -> Outcome {
         match self.is_in(modes) {
             true => Ok(()),
@@ -147,7 +148,7 @@ impl Unit {
         self.now.mode as u8 & modes != 0
     }
 
-    /// Sets tolerance, start and end of the experiment, s.
+    /// Sets tolerance, start time and stop time of the experiment, s.
     pub fn set_up(&mut self, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> Outcome {
         if !start.is_finite() || stop.is_some_and(|stop| stop.is_nan() || stop <= start) {
             return Err(invalid(
@@ -168,7 +169,7 @@ impl Unit {
         Ok(())
     }
 
-    /// Returns to the values of the specification.
+    /// Resets all values to those of the specification.
     pub fn reset(&mut self) {
         self.set_condition(self.begin.clone());
     }
@@ -182,20 +183,20 @@ impl Unit {
         self.forget_motion();
     }
 
-    /// Drops the motion so far: the next one starts at the present time and state.
+    /// Discards the motion; the next one starts at the current time and state.
     pub fn forget_motion(&mut self) {
         self.external = None;
         self.simulation = None;
     }
 
-    /// Drops all that depends on the parameters.
+    /// Discards everything that depends on the parameters.
     pub fn forget_parameters(&mut self) {
         self.instance = None;
         self.jacobians = None;
         self.forget_motion();
     }
 
-    /// Returns the model at the present parameters.
+    /// Returns the model with the current parameters.
     ///
     /// # Errors
     /// Parameters that are not admissible together.
@@ -207,7 +208,7 @@ impl Unit {
         instance.ok_or_else(|| invalid("the unit has no model"))
     }
 
-    /// Returns the model at these parameters, SI.
+    /// Returns the model with these parameters, SI.
     pub fn instance_at(&self, parameters: &[f64]) -> Outcome<Instance<'static>> {
         let names = self.compiled.parameter_names();
         let declared = &self.compiled.model().parameters;

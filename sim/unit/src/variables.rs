@@ -4,11 +4,11 @@ use crate::layout::Variable;
 use crate::refusal::{Outcome, Refusal, invalid, unavailable};
 use crate::unit::{BEFORE_START, Kind, Mode, Unit};
 
-/// Modes in which inputs and parameters may be set. Parameters may be set in continuous time as well: callers that use
-/// the unit as a function set all arguments.
+/// Modes in which inputs and parameters may be set. Parameters may also be set in continuous-time mode: callers
+/// that use the unit as a function set all arguments.
 const SETTABLE: u8 = BEFORE_START | Mode::Event as u8 | Mode::Continuous as u8 | Mode::Step as u8;
 
-/// Numbers of the motion at the present point, computed at their first use.
+/// Results at the current point, computed at their first use.
 #[derive(Default)]
 struct Computed {
     rates: Option<Vec<f64>>,
@@ -46,7 +46,7 @@ impl Unit {
         }
     }
 
-    /// Returns the refusal of a value of a variable.
+    /// Returns the rejection of a value of a variable.
     fn refuse_value(&self, variable: Variable, value: f64, why: &str) -> Refusal {
         invalid(format!("{} = {value:?}: {why}", self.name(variable)))
     }
@@ -112,7 +112,7 @@ impl Unit {
         Ok(())
     }
 
-    /// Checks that a variable may be set to a value in the present mode.
+    /// Checks that a variable may be set to a value in the current mode.
     fn check_value(&self, reference: u32, value: f64) -> Outcome {
         let variable = self.find(reference)?;
         let modes = match variable {
@@ -157,7 +157,7 @@ impl Unit {
         known.map_or((None, None), |known| (known.min, known.max))
     }
 
-    /// Checks that a vector has one entry for each of so many variables.
+    /// Checks that a vector has `expected` entries.
     pub fn check_length(length: usize, expected: usize, what: &str) -> Outcome {
         match length == expected {
             true => Ok(()),

@@ -63,7 +63,7 @@ fn shape(index: &str, derivative: u8) -> Markup {
     }
 }
 
-/// Returns primes as one character, as far as there is one.
+/// Returns prime marks, as one character if Unicode has it.
 fn primes(count: u8) -> String {
     match count {
         1 => "′".to_owned(),

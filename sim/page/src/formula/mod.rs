@@ -110,7 +110,7 @@ fn formula_at_level(formula: &Formula, level: Level) -> Markup {
 fn term(term: &Term, is_first: bool) -> Markup {
     let magnitude = term.factor.abs();
     html! {
-        // Without a form, the sign would have the spacing that follows from its position in the row.
+        // Without `form`, the sign would have the spacing that follows from its position in the row.
         @if term.factor < 0.0 && is_first { mo form="prefix" { "\u{2212}" } }
         @else if term.factor < 0.0 { mo form="infix" { "\u{2212}" } }
         @else if !is_first { mo form="infix" { "+" } }
@@ -124,7 +124,7 @@ fn term(term: &Term, is_first: bool) -> Markup {
     }
 }
 
-/// Returns a power. The exponent of a trigonometric function is at its name: cos² α.
+/// Returns a power. The exponent of a trigonometric function follows its name: cos² α.
 fn power(base: &Formula, exponent: &Formula) -> Markup {
     let raised = html! { mrow { (formula_at_level(exponent, Level::Sum)) } };
     match (base, exponent) {
@@ -238,10 +238,10 @@ fn symbol(symbol: &Symbol) -> Markup {
     element(&head, &parts.collect::<Vec<_>>().join(","))
 }
 
-/// Fewest letters of the words of a name that is no letter with a subscript.
+/// Smallest numbers of letters of the words in a name that is not a letter with a subscript.
 const FEWEST_LETTERS: [usize; 2] = [8, 4];
 
-/// Returns the words of a name such as `stabilisation_rate`, which is no letter with a subscript.
+/// Returns the words of a name such as `stabilisation_rate`, which is not a letter with a subscript.
 fn words(head: &str, parts: &[&str]) -> Option<String> {
     let [rest] = parts else { return None };
     let are_words = head.len() >= FEWEST_LETTERS[0] && rest.len() >= FEWEST_LETTERS[1];
@@ -272,7 +272,7 @@ fn with_subscripts(head: &Markup, subscripts: impl Iterator<Item = Markup>) -> M
     }
 }
 
-/// Returns the name of an entry: a letter with the names of its rows and columns as subscripts.
+/// Returns the name of a matrix or vector entry: a letter with the names of its rows and columns as subscripts.
 pub(crate) fn entry_name(letter: &str, rows: &[&Formula]) -> Markup {
     let rows = rows.iter().map(|row| formula_at_level(row, Level::Sum));
     html! { math { (with_subscripts(&identifier(letter), rows)) } }

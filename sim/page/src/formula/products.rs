@@ -25,7 +25,7 @@ pub(super) fn quotient(magnitude: f64, above: &[Formula], below: &[Formula]) -> 
     }
 }
 
-/// Returns a number times a product; `level` is that of its surroundings.
+/// Returns a number times a product; `level` is the precedence of the surrounding formula.
 fn multiple(magnitude: f64, factors: &[Formula], level: Level) -> Markup {
     match (magnitude == 1.0, factors) {
         (_, []) => number(magnitude),
@@ -35,7 +35,7 @@ fn multiple(magnitude: f64, factors: &[Formula], level: Level) -> Markup {
     }
 }
 
-/// Returns factors in a row; a sum over modes before other factors has parentheses.
+/// Returns factors in a row; a sum over modes that precedes other factors gets parentheses.
 fn product(factors: &[Formula]) -> Markup {
     let mut ordered: Vec<&Formula> = factors.iter().collect();
     ordered.sort_by_key(|factor| rank(factor));
@@ -51,7 +51,7 @@ fn product(factors: &[Formula]) -> Markup {
     }
 }
 
-/// Returns the position of a factor in a product.
+/// Returns the sort key of a factor in a product.
 fn rank(factor: &Formula) -> u8 {
     match factor {
         Formula::Number(_) => 0,
@@ -63,7 +63,7 @@ fn rank(factor: &Formula) -> u8 {
     }
 }
 
-/// Returns the factor before a product, as a fraction if it is a small fraction exactly.
+/// Returns the numerical factor before a product, as a fraction if it equals a small fraction.
 pub(super) fn factor(magnitude: f64) -> Markup {
     match small_fraction(magnitude) {
         Some((numerator, denominator)) => {

@@ -17,12 +17,12 @@ const ENGINE: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/engine.wasm"));
 /// Relative tolerance of a page's motion.
 pub const TOLERANCE: f64 = 1e-8;
 
-/// Reason why a page cannot move a model.
+/// Reason why a page cannot simulate a model.
 #[derive(Clone, Debug)]
 pub enum Unplayable {
     /// This program was compiled without the engine.
     NoEngine,
-    /// A program of the model that cannot be emitted as WebAssembly.
+    /// A program of the model cannot be emitted as WebAssembly.
     Emission(EmitError),
 }
 
@@ -40,8 +40,8 @@ impl fmt::Display for Unplayable {
 
 impl std::error::Error for Unplayable {}
 
-/// Returns the data of `Motion.load` in the script: the engine, an exported model in bytes, its `program` and that with
-/// sides, if there is one.
+/// Returns the arguments of `Motion.load` in the script: the engine, an exported model in bytes, its `program`,
+/// and its program with sides if it has one.
 ///
 /// # Errors
 /// A program without the engine, or one that cannot be emitted.

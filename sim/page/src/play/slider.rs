@@ -1,4 +1,4 @@
-//! Sliders with number fields for the quantities that a page can change.
+//! Sliders with number fields for quantities that the reader of a page can change.
 
 use eomgen_model_spec::model::Parameter;
 use maud::{Markup, html};
@@ -9,13 +9,14 @@ use crate::prose::prose;
 
 const SLIDER_STEPS: f64 = 400.0;
 
-/// Significant digits of a number field.
+/// Number of significant digits in a number field.
 const SHOWN_DIGITS: usize = 6;
 
-/// Smallest value of a number field, as a fraction of a step of its slider; smaller ones are rounding errors.
+/// Smallest nonzero value of a number field, as a fraction of the step of its slider; smaller values are
+/// rounding errors.
 const ROUNDING_FRACTION: f64 = 1e-9;
 
-/// Quantity that a page can change.
+/// Quantity that the reader of a page can change.
 #[derive(Clone, Debug)]
 pub struct Slider<'m> {
     /// Name of the quantity.
@@ -57,12 +58,12 @@ impl<'m> Slider<'m> {
         }
     }
 
-    /// Returns the markup. The script identifies it by `kind` and index.
+    /// Returns the HTML elements. The script identifies them by `kind` and index.
     pub fn control(&self, kind: &str) -> Markup {
         self.labelled_control(kind, &quantity_symbol(&self.name))
     }
 
-    /// Returns the markup with words instead of a symbol as its label.
+    /// Returns the HTML elements with words instead of a symbol as their label.
     pub fn labelled_control(&self, kind: &str, label: &Markup) -> Markup {
         let Self {
             name,
@@ -98,14 +99,14 @@ impl<'m> Slider<'m> {
     }
 }
 
-/// Rounds a number to the digits of a number field. The script uses the specification's own number until the field
-/// changes.
+/// Rounds a number to the digits of a number field. Until the field changes, the script uses the exact number
+/// of the specification.
 fn rounded(value: f64) -> f64 {
     let text = format!("{value:.*e}", SHOWN_DIGITS - 1);
     text.parse().unwrap_or(value)
 }
 
-/// Returns the finite range from 0 to twice a value, or around 0 for 0.
+/// Returns the range from 0 to twice a value; a range around 0 if the value is 0.
 fn default_range(value: f64) -> (f64, f64) {
     let twice = (2.0 * value).clamp(f64::MIN, f64::MAX);
     if value > 0.0 {
@@ -131,7 +132,7 @@ pub fn format_unit(unit: &str) -> String {
     if unit.contains("^(") {
         return unit.to_owned();
     }
-    // A prefix is followed by its unit.
+    // A prefix precedes a unit, so a lone `u` is not one.
     let unit = &unit
         .split([' ', '*'])
         .map(|part| match part.strip_prefix('u') {

@@ -22,14 +22,14 @@ const RIGHT_MARGIN: f64 = 28.0;
 /// Space for the name of the vertical axis, in px.
 const LABEL_ROOM: f64 = 36.0;
 const TICK_LABEL_GAP: f64 = TICK_LENGTH + 6.0;
-/// Width of regular text relative to that of bold text.
+/// Width of regular text relative to bold text.
 const BOLD_ROOM: f64 = 0.9;
-/// Distance between the edges of even cells and of the cells of a map, in px.
+/// Maximum distance between the edges of evenly spaced cells and of the cells of a map, in px.
 const MAX_CELL_SHIFT_PX: f64 = 0.25;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Outside of the frame, so that ticks cover no cell.
+    /// Ticks outside the frame, so that they cover no cell.
     Outside,
     Inside,
 }
@@ -65,7 +65,7 @@ pub fn coordinate_units(coordinate: &Coordinate<'_>) -> Units {
 }
 
 impl Units {
-    /// Returns the position of an SI value along the axis; NaN if it cannot be drawn.
+    /// Returns the coordinate of an SI value along the axis; NaN if it cannot be drawn.
     pub fn place(&self, value: f64) -> f64 {
         if is_drawable(value) {
             self.scale.place(value / self.quantity.scale)
@@ -75,7 +75,7 @@ impl Units {
     }
 }
 
-/// Returns the edges of a coordinate's cells, one more than values, as positions on the axis.
+/// Returns the edges of a coordinate's cells as coordinates along the axis; one more than the number of values.
 pub fn cell_edges(coordinate: &Coordinate<'_>) -> Result<Vec<f64>, PlotError> {
     let units = coordinate_units(coordinate);
     let values = coordinate.values.iter();
@@ -143,8 +143,8 @@ impl Frame {
         (self.horizontal.axis.pixel(x), self.vertical.axis.pixel(y))
     }
 
-    /// Returns the column and row of cells for each column of an image over the frame from the
-    /// left, and for each row from the top. The image has at most one pixel per px.
+    /// Returns for each pixel column of an image over the frame its column of cells, and for each pixel row
+    /// from the top its row of cells. The image has at most one pixel per px.
     pub fn cells(&self, edges: (&[f64], &[f64])) -> (Vec<Option<usize>>, Vec<Option<usize>>) {
         let columns = self.horizontal.cells(edges.0);
         let mut rows = self.vertical.cells(edges.1);
@@ -223,14 +223,14 @@ impl FrameEdge {
         }
     }
 
-    /// Returns the ticks at middles of pixels, so that lines of 1 px are sharp.
+    /// Returns the ticks at pixel centres, so that lines of 1 px are sharp.
     fn tick_pixels(&self) -> impl Iterator<Item = f64> + '_ {
         let pixels = self.ticks.iter().map(|tick| self.axis.pixel(tick.place));
         pixels.map(|pixel| pixel.floor() + 0.5)
     }
 
-    /// Returns the cells along the axis: each one once if they have equal widths of at least 1 px,
-    /// otherwise the cell at each pixel.
+    /// Returns the cells along the axis: each cell once if all have the same width of at least 1 px, otherwise
+    /// the cell at each pixel.
     fn cells(&self, edges: &[f64]) -> Vec<Option<usize>> {
         let (start, end) = self.axis.pixels;
         let (cells, pixels) = (edges.len().saturating_sub(1), (end - start).abs());

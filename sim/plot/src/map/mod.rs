@@ -1,9 +1,8 @@
 //! Maps of two parameters, and scatter plots over one, as SVG.
 //!
-//! [`draw_map`] and [`draw_scatter`] draw them. `frame` computes the axes, `shades` maps values to
-//! colours and draws their bar, `points` draws the points. Cells, and points if there are many, are
-//! an image in the SVG, so its size is bounded for any number of them. [`crate::render_png`]
-//! returns the PNG of the figure.
+//! [`draw_map`] and [`draw_scatter`] draw them. `frame` computes the axes, `shades` maps values to colours and
+//! draws the colour bar, `points` draws the points. Cells, and points if there are many, are an image in the
+//! SVG, so its size is bounded for any number of them. [`crate::render_png`] returns the PNG of the figure.
 
 mod frame;
 mod points;

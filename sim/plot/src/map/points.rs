@@ -13,7 +13,7 @@ const MAX_DOTS: usize = 2000;
 /// Draws translucent discs at positions along the axes, darker where they overlap.
 pub fn draw_points(canvas: &mut Canvas, frame: &Frame, points: &[Point]) -> Result<(), PlotError> {
     let ((left, right), (bottom, top)) = (frame.horizontal_pixels(), frame.vertical_pixels());
-    // All discs together cover a tenth of the frame, with limits on the radius.
+    // The total area of the discs is a tenth of the frame, within limits on the radius.
     let area = 0.1 * (right - left) * (bottom - top) / points.len() as f64;
     let radius = (area / std::f64::consts::PI).sqrt().clamp(0.7, 3.0);
     let pixels = points.iter().map(|point| frame.pixel(*point));
@@ -29,8 +29,8 @@ pub fn draw_points(canvas: &mut Canvas, frame: &Frame, points: &[Point]) -> Resu
     Ok(())
 }
 
-/// Returns discs in an image of `width` by `height` px as red, green, blue and opacity. Covered
-/// fractions of pixels at the edge of a disc are accurate to a tenth.
+/// Returns an image with discs of `width` by `height` px, as red, green, blue and opacity. Fractions of pixels
+/// that a disc covers at its edge are accurate to a tenth.
 fn disc_image(
     (width, height): (usize, usize),
     centres: impl Iterator<Item = Point>,

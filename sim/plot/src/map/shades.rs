@@ -11,7 +11,7 @@ use crate::lettering::truncate_to_width;
 use crate::quantity::Quantity;
 use crate::rendering::encode_png;
 
-/// Viridis by S. van der Walt and N. Smith, at every tenth.
+/// Viridis by S. van der Walt and N. Smith, at steps of a tenth.
 const VIRIDIS: [Colour; 11] = [
     [0x44, 0x01, 0x54],
     [0x48, 0x24, 0x75],
@@ -25,7 +25,7 @@ const VIRIDIS: [Colour; 11] = [
     [0xbd, 0xdf, 0x26],
     [0xfd, 0xe7, 0x25],
 ];
-/// C. Brewer's RdBu from its blue end, white in the middle.
+/// C. Brewer's RdBu, from blue over white to red.
 const BLUE_TO_RED: [Colour; 11] = [
     [0x05, 0x30, 0x61],
     [0x21, 0x66, 0xac],
@@ -39,32 +39,32 @@ const BLUE_TO_RED: [Colour; 11] = [
     [0xb2, 0x18, 0x2b],
     [0x67, 0x00, 0x1f],
 ];
-/// Ratio of the two sides of zero below which the smaller side is rounding noise.
+/// Ratio of the largest magnitudes on the two sides of zero below which the smaller side is rounding noise.
 const MAX_NOISE_RATIO: f64 = 1e-6;
-/// Ratio of the two sides of zero above which each side has separate shades.
+/// Ratio of the largest magnitudes on the two sides of zero above which each side has a separate scale.
 const MIN_LOPSIDED_RATIO: f64 = 3.0;
 
 /// Distances from the frame to the bar and from the bar to its labels, in px.
 const GAP: f64 = 28.0;
 const LABEL_GAP: f64 = TICK_LENGTH + 6.0;
-/// Width of the bar, in px.
+/// Width of the colour bar, in px.
 const BAR: f64 = 24.0;
 /// Space for the name of the quantity next to the labels, in px.
 const LABEL: f64 = 34.0;
 
-/// Colours of a map with their bar.
+/// Colour scale of a map with its colour bar.
 #[derive(Debug)]
 pub struct Bar {
     shades: Shades,
     quantity: Quantity,
-    /// Values at the ends, in the unit of the quantity. Zero is in the middle of signed shades.
+    /// Values at the ends, in the unit of the quantity. Zero is in the middle of a signed scale.
     range: Range,
     ticks: Vec<Tick>,
     has_gaps: bool,
 }
 
 impl Bar {
-    /// Creates the colours for the values of a map; an error without a drawable value.
+    /// Creates the colour scale for the values of a map. Returns an error if no value can be drawn.
     pub fn new(map: &Map<'_>) -> Result<Self, PlotError> {
         let drawable = map.values.iter().filter(|value| is_drawable(**value));
         let found =
@@ -73,7 +73,7 @@ impl Bar {
             Shades::Sequential => found.widen_point(),
             Shades::Signed => widen_around_zero(found),
         };
-        // Both sides of zero must be readable in one unit, even if they differ in size.
+        // Both sides of zero must be readable in the same unit, even if their magnitudes differ.
         let magnitude = match map.shades {
             Shades::Sequential => found.high.abs().max(found.low.abs()),
             Shades::Signed => (-range.low).sqrt() * range.high.sqrt(),
@@ -102,12 +102,12 @@ impl Bar {
         is_drawable(value).then(|| self.colour_at(share))
     }
 
-    /// Returns the width of the bar with its labels, in px.
+    /// Returns the width of the colour bar with its labels, in px.
     pub fn width(&self) -> f64 {
         GAP + BAR + LABEL_GAP + widest_label(&self.ticks) + LABEL
     }
 
-    /// Returns the position of a value on the bar, from 0 at its lower end to 1.
+    /// Returns the position of a value on the colour bar, from 0 at its lower end to 1.
     fn position_on_bar(&self, value: f64) -> f64 {
         let Range { low, high } = self.range;
         match self.shades {
@@ -124,7 +124,7 @@ impl Bar {
         }
     }
 
-    /// Draws the bar to the right of a frame.
+    /// Draws the colour bar to the right of a frame.
     pub fn draw(&self, canvas: &mut Canvas, frame: &Frame) -> Result<(), PlotError> {
         let (left, (bottom, top)) = (frame.horizontal_pixels().1 + GAP, frame.vertical_pixels());
         let (right, height) = (left + BAR, bottom - top);
@@ -177,7 +177,7 @@ fn widen_around_zero(found: Range) -> Range {
             high: 1.0,
         };
     }
-    // A side without values gets the range of the other, so half of the bar is unused.
+    // A side without values gets the range of the other side, so half of the bar is unused.
     if less < MAX_NOISE_RATIO * more || more <= MIN_LOPSIDED_RATIO * less {
         return Range {
             low: -more,

@@ -1,4 +1,4 @@
-//! Tests of complete figures: size, colours at known places, text, and invalid input.
+//! Tests of complete figures: size, colours at known positions, text, and invalid input.
 
 use std::collections::BTreeSet;
 
@@ -74,12 +74,12 @@ fn exponents<'a>(columns: &'a [f64], rows: &'a [f64], values: &'a [f64]) -> Map<
 
 #[test]
 fn cells_have_their_colours() -> Result<(), PlotError> {
-    // Bottom row: least, zero; top row: greatest, no value.
+    // Bottom row: smallest value, zero. Top row: largest value, no value.
     let (columns, rows) = ([0.0, 1e-4], [10.0, 20.0]);
     let map = exponents(&columns, &rows, &[-8.0, 0.0, 8.0, NAN]);
     let picture = Picture::render(&draw_map(&map)?)?;
     assert_eq!((picture.width, picture.height), (1000, 760));
-    // Middles of the four quarters of the frame, which is from 85 px to 845 px wide.
+    // Centres of the four quarters of the frame, which extends from 85 px to 845 px.
     let (left, right, low, high) = (280, 650, 530, 210);
     assert_eq!(picture.colour_at(left, low), [0x05, 0x30, 0x61]);
     assert_eq!(picture.colour_at(right, low), [0xff, 0xff, 0xff]);
@@ -98,11 +98,11 @@ fn map_with_unequal_sides_shows_both_signs() -> Result<(), PlotError> {
     for end in [[0x05, 0x30, 0x61], [0x67, 0x00, 0x1f]] {
         assert!(colours.contains(&end), "{end:?} in {colours:?}");
     }
-    // Within a factor of three, equal magnitudes have equal shades: -4 of 8 is half way.
+    // For ratios up to three, equal magnitudes have equal shades: -4 and 4 are halfway on a scale up to 8.
     let even = exponents(&columns, &rows, &[-4.0, 4.0, 8.0]);
     let picture = Picture::render(&draw_map(&even)?)?;
     let colours = picture.row_colours(600);
-    // Half way between the middle and an end of eleven colours, between two of them.
+    // Colour halfway between the middle and an end of eleven colours, which is between two of them.
     let (blue, red) = ([0x6b, 0xac, 0xd1], [0xe5, 0x83, 0x68]);
     assert!(
         colours.contains(&blue) && colours.contains(&red),
@@ -122,7 +122,7 @@ fn sequential_shades_go_from_least_to_greatest() -> Result<(), PlotError> {
     for shade in [[0x44, 0x01, 0x54], [0x21, 0x91, 0x8c], [0xfd, 0xe7, 0x25]] {
         assert!(colours.contains(&shade), "{shade:02x?} in {colours:02x?}");
     }
-    // Equal ratios have equal widths: a third of the frame each.
+    // On a logarithmic axis, equal ratios have equal widths: a third of the frame each.
     let width = |shade| {
         (0..1000)
             .filter(|x| picture.colour_at(*x, 400) == shade)
@@ -143,12 +143,12 @@ fn points_are_at_their_coordinates() -> Result<(), PlotError> {
     };
     let picture = Picture::render(&draw_scatter(&scatter)?)?;
     let is_ink = |colour: Colour| colour[2].saturating_sub(colour[0]) > 60;
-    // Three discs of radius 3 px: 28 px each, less at their edges.
+    // Three discs of radius 3 px cover 28 px each, less at their edges.
     let ink = picture.count(is_ink);
     assert!((60..120).contains(&ink), "{ink}");
     let middle = (0..760).filter(|row| (450..600).any(|x| is_ink(picture.colour_at(x, *row))));
     let rows: Vec<usize> = middle.collect();
-    // The middle abscissa has the greatest value: near the top (52 px), below the margin.
+    // The middle abscissa has the largest value, which is drawn near the top (52 px), below the margin.
     assert!(rows.iter().all(|row| (60..90).contains(row)), "{rows:?}");
     Ok(())
 }
@@ -169,7 +169,8 @@ fn diagram_is_independent_of_order_and_reproducible() -> Result<(), PlotError> {
     let reversed = |values: &[f64]| values.iter().rev().copied().collect::<Vec<_>>();
     let backwards = Picture::render(&picture(&reversed(&along), &reversed(&up))?)?;
     let forwards = Picture::render(&forwards)?;
-    // Products in another order differ in the last bit, so a rounding can differ.
+    // The products are computed in another order, so they differ in the last bit and a colour can be rounded
+    // differently.
     let differing = forwards.bytes.iter().zip(&backwards.bytes);
     assert!(differing.into_iter().all(|(a, b)| a.abs_diff(*b) <= 1));
     Ok(())
@@ -278,7 +279,7 @@ fn subscript_is_below_base_line_without_ligature() -> Result<(), PlotError> {
 
 #[test]
 fn size_is_bounded() -> Result<(), PlotError> {
-    // A linear congruential generator, so that the image can hardly be compressed.
+    // A linear congruential generator makes the image nearly incompressible.
     let mut state = 1_u32;
     let mut next = || {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -287,7 +288,7 @@ fn size_is_bounded() -> Result<(), PlotError> {
     let values: Vec<f64> = (0..1_000_000).map(|_| next()).collect();
     let lines: Vec<f64> = (0..1000).map(f64::from).collect();
     let svg = draw_map(&exponents(&lines, &lines, &values))?;
-    // Three bytes per pixel of the frame, and four characters for three bytes.
+    // Three bytes per pixel of the frame, and four characters per three bytes.
     assert!(svg.len() < 4 * 1000 * 760, "{} bytes", svg.len());
     for count in [2000, 200_000] {
         let svg = draw_scatter(&Scatter {
@@ -302,7 +303,7 @@ fn size_is_bounded() -> Result<(), PlotError> {
 
 #[test]
 fn uneven_cells_have_their_widths() -> Result<(), PlotError> {
-    // Edges at -0.5, 0.5, 2.5 and 5.5.
+    // The edges are at -0.5, 0.5, 2.5 and 5.5.
     let (columns, rows) = ([0.0, 1.0, 4.0], [1.0]);
     let mut map = exponents(&columns, &rows, &[0.0, 1.0, 2.0]);
     map.shades = Shades::Sequential;

@@ -58,12 +58,12 @@ pub enum Spacing {
 /// Colour scale of values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shades {
-    /// Dark blue over green to yellow (viridis), from the least value to the greatest.
+    /// From dark blue over green to yellow (viridis), from the smallest value to the largest.
     #[default]
     Sequential,
-    /// Blue below zero, white at zero, red above, for example for an exponent. Equal magnitudes
-    /// have equal shades, unless one side is more than three times as large as the other. Then each
-    /// side has separate shades, so that both are readable.
+    /// Blue below zero, white at zero, red above, for example for an exponent. Equal magnitudes have equal
+    /// shades. If one side is more than three times as large as the other, each side has a separate scale, so
+    /// that both are readable.
     Signed,
 }
 

@@ -13,7 +13,7 @@ use crate::quantity::scaled_unit;
 pub(super) const BARS: f64 = 420.0;
 /// Distance between rows and height of a bar, in px.
 pub(super) const ROW: (f64, f64) = (21.0, 13.0);
-/// Amplitude below which the number is 0.
+/// Amplitudes below this value are shown as 0.
 const MIN_SHOWN_AMPLITUDE: f64 = 5e-5;
 
 pub(super) fn draw_amplitudes(
@@ -71,14 +71,14 @@ pub(super) fn draw_amplitudes(
     draw_outline(canvas, edges, (bottom, top));
 }
 
-/// Returns the amplitude of a full bar with this unit.
+/// Returns the amplitude that a bar of full length represents, for this unit.
 fn full_bar_amplitude(bars: &[Bar], unit: &str) -> f64 {
     let alike = bars.iter().filter(|bar| bar.unit == unit);
     let sizes = alike.map(|bar| bar.amplitude[0].hypot(bar.amplitude[1]));
     sizes.fold(1.0, f64::max)
 }
 
-/// Returns a bar's size, with its phase unless that is 0 or 180 degrees.
+/// Returns the text for the amplitude of a bar, with its phase unless it is 0 or 180 degrees.
 fn format_amplitude(bar: &Bar) -> String {
     let [re, im] = bar.amplitude;
     let size = re.hypot(im);

@@ -13,7 +13,7 @@ use crate::quantity::Quantity;
 pub(super) const FIELD: f64 = 400.0;
 /// Margins to the left and right of a field's frame, in px.
 const MARGINS: (f64, f64) = (80.0, 24.0);
-/// Amplitude below which a field is at rest; relative to amplitudes of 1 this is rounding.
+/// Amplitude below which a field is at rest; relative to amplitudes of 1 it is rounding.
 const ROUNDING: f64 = 1e-12;
 
 struct Axes {
@@ -37,7 +37,7 @@ pub(super) fn draw_field(canvas: &mut Canvas, shape: &Shape, later: bool, place:
         };
         samples.map(pixel).collect()
     };
-    // After a quarter of a period the motion is the real part of i times the amplitude.
+    // A quarter period later the motion is the real part of i times the amplitude.
     if later {
         canvas.lines(
             &[curve(|[_, im]| -im)],

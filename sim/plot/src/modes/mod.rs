@@ -16,11 +16,11 @@ use super::error::is_drawable;
 use super::layout::TICK_SIZE;
 use super::lettering::truncate_to_width;
 
-/// Minimum height of a frame in px, and space above (title) and below it (ticks and a label).
+/// Minimum height of a frame in px, and space above it (title) and below it (ticks and label).
 const FRAME_HEIGHT: f64 = 110.0;
 const SPACE_ABOVE_PX: f64 = 32.0;
 const SPACE_BELOW_PX: f64 = 50.0;
-/// Relative imaginary part above which it is drawn.
+/// Relative imaginary part above which the imaginary part is drawn.
 const MIN_OUT_OF_PHASE_FRACTION: f64 = 0.02;
 
 /// Draws modes as an SVG document.

@@ -13,7 +13,7 @@ impl FixedSides {
         *self.0.borrow_mut() = sides.map(<[f64]>::to_vec);
     }
 
-    /// Returns the side of a function with this value: the fixed one, if it is known.
+    /// Returns the fixed side of a function if there is one, otherwise its side for this value.
     pub fn side(&self, guard: usize, value: f64) -> f64 {
         let fixed = self.0.borrow().as_ref().map_or(0.0, |sides| sides[guard]);
         match (fixed, value) {
@@ -24,7 +24,7 @@ impl FixedSides {
     }
 }
 
-/// A system of closures; the rates take the sides of the guards.
+/// A system of closures; the rates depend on the sides of the guards.
 pub struct Functions<R, G> {
     pub states: usize,
     pub rates: R,
