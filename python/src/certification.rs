@@ -8,7 +8,7 @@ use crate::error;
 use crate::generation::parse_outputs;
 use crate::model::Model;
 
-/// Certifies a model with these additional outputs. Returns the document `certificate.json`.
+/// Certifies a model, with the additional outputs `extras`. Returns the document `certificate.json`.
 #[pyfunction]
 pub fn validate(py: Python<'_>, model: &Model, extras: Vec<String>) -> PyResult<String> {
     let outputs = parse_outputs(&extras)?;

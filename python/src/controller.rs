@@ -7,16 +7,16 @@ use pyo3::prelude::*;
 
 use crate::inputs::{Failures, number, require_finite};
 
-/// Function, indices of the driven inputs, and period, offset and delay (s).
+/// Function, indices of the driven inputs, and the times period, offset and delay (s).
 pub type ControllerEntry = (Py<PyAny>, Vec<usize>, (f64, f64, f64));
 
-/// Python function of time, state and observables that returns inputs.
+/// Python function of time, state and observables that returns input values.
 pub struct PythonController<'w> {
     function: Py<PyAny>,
     driven: Vec<usize>,
     schedule: Schedule,
     failures: Failures,
-    /// Ends the work on a request to stop.
+    /// Stops the simulation if a stop was requested.
     check: &'w (dyn Fn() + Sync),
 }
 

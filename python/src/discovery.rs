@@ -11,7 +11,7 @@ use crate::error;
 use crate::interruption::{Connection, interruptible};
 use crate::model::Model;
 
-/// Document `discovery.json`, extended specification, report page, names and texts of proposed experiments.
+/// Document `discovery.json`, extended specification, report page, and names and texts of proposed experiments.
 type DiscoveryTuple = (String, String, String, Vec<(String, String)>);
 
 /// Searches for effects that the model lacks. `progress` is called with each progress message.

@@ -1,4 +1,4 @@
-//! Equations of motion in notebooks.
+//! Equations of motion for display.
 
 use eomgen_codegen::report::Report;
 use pyo3::exceptions::PyValueError;
@@ -31,8 +31,7 @@ fn report(py: Python<'_>, model: &Model) -> PyResult<Report> {
     report.map_err(error::model)
 }
 
-/// Returns the equations as an HTML fragment, with formulas in MathML and coefficients at the model's parameter
-/// values.
+/// Returns the equations as an HTML fragment, with formulas in MathML. Coefficients have the model's parameter values.
 #[pyfunction]
 pub fn equations(py: Python<'_>, model: &Model) -> PyResult<String> {
     Ok(eomgen_page::equations(&report(py, model)?).into_string())

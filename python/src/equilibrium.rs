@@ -9,8 +9,8 @@ use crate::model::Model;
 /// Names and values in SI units.
 type Values = Vec<(String, f64)>;
 
-/// Time, state, inputs and residual of an equilibrium, names of its steady rates and of the unknowns, stability,
-/// and whether forces depend on time.
+/// Result of `trim`: time, state, inputs and residual of an equilibrium, names of its steady rates and of the unknowns,
+/// stability, and true if forces depend on time.
 type EquilibriumTuple = (
     f64,
     Vec<f64>,

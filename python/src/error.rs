@@ -1,4 +1,4 @@
-//! Exceptions of the package, and their mapping from errors of the library.
+//! Exceptions of the package, and the conversion of Rust errors into exceptions.
 
 use eomgen_compiled_model::Error;
 use eomgen_discover::error::DiscoverError;
@@ -45,7 +45,7 @@ pub fn model(error: Error) -> PyErr {
     }
 }
 
-/// Converts an error of a discovery.
+/// Converts an error of a search for effects.
 pub fn discovery(error: DiscoverError) -> PyErr {
     match error {
         DiscoverError::Records(refusal) => records(*refusal),

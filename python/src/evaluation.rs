@@ -1,5 +1,5 @@
-//! Rates, observables and Jacobians of arrays of states, a row for each state. The functions work in the memory of
-//! the arrays, with the interpreter released for other threads.
+//! Rates, observables and Jacobians of arrays of states, one row per state. The functions use the memory of the arrays
+//! and release the interpreter for other threads.
 
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_compiled_model::Jacobian;
@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use crate::error;
 use crate::model::Model;
 
-/// Times, states and inputs of many calls. A single time or a single row of inputs applies to all states.
+/// Times, states and inputs of many evaluations. A single time or a single row of inputs applies to all states.
 struct Rows<'a> {
     t: &'a [f64],
     x: &'a [f64],
@@ -20,7 +20,7 @@ struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    /// Creates rows from contiguous arrays. Returns an error if a shape does not fit the model.
+    /// Creates rows from contiguous arrays. Returns an error if a shape does not match the model.
     fn new(
         model: &Model,
         t: &'a PyReadonlyArray1<'_, f64>,
@@ -52,7 +52,7 @@ impl<'a> Rows<'a> {
         })
     }
 
-    /// Calls `compute` with every point and its row of `width` numbers in `out`.
+    /// Calls `compute` for every point, with its row of `width` numbers in `out`.
     #[inline]
     fn for_each(
         &self,
@@ -65,7 +65,7 @@ impl<'a> Rows<'a> {
             .chunks_exact(self.states)
             .zip(out.chunks_exact_mut(width));
         if let ([t], true) = (self.t, self.u.len() == self.inputs) {
-            // Fast path of the usual call.
+            // Fast path for a single time and a single row of inputs.
             let (t, inputs) = (*t, self.u);
             rows.for_each(|(state, out)| compute(Point { t, state, inputs }, out));
             return;
@@ -83,7 +83,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Returns the memory of an output array with `width` numbers per row.
+/// Returns the memory of an output array that has `width` numbers per row.
 fn output<'a>(
     out: &'a mut PyReadwriteArray2<'_, f64>,
     rows: &Rows<'_>,
@@ -141,7 +141,7 @@ pub fn observables(
     py.detach(compute).map_err(error::model)
 }
 
-/// Computes the mass matrix at every state, each row by row.
+/// Computes the mass matrix at every state, row-major.
 #[pyfunction]
 pub fn mass_matrix(
     py: Python<'_>,
@@ -165,7 +165,7 @@ pub fn mass_matrix(
     py.detach(compute).map_err(error::model)
 }
 
-/// Computes a Jacobian at every state, each matrix row by row.
+/// Computes a Jacobian at every state, row-major.
 #[pyfunction]
 pub fn jacobian(
     py: Python<'_>,

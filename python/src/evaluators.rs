@@ -1,4 +1,4 @@
-//! Pool of evaluators. Creating one copies the program, and concurrent calls need one each.
+//! Pool of evaluators. The creation of an evaluator copies the program, and each concurrent call needs one.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -28,7 +28,7 @@ impl<E> Pool<E> {
     }
 
     fn list(&self) -> std::sync::MutexGuard<'_, Vec<E>> {
-        // No code that can panic runs while it is locked.
+        // No code that can panic runs while the pool is locked.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use crate::error;
 use crate::model::Model;
 
-/// Names and contents of emitted files, the file with the equations first, and warnings.
+/// Names and contents of emitted files, and warnings. The file with the equations is the first.
 type EmissionTuple = (Vec<(String, Vec<u8>)>, Vec<String>);
 
 /// Emits the source of a model for a target, with additional outputs.
@@ -45,14 +45,15 @@ pub fn generate(
     Ok((files, warnings.into_inner().unwrap_or_default()))
 }
 
-/// Returns the additional outputs of these names.
+/// Returns the additional outputs with the given names.
 pub fn parse_outputs(names: &[String]) -> PyResult<Vec<Output>> {
     let outputs = names.iter().map(|name| parse_output(name));
     let outputs: Result<Vec<Output>, String> = outputs.collect();
     outputs.map_err(PyValueError::new_err)
 }
 
-/// Returns the target of a name. Units need a library that the Python package does not contain.
+/// Returns the target with the given name. Functional mock-up units need a library that the Python package does not
+/// contain.
 fn parse_target(name: &str) -> PyResult<Target> {
     let is_unit = |target: &Target| matches!(target, Target::Fmu2 | Target::Fmu3);
     match Target::ALL.into_iter().find(|known| known.name() == name) {

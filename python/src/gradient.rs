@@ -7,8 +7,8 @@ use pyo3::prelude::*;
 use crate::error;
 use crate::model::Model;
 
-/// Derivatives by the initial state, by the independent parameters (names; declared units), and by the inputs, a row for
-/// each of their samples.
+/// Derivatives with respect to the initial state, the independent parameters (names; declared units) and the inputs.
+/// Those of the inputs have one row per sample of the inputs.
 type GradientTuple<'py> = (
     Option<Bound<'py, PyArray1<f64>>>,
     Vec<(String, f64)>,
@@ -29,7 +29,8 @@ impl RecordedMotion {
 
 #[pymethods]
 impl RecordedMotion {
-    /// Returns the gradient of a number with these derivatives by the states and observables, a row for each sample.
+    /// Returns the gradient of a number L. The arguments are the derivatives of L with respect to states and
+    /// observables, one row per sample.
     fn gradient<'py>(
         &self,
         py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Inputs given as Python functions, called at the times that a solver needs.
+//! Inputs given as Python functions, which are called at the times that a solver needs.
 
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -17,12 +17,12 @@ const MAX_VALUES: usize = 3;
 /// Name, index and Python function of an input.
 pub type InputEntry = (String, usize, Py<PyAny>);
 
-/// Number of points of the spline through prescribed motion whose function returns no rates.
+/// Number of points of the spline through prescribed motion, if its function does not return rates.
 const SPLINE_POINTS: usize = 16_385;
 
 /// Failed call of a function.
 struct Failure {
-    /// Role of the function, in messages.
+    /// Description of the function, for messages.
     what: String,
     t: f64,
     error: PyErr,
@@ -30,8 +30,8 @@ struct Failure {
     is_interrupt: bool,
 }
 
-/// Failure at the earliest time among the functions of a motion. Solvers then shorten their steps, so that the motion ends
-/// there.
+/// Failure at the earliest time among the functions of a motion. After a failure solvers shorten their steps, so that
+/// the motion ends at the time of the failure.
 #[derive(Clone, Default)]
 pub struct Failures(Arc<Mutex<Option<Failure>>>);
 
@@ -40,7 +40,8 @@ impl Failures {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Records the failed call of a function with this role at a time (s), unless another failed before that time.
+    /// Records a failed call at a time (s), unless another call failed at an earlier time. `what` describes the
+    /// function.
     pub fn note(&self, what: &str, t: f64, error: PyErr) {
         if self.prevents_call(t) {
             return;
@@ -63,7 +64,7 @@ impl Failures {
     }
 
     /// Returns the exception of the earliest failure, if any. It names the function and the time; its cause is the
-    /// exception of the function. A `BaseException` that is no `Exception`, such as `KeyboardInterrupt`, is
+    /// exception of the function. A `BaseException` that is not an `Exception`, such as `KeyboardInterrupt`, is
     /// returned unchanged.
     pub fn take(&self, py: Python<'_>) -> Option<PyErr> {
         let Failure {
@@ -88,7 +89,7 @@ impl Failures {
     }
 }
 
-/// Returns true for a rejected value and false for a rejected type, or none if the function raised the error.
+/// Returns true for a rejected value and false for a rejected type; `None` if the function raised the error.
 fn is_refused(py: Python<'_>, error: &PyErr) -> Option<bool> {
     if error.is_instance_of::<RefusedValue>(py) {
         return Some(true);
@@ -113,7 +114,7 @@ pyo3::create_exception!(
 struct PythonFunction {
     input: String,
     function: Py<PyAny>,
-    /// Last time and its inputs, because solvers evaluate a time repeatedly.
+    /// Last time with its inputs. Solvers evaluate the same time repeatedly.
     last: Mutex<Option<(f64, [f64; MAX_VALUES])>>,
     failures: Failures,
 }
@@ -151,13 +152,13 @@ impl InputFunction for PythonFunction {
     }
 }
 
-/// Largest change of a continuous position between neighbouring numbers, relative to the position.
+/// Largest change of a continuous position between neighbouring floating-point numbers, relative to the position.
 const MAX_CONTINUOUS_CHANGE: f64 = 1e-9;
 
-/// Number of bisections of an interval between samples, after which its ends are neighbouring numbers.
+/// Number of bisections of an interval between samples, after which its ends are neighbouring floating-point numbers.
 const BISECTIONS: usize = 64;
 
-/// Returns the exception for a prescribed motion that jumps at a time, s.
+/// Returns the exception for prescribed motion that jumps at a time, s.
 fn jump_error(input: &str, t: f64, (before, after): (f64, f64)) -> PyErr {
     PyValueError::new_err(format!(
         "the input {input} at t = {t}: the prescribed motion jumps from {before} to {after}, so that its rate is infinite: \
@@ -166,15 +167,15 @@ fn jump_error(input: &str, t: f64, (before, after): (f64, f64)) -> PyErr {
 }
 
 impl PythonFunction {
-    /// Returns the first of `count` values at a time, s; NaN after a failure, which is recorded.
+    /// Returns the first of `count` values at a time, s. After a failure, which is recorded, returns NaN.
     fn first_value(&self, t: f64, count: usize) -> f64 {
         let mut values = [0.0; MAX_VALUES];
         self.write(t, &mut values[..count]);
         values[0]
     }
 
-    /// Returns the time (s) of a jump between samples, and the values before and after it. Only the interval with the
-    /// largest deviation from its neighbours is bisected.
+    /// Returns the time (s) of a jump between samples, and the values before and after the jump. Only the interval with
+    /// the largest deviation from its neighbours is bisected.
     fn find_jump(&self, times: &[f64], values: &[f64]) -> Option<(f64, f64, f64)> {
         let changes: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let neighbours = |k: usize| match k {
@@ -209,7 +210,8 @@ impl PythonFunction {
         is_jump.then_some((after.0, before.1, after.1))
     }
 
-    /// Returns whether the function returns several numbers. An exception is ignored: the next call raises it again.
+    /// Returns true if the function returns several numbers. An exception is ignored, because the next call raises it
+    /// again.
     fn is_several(&self, py: Python<'_>, t: f64) -> bool {
         let found = self.function.bind(py).call1((t,));
         found.is_ok_and(|found| found.extract::<f64>().is_err())
@@ -259,8 +261,8 @@ fn not_rates(count: usize) -> PyErr {
     ))
 }
 
-/// Adds functions, which jump at the times `breaks` (s), to the inputs. Returns the inputs and the place of later
-/// failures.
+/// Adds functions to the inputs. The functions jump at the times `breaks` (s). Returns the inputs and the store of
+/// later failures.
 ///
 /// A function for prescribed motion returns (s, s', s''). If it returns s only, the motion follows a cubic spline
 /// through [`SPLINE_POINTS`] points of the span.

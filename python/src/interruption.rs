@@ -1,4 +1,4 @@
-//! Long work on a separate thread. The calling thread reports progress to Python and checks for signals such as
+//! Long computations on a worker thread. The calling thread reports progress to Python and checks for signals such as
 //! Ctrl-C.
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -13,10 +13,10 @@ use pyo3::prelude::*;
 /// Longest time between two checks for signals.
 const SIGNAL_INTERVAL: Duration = Duration::from_millis(50);
 
-/// Stack size of the worker thread, which derives nested formulas: that of a main thread, twice the usual limit.
+/// Stack size of the worker thread, which derives nested expressions: twice the usual limit of a main thread.
 const STACK_BYTES: usize = 16 << 20;
 
-/// Connection of the work to Python.
+/// Channel from the worker thread to the Python thread: messages out, stop request in.
 pub struct Connection<'w, M> {
     /// Request to stop.
     pub stop: &'w StopRequest,
@@ -29,16 +29,16 @@ enum Reply<M, T> {
     Result(std::thread::Result<T>),
 }
 
-/// Payload of the silent panic that ends the work on a request to stop.
+/// Payload of the silent panic that ends a computation when a stop is requested.
 struct Interrupted;
 
 impl<M> Connection<'_, M> {
-    /// Reports progress.
+    /// Sends a progress message to the Python thread.
     pub fn report(&self, message: M) {
         (self.send)(message);
     }
 
-    /// Ends the work by unwinding if a stop is requested. The progress callbacks of solvers have no other way to
+    /// Ends the computation by unwinding if a stop is requested. The progress callbacks of solvers have no other way to
     /// stop; the partial state is dropped.
     pub fn check(&self) {
         if self.stop.is_requested() {
@@ -47,10 +47,10 @@ impl<M> Connection<'_, M> {
     }
 }
 
-/// Runs work with the interpreter released. `hear` receives progress messages, between checks for signals.
+/// Runs a computation with the interpreter released. `hear` receives progress messages, between checks for signals.
 ///
 /// # Errors
-/// An exception of a signal handler or of `hear`, after the work has stopped.
+/// An exception of a signal handler or of `hear`, after the computation has stopped.
 pub fn interruptible<M: Send, T: Send>(
     py: Python<'_>,
     hear: impl Fn(Python<'_>, M) -> PyResult<()> + Send,
@@ -62,7 +62,7 @@ pub fn interruptible<M: Send, T: Send>(
             let (said, heard) = channel();
             let working = Builder::new().stack_size(STACK_BYTES);
             let working = working.spawn_scoped(scope, move || {
-                // A closed channel is ignored: the caller has stopped waiting.
+                // A closed channel is ignored, because the caller no longer waits.
                 let send = |message| drop(said.send(Reply::Progress(message)));
                 let connection = Connection { stop, send: &send };
                 let found = catch_unwind(AssertUnwindSafe(|| work(&connection)));
@@ -79,7 +79,7 @@ pub fn interruptible<M: Send, T: Send>(
     })
 }
 
-/// Waits for the result. Returns an earlier exception of Python as an error.
+/// Waits for the result. If Python raised an exception before, returns it as an error.
 fn wait<M, T>(
     heard: &Receiver<Reply<M, T>>,
     hear: &impl Fn(Python<'_>, M) -> PyResult<()>,
@@ -92,7 +92,7 @@ fn wait<M, T>(
                 py.check_signals()
             })?,
             Err(RecvTimeoutError::Timeout) => Python::attach(|py| py.check_signals())?,
-            // The worker sends its result in any case.
+            // The worker always sends its result before it ends.
             Err(RecvTimeoutError::Disconnected) => {
                 return Err(PyRuntimeError::new_err(
                     "the worker thread ended without a result",

@@ -1,5 +1,5 @@
-//! Native part of the Python package `eomgen`: compiled models on NumPy arrays. The Python code converts arguments
-//! and displays results; the libraries derive, integrate and search.
+//! Native part of the Python package `eomgen`: compiled models with NumPy arrays. The Python code converts arguments
+//! and displays results; the Rust libraries derive, integrate and search.
 
 use pyo3::prelude::*;
 
@@ -73,7 +73,7 @@ mod _native {
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         eomgen_model_spec::argument::name_python_arguments();
-        // Exceptions without samples.
+        // The exceptions have no samples by default.
         module
             .getattr("SimulationError")?
             .setattr("trajectory", module.py().None())

@@ -9,10 +9,10 @@ use crate::error;
 use crate::model::Model;
 use crate::operating_point::point;
 
-/// A, B, C, D, each row by row, then rates and observables at the operating point.
+/// A, B, C, D (row-major), then rates and observables at the operating point.
 type LinearisationTuple = (Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>);
 
-/// Returns A_d and B_d of matrices A and B, all row by row, for inputs held over a period.
+/// Returns A_d and B_d for the matrices A and B and inputs held over a period; all are row-major.
 #[pyfunction]
 pub fn discretise(
     model: &Model,

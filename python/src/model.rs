@@ -25,7 +25,7 @@ use crate::evaluators::Pool;
 #[pyclass(frozen, module = "eomgen._native")]
 pub struct Model {
     compiled: Arc<CompiledModel>,
-    /// Requested order; none for the orders of the specification.
+    /// Requested order; `None` for the orders of the specification.
     order: Option<usize>,
     /// Parameters that were set, in declared units.
     settings: Vec<(String, f64)>,
@@ -70,7 +70,8 @@ impl Model {
         &self.settings
     }
 
-    /// Returns the model for a comparison with records, with a note if their columns replace its controllers.
+    /// Returns the model for a comparison with records. If columns of the records replace its controllers, returns a
+    /// note too.
     pub fn open_loop(&self, dataset: &Path) -> PyResult<(Specified, Option<String>)> {
         let text = self.specification()?;
         let source = self.compiled.model().source.with_text(text);
@@ -85,20 +86,20 @@ impl Model {
         self.compiled.with_parameters(&settings.collect::<Vec<_>>())
     }
 
-    /// Returns an instance at the parameter values that shares the compiled model.
+    /// Returns an instance at the parameter values; it shares the compiled model.
     pub fn shared_instance(&self) -> Result<Instance<'static>, Error> {
         let settings = self.settings.iter().map(|(name, v)| (name.as_str(), *v));
         let settings: Vec<_> = settings.collect();
         self.compiled.share_with_parameters(&settings)
     }
 
-    /// Computes with an evaluator at the parameter values.
+    /// Calls `compute` with an evaluator at the parameter values.
     pub fn evaluate<T>(&self, compute: impl FnOnce(&mut Evaluator) -> T) -> Result<T, Error> {
         let new = || self.instance()?.evaluator();
         self.evaluators.with(new, compute)
     }
 
-    /// Computes with an evaluator of the Jacobians at the parameter values.
+    /// Calls `compute` with an evaluator of the Jacobians at the parameter values.
     pub fn differentiate<T>(
         &self,
         compute: impl FnOnce(&mut JacobianEvaluator) -> T,
@@ -150,7 +151,7 @@ impl Model {
     }
 
     /// Returns the model with new parameter values, in declared units. Expressions are part of the equations: if a
-    /// value replaces one, the equations are derived again.
+    /// value replaces an expression, the equations are derived again.
     fn with_parameters(&self, py: Python<'_>, settings: Vec<(String, f64)>) -> PyResult<Self> {
         let mut all = self.settings.clone();
         all.retain(|(name, _)| settings.iter().all(|(new, _)| new != name));
@@ -176,7 +177,7 @@ impl Model {
                     Arc::new(CompiledModel::derive(model, orders)?)
                 }
             };
-            // Reports invalid values now instead of at the first call.
+            // Reports invalid values at once instead of at the first call.
             compiled.with_parameters(&settings)?.evaluator()?;
             Ok(compiled)
         };
@@ -218,7 +219,7 @@ impl Model {
         &self.compiled.model().title
     }
 
-    /// Requested order; none for the orders of the specification.
+    /// Requested order; `None` for the orders of the specification.
     #[getter]
     pub fn order(&self) -> Option<usize> {
         self.order
@@ -308,7 +309,7 @@ impl Model {
             .collect())
     }
 
-    /// Names of the independent parameters: the columns of the Jacobian by parameters.
+    /// Names of the independent parameters: the columns of the Jacobian with respect to the parameters.
     #[getter]
     fn independent_parameters(&self) -> Vec<String> {
         self.compiled.parameter_names()
@@ -322,7 +323,7 @@ impl Model {
     }
 }
 
-/// Returns the known name nearest to an unknown one, if it is near enough.
+/// Returns the known name that is most similar to an unknown one, if it is similar enough.
 #[pyfunction]
 pub fn nearest(wrong: &str, known: Vec<String>) -> Option<String> {
     let known = known.iter().map(String::as_str);

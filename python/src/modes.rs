@@ -8,14 +8,14 @@ use crate::error;
 use crate::model::Model;
 use crate::operating_point::point;
 
-/// Frequency (Hz), damping ratio, eigenvalue (1/s), shape and greatest frequency (Hz) of a rigid motion. Complex
-/// numbers are real and imaginary parts.
+/// Frequency (Hz), damping ratio, eigenvalue (1/s), shape, and for a rigid motion the largest frequency that rounding
+/// can hide (Hz). Complex numbers are pairs of real and imaginary part.
 type ModeTuple = (f64, f64, (f64, f64), Vec<(f64, f64)>, Option<f64>);
 
-/// Name and unit of a column.
+/// Name and unit of an amplitude.
 type NameAndUnit = (String, String);
 
-/// Computes the natural modes about a time, state and inputs. Returns names and units of the amplitudes too.
+/// Computes the natural modes about a time, state and inputs. Also returns names and units of the amplitudes.
 #[pyfunction]
 pub fn modes(
     py: Python<'_>,

@@ -13,7 +13,7 @@ use crate::model::Model;
 /// Returns the point at a time (s) with a state and inputs of a model, SI.
 ///
 /// # Errors
-/// A `ValueError` for arrays of another length, or that are not contiguous.
+/// A `ValueError` for arrays of wrong length, or that are not contiguous.
 pub fn point<'a>(
     model: &Model,
     t: f64,
@@ -33,7 +33,7 @@ pub fn point<'a>(
     Ok(Point { t, state, inputs })
 }
 
-/// Moves a state onto the constraints of a model. Returns a sentence about the changes too.
+/// Projects a state onto the constraints of a model. Also returns a sentence about the changes.
 #[pyfunction]
 pub fn move_onto_constraints(
     py: Python<'_>,

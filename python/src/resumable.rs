@@ -1,4 +1,4 @@
-//! Simulations that continue from call to call, as a Python class.
+//! Simulations that continue over several calls, as a Python class.
 
 use eomgen_compiled_model::{InitialChange, LoggedEvent, Simulation as Continued, SolverOptions};
 use eomgen_sim::inputs::HeldInputs;
@@ -10,7 +10,7 @@ use crate::error;
 use crate::model::Model;
 use crate::simulation::{EventTuple, describe_event, parse_solver};
 
-/// Simulation that continues from call to call. Only the thread that created it may use it.
+/// Simulation that continues over several calls. Only the thread that created it may use it.
 #[pyclass(unsendable, module = "eomgen._native")]
 pub struct Simulation {
     continued: Continued<'static>,
@@ -47,7 +47,7 @@ impl Simulation {
         })
     }
 
-    /// Sentence about the constraints that moved the first state, or the last one that was set.
+    /// Sentence about the projection of the initial state, or of the state set last, onto the constraints.
     #[getter]
     fn initial_changes(&self) -> Option<String> {
         InitialChange::describe_all("state", self.continued.initial_changes())
@@ -58,7 +58,7 @@ impl Simulation {
         self.continued.advance(until).map_err(error::model)
     }
 
-    /// Changes the inputs from the time reached on.
+    /// Changes the inputs from the current time on.
     fn set_inputs(&mut self, inputs: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
         let set = self.continued.set_inputs(inputs.as_slice()?);
         set.map_err(error::model)
@@ -90,7 +90,7 @@ impl Simulation {
         self.continued.solver().name()
     }
 
-    /// Returns the observables at the time reached.
+    /// Returns the observables at the current time.
     fn observables<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.continued.write_observables(&mut self.observables);
         self.observables.to_pyarray(py)

@@ -1,4 +1,4 @@
-//! Simulation.
+//! Simulation of a motion over a time span.
 
 use std::time::{Duration, Instant};
 
@@ -23,9 +23,9 @@ use crate::model::Model;
 /// Time between progress reports.
 const REPORT_INTERVAL: Duration = Duration::from_millis(100);
 
-/// Solver and the reason for its selection; time and reason of a stop before the end; times, states and
-/// observables, a row for each sample; events; warnings; names and values of the states of controllers; the motion for
-/// gradients, if requested; the exception of a function that stopped the motion.
+/// Result of `simulate`, in this order: solver and the reason for its choice; time and reason of an early stop; times,
+/// states and observables, one row per sample; events; warnings; names and values of controller states; the recorded
+/// motion, if gradients are requested; the exception of a function that stopped the motion.
 type SimulationTuple<'py> = (
     &'static str,
     Option<String>,
@@ -41,7 +41,7 @@ type SimulationTuple<'py> = (
     Option<Py<PyAny>>,
 );
 
-/// Time (s), surface, kind, modes before and after, and the jump of each rate; empty without a jump.
+/// Time (s), surface, kind, modes before and after, and the jump of each rate, which is empty without a jump.
 pub type EventTuple = (
     f64,
     String,
@@ -51,8 +51,9 @@ pub type EventTuple = (
     Vec<f64>,
 );
 
-/// Simulates from an initial state over ascending times (s). Inputs hold from each of their times to the next, or
-/// are `functions`, which jump at `breaks` (s), or `expressions` of time by the names of inputs. `progress` is called with the simulated time, s.
+/// Simulates from an initial state over ascending times (s). Inputs are held from each of their times to the next.
+/// Other inputs are `functions`, which jump at `breaks` (s), or `expressions` of time, by the names of the inputs.
+/// `progress` is called with the simulated time, s.
 #[pyfunction]
 #[pyo3(signature = (
     model, initial, times, input_times, input_values, functions, expressions, breaks, solver,
@@ -124,7 +125,7 @@ pub fn simulate<'py>(
         false => follow(model, &request, controller, line),
     })?;
     let raised = failures.take(py);
-    // A motion that a function stopped has samples, unless the value or its type is rejected.
+    // If a function stopped the motion, its samples are kept, unless the value or its type was rejected.
     let raised = match (raised, &found) {
         (Some(raised), Ok(found))
             if found.motion.early_stop.is_some()
@@ -191,7 +192,7 @@ fn with_expressions(
     added.map_err(error::model)
 }
 
-/// Returns the solver of a name.
+/// Returns the solver with the given name.
 pub fn parse_solver(name: &str) -> PyResult<Solver> {
     let known = Solver::ALL.into_iter().find(|known| known.name() == name);
     known.ok_or_else(|| {
@@ -203,7 +204,7 @@ pub fn parse_solver(name: &str) -> PyResult<Solver> {
     })
 }
 
-/// A motion with its observables, row by row, and warnings.
+/// Motion with its observables (row-major) and warnings.
 struct Found {
     motion: Motion,
     observables: Vec<f64>,
@@ -211,7 +212,7 @@ struct Found {
     recorded: Option<Recorded<'static>>,
 }
 
-/// Returns the progress of a motion for a connection.
+/// Returns a progress callback that sends the simulated time to the Python thread.
 fn report_progress(line: &Connection<'_, f64>) -> impl FnMut(f64) {
     let mut told = Instant::now();
     move |t: f64| {
@@ -296,7 +297,7 @@ pub fn describe_event(event: &LoggedEvent<'_>) -> EventTuple {
     (event.t, surface, kind, before, after, event.jump.to_vec())
 }
 
-/// Returns the reason for the selection of a solver.
+/// Describes the reason for the choice of a solver.
 fn describe_choice(choice: &SolverChoice) -> String {
     match choice {
         SolverChoice::PiecewiseLinear => "the model is piecewise linear".to_owned(),
@@ -308,7 +309,7 @@ fn describe_choice(choice: &SolverChoice) -> String {
     }
 }
 
-/// Replaces prescribed motion by a spline through its samples, which has rates.
+/// Replaces prescribed motion by a spline through its samples, which also gives its rates.
 fn with_splines(
     model: &Model,
     mut inputs: HeldInputs,

@@ -18,8 +18,8 @@ type SweepTuple = (Vec<NameAndUnit>, Vec<Vec<f64>>, Vec<String>);
 /// Name and unit of a column.
 type NameAndUnit = (String, String);
 
-/// Computes measures over a grid or over random samples, in the folder `out`; resumes an interrupted sweep.
-/// `progress` is called with the numbers of computed points and of all points to compute.
+/// Computes measures over a grid or over random samples, in the folder `out`. Resumes an interrupted sweep. `progress`
+/// is called with the number of computed points and the number of points to compute.
 #[pyfunction]
 #[pyo3(signature = (
     model, vary, samples, seed, measures, frequency, span, until, section, inputs, record, state, out, threads,

@@ -157,8 +157,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         (sided, self.projection)
     }
 
-    /// Returns time (s) and reason if the motion ended at a singular position of its constraints. `at` is the time and
-    /// the state at the end of the motion.
+    /// Returns time (s) and reason if the motion ended at a singular position of its constraints. The solver
+    /// stopped at the time `t` (s) and `state`.
     pub(crate) fn find_singular_position(
         &self,
         (t, state): (f64, &[f64]),

@@ -69,8 +69,8 @@ impl dyn MotionModel + '_ {
 }
 
 impl GeneralRun {
-    /// Returns time, cause and remedy of an error. `start` (s) and `state` are the start of the motion and its last
-    /// state.
+    /// Returns time, cause and remedy of an error. The motion began at the time `begin` (s) and
+    /// ended at `state`.
     pub fn early_stop(
         &self,
         model: &dyn MotionModel,

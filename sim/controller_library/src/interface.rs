@@ -1,7 +1,8 @@
-//! C interface of a controller library, as in `eomgen_controller.h`. The only module with unsafe code.
+//! C interface of a controller library, as in `eomgen_controller.h`. Only this module has unsafe code.
 //!
-//! Rust cannot check code of another language: a library is trusted like a program that you start. It must define the three
-//! functions of the header with these types, write only the memory that it is given for results, and not unwind.
+//! Rust cannot check code in another language, so a library is trusted like a program that you start. It must define
+//! the three functions of the header with the given types, write only to the memory given for its results, and not
+//! unwind.
 #![allow(unsafe_code)]
 
 use std::ffi::{CString, c_char};
@@ -50,23 +51,23 @@ pub struct RequestedSchedule {
 pub struct Functions {
     start: Start,
     sample: SampleFunction,
-    /// Keeps the functions loaded.
+    /// Open library; it keeps the functions loaded.
     _library: Library,
 }
 
 /// Name of a function that is missing, and the loader's message; the name is empty if the library cannot be opened.
 pub struct MissingFunction(pub &'static str, pub String);
 
-/// Opens a library and finds its functions. Returns them with the version of the interface.
+/// Opens a library and finds its functions. Returns the functions and the version of the interface.
 pub fn open(path: &Path) -> Result<(Functions, u32), MissingFunction> {
-    // SAFETY: opening runs the initialisers of the library, which the user trusts; see the module.
+    // SAFETY: opening a library runs its initialisers; the user trusts the library, see the module.
     let library = unsafe { Library::new(path) };
     let library = library.map_err(|error| MissingFunction("", error.to_string()))?;
     let version: Version = function(&library, "eomgen_controller_abi")?;
     // SAFETY: the function has this type according to the header.
     let version = unsafe { version() };
     if version != crate::VERSION {
-        // Functions of other versions may have other types.
+        // In other versions the functions may have other types.
         let functions = Functions {
             start: never_start,
             sample: never_sample,
@@ -105,7 +106,7 @@ fn function<F: Copy>(library: &Library, name: &'static str) -> Result<F, Missing
     Ok(*found)
 }
 
-/// Names as C strings with an array of pointers to them.
+/// Names as C strings, with an array of pointers to the strings.
 struct Names {
     _owned: Vec<CString>,
     pointers: Vec<*const c_char>,
@@ -113,7 +114,7 @@ struct Names {
 
 impl Names {
     fn new(names: &[String]) -> Self {
-        // Names of a specification are ASCII identifiers without a zero byte.
+        // Names in a specification are ASCII identifiers without a zero byte.
         let owned = names
             .iter()
             .map(|name| CString::new(name.as_str()).unwrap_or_default());
@@ -126,7 +127,8 @@ impl Names {
 }
 
 impl Functions {
-    /// Starts the controller for names of states, observables and inputs. Returns its status and requested times.
+    /// Starts the controller with the names of states, observables and inputs. Returns its status and the requested
+    /// times.
     pub fn start(&self, [states, observables, inputs]: [&[String]; 3]) -> (i32, RequestedSchedule) {
         let count = |names: &[String]| u32::try_from(names.len()).unwrap_or(u32::MAX);
         let [state_names, observable_names, input_names] =
@@ -157,7 +159,7 @@ impl Functions {
         (status, requested)
     }
 
-    /// Samples the controller and returns its status. `outputs` has room for the requested number.
+    /// Samples the controller and returns its status. `outputs` has room for the requested number of outputs.
     pub fn sample(
         &self,
         t: f64,

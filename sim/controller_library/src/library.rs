@@ -12,9 +12,9 @@ use crate::interface::{Functions, MissingFunction, RequestedSchedule, open};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}: {reason}", path.display())]
 pub struct LibraryError {
-    /// Library.
+    /// Path of the library.
     pub path: PathBuf,
-    /// Cause and cure.
+    /// Cause and remedy.
     pub reason: String,
 }
 
@@ -39,7 +39,7 @@ impl ControllerLibrary {
             path: path.to_owned(),
             reason,
         };
-        // The loader would search names without a folder elsewhere.
+        // For a name without a folder, the loader would search other folders.
         let file = path.canonicalize();
         let file =
             file.map_err(|error| refused(format!("the controller cannot be read: {error}")))?;

@@ -1,4 +1,4 @@
-//! Binding of a dataset file to a model: names are looked up, units and numbers are checked.
+//! Binding of a dataset file to a model: looks up names, and checks units and numbers.
 
 use crate::computed_observables::COMPUTED_OBSERVABLES;
 use crate::description::Description;
@@ -20,14 +20,14 @@ use crate::dataset::{
     Channel, Initial, InputPriors, PriorInSi, Quantity, TransducerPriors, Uncertain,
 };
 
-/// Range of a relative standard deviation: below it a parameter is exact, above it unknown.
+/// Admissible relative standard deviations. Below this range a parameter counts as exact, above it as unknown.
 const RELATIVE_SD_RANGE: (f64, f64) = (1e-9, 1e6);
 
 pub struct BoundDescription<'d> {
     pub time: Unit,
     pub inputs: Vec<Option<(&'d Column, Unit)>>,
     pub input_priors: Vec<InputPriors>,
-    /// Column of each coordinate of the model, if [motion] gives the motion.
+    /// Column of each coordinate of the model, if `[motion]` gives the motion.
     pub(crate) motion: Vec<GivenColumn<'d>>,
     pub channels: Vec<Channel>,
     pub channel_units: Vec<Unit>,
@@ -110,7 +110,7 @@ pub fn bind_inputs<'d>(
     model.inputs.iter().map(of).collect()
 }
 
-/// Returns the priors of the inputs. Their columns are checked elsewhere.
+/// Returns the priors of the inputs. Other functions check their columns.
 fn input_priors(
     description: &Description,
     model: &Model,
@@ -274,7 +274,7 @@ fn prior_in_si(prior: Prior, unit: &Unit) -> PriorInSi {
     }
 }
 
-/// Suggests the name of a rate that is written in another usual notation, such as `thetadot`.
+/// Suggests the name of a rate for a name in another common notation, such as `thetadot`.
 fn suggest_rate(asked: &str, model: &Model) -> Option<String> {
     let rate = read_rate(asked, |of| model.coordinates.iter().any(|c| c.name == of))?;
     let (of, order, kind) = match rate.is_second {

@@ -1,5 +1,5 @@
-//! Checks of the records. Records that make a result impossible are rejected; others that make it
-//! less reliable are noted. Units are checked in [`crate::dataset`].
+//! Checks of the records. Records that make a result impossible are rejected; records that make it less reliable cause
+//! a note. Units are checked in [`crate::dataset`].
 
 use crate::description::Description;
 
@@ -15,23 +15,24 @@ use eomgen_model_spec::model::Input;
 
 const MAX_MISSING_FRACTION: f64 = 0.5;
 
-/// Range in standard deviations beyond any sensor's resolution: the unit or noise is wrong.
+/// Largest range of a channel in standard deviations of its noise. No sensor has such a resolution, so beyond it the
+/// unit or the noise is wrong.
 const MAX_RANGE_OVER_NOISE: f64 = 1e10;
 
 /// Largest magnitude of an input, SI; its fourth power does not overflow.
 const LARGEST_INPUT: f64 = 1e75;
 
-/// Fraction of samples at an extreme, with equal neighbours, beyond which a channel is clipped.
+/// Fraction of samples at an extreme value, with equal neighbours, beyond which a channel counts as clipped.
 const MAX_CLIPPED_FRACTION: f64 = 0.02;
 
-/// RMS difference of two records, in standard deviations of the noise, below which they are the
-/// same record. Two measurements of the same motion differ by the square root of two.
+/// RMS difference of two records, in standard deviations of the noise, below which they count as the same record. Two
+/// measurements of the same motion differ by the square root of two.
 const MAX_RMS_OVER_NOISE: f64 = 0.3;
 
 /// Minimum range of a channel, in standard deviations, to compare records.
 const MIN_RANGE_OVER_NOISE: f64 = 20.0;
 
-/// Number of samples to compare first when one record is shifted along another.
+/// Number of samples compared first when one record is shifted along another.
 const PROBE_COUNT: usize = 16;
 
 /// Checks all records and returns notes, or the first problem.
@@ -131,7 +132,7 @@ pub(crate) fn missing_inputs_notes(record: &Record, inputs: &[Input]) -> Vec<Str
     notes.into_iter().flatten().collect()
 }
 
-/// Rejects inputs so large that their powers overflow.
+/// Rejects inputs that are so large that their powers overflow.
 fn input_sizes(record: &Record, inputs: &[Input]) -> Result<(), Refusal> {
     for (input, column) in inputs.iter().zip(&record.input_columns) {
         let samples = record.times.iter().zip(column);
@@ -240,7 +241,7 @@ fn check_records_differ(dataset: &Dataset, train: &Record, test: &Record) -> Res
             ),
         ));
     }
-    // Use the channel with the largest range in units of its noise.
+    // The channel with the largest range in units of its noise is compared.
     let deviations = |place: usize| span(&train.channels[place]) / dataset.channels[place].noise;
     let Some(channel) =
         (0..dataset.channels.len()).max_by(|a, b| deviations(*a).total_cmp(&deviations(*b)))
@@ -281,7 +282,7 @@ fn check_records_differ(dataset: &Dataset, train: &Record, test: &Record) -> Res
     Ok(())
 }
 
-/// Returns true if two columns are equal to less than the noise, after a shift by `lag` samples.
+/// Returns true if two columns differ by less than the noise after a shift by `lag` samples.
 fn is_shifted_copy(a: &[f64], b: &[f64], lag: isize, sign: f64, noise: f64) -> bool {
     let begin = (-lag).max(0) as usize;
     let end = a.len().min((b.len() as isize - lag).max(0) as usize);
@@ -302,7 +303,7 @@ fn is_shifted_copy(a: &[f64], b: &[f64], lag: isize, sign: f64, noise: f64) -> b
             return false;
         }
     }
-    // The overlap must be long enough and must vary.
+    // The overlap must be long enough, and the values in it must vary.
     let low = a[begin..end].iter().copied().fold(f64::INFINITY, f64::min);
     let high = a[begin..end]
         .iter()

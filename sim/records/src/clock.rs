@@ -1,5 +1,5 @@
-//! Times of a record, counted from its first sample: doubles of Unix times in s are multiples of 2.4e-7 s, so that their
-//! differences are not the steps of the record.
+//! Times of a record, counted from its first sample. Unix times in s as doubles are multiples of 2.4e-7 s, so their
+//! differences are not the time steps of the record.
 
 use eomgen_model_spec::model::{ExprKind, Model};
 use eomgen_model_spec::unit::Unit;
@@ -8,14 +8,14 @@ use crate::decimal::Decimal;
 use crate::header::Table;
 use crate::samples::typical_step;
 
-/// Times in s. Their origin is that of the file plus `origin`.
+/// Times in s. The origin of these times is `origin` in the file.
 pub(crate) struct Clock {
     pub times: Vec<f64>,
     pub origin: f64,
 }
 
 impl Clock {
-    /// Returns the times in the first column of a table, in s; NaN for a missing one. Those that count from their first
+    /// Returns the times in the first column of a table, in s; NaN for a missing time. Times counted from the first
     /// sample do not depend on the origin of the file.
     pub fn new(table: &Table, unit: &Unit, counts_from_first: bool) -> Self {
         let read = &table.columns[0];
@@ -33,7 +33,7 @@ impl Clock {
     }
 }
 
-/// Returns true if the equations or an observable contain the time, so that its origin matters.
+/// Returns true if the equations or an observable contain the time, so that its origin has an effect.
 pub(crate) fn contains_time(model: &Model) -> bool {
     model.motion_expressions().any(|expression| {
         let mut found = false;
@@ -42,7 +42,7 @@ pub(crate) fn contains_time(model: &Model) -> bool {
     })
 }
 
-/// Returns the differences from the first time, without the rounding of the times.
+/// Returns the differences from the first time, without the rounding errors of the times.
 fn count_from_first(read: &[f64], decimals: &[Option<Decimal>]) -> Vec<f64> {
     let first = decimals[0];
     let difference = |(time, decimal): (&f64, &Option<Decimal>)| match decimal.zip(first) {
@@ -57,8 +57,9 @@ fn count_from_first(read: &[f64], decimals: &[Option<Decimal>]) -> Vec<f64> {
     counted
 }
 
-/// Returns the multiples of one step from which times differ by no more than two roundings to doubles, if there is such a
-/// step: a time and both ends of the record err by half a rounding each, and their decimals by as much again.
+/// Returns the multiples of one time step that differ from the times by at most two roundings to doubles; `None`
+/// without such a step. A time and both ends of the record have rounding errors of half a unit each, and their decimals
+/// have as much again.
 fn even_times(read: &[f64], counted: &[f64]) -> Option<Vec<f64>> {
     let largest = read
         .iter()

@@ -1,4 +1,4 @@
-//! Columns of numbers from a text or Parquet file.
+//! Numeric columns of a text or Parquet file.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ const MAX_RECORD_BYTES: u64 = 256 << 20;
 /// Reads columns of a file. A missing number, `NaN` or an empty cell becomes NaN.
 ///
 /// # Errors
-/// A file that is unreadable or too large, a missing column, or a cell that is not a number or is infinite.
+/// A file that is unreadable or too large, a missing column, or a cell that is infinite or not a number.
 pub fn read_columns(path: &Path, format: &Format, wanted: &[&ColumnKey]) -> Result<Table, Refusal> {
     let bytes = read_bytes(path)?;
     if path.extension().is_some_and(|e| e == "parquet") {

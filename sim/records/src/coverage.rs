@@ -1,5 +1,5 @@
-//! Checks that there is something to compare: windows with samples, and channels that vary by more
-//! than their noise. Otherwise the verdict would be that nothing is missing.
+//! Checks that records can be compared: windows contain samples, and channels vary by more than their noise. Otherwise
+//! the verdict would always be that no effect is missing.
 
 use crate::description::Description;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
@@ -51,7 +51,7 @@ pub(crate) fn check_splittable(record: &Record, description: &Description) -> Re
 
 fn check_length(length: Number, record: &Record) -> Result<(), Diagnostic> {
     let step = typical_step(&record.times);
-    // The small margin prevents a decision by rounding.
+    // The small margin absorbs rounding errors.
     if length.value >= (MIN_SAMPLES_PER_WINDOW - 1e-6) * step {
         return Ok(());
     }
@@ -84,9 +84,9 @@ fn duration(record: &Record) -> f64 {
     record.times[record.times.len() - 1] - record.times[0]
 }
 
-/// Checks that a record of a set is as long as one window, up to the sample after its last.
+/// Checks that some record of a set is as long as one window, including the time up to the sample after its last one.
 fn check_window_fits(length: Number, set: &str, records: &[Record]) -> Result<(), Diagnostic> {
-    // The extra half sample prevents a decision by rounding.
+    // The extra half sample absorbs rounding errors.
     let holds = |record: &Record| duration(record) + 1.5 * typical_step(&record.times);
     if records.iter().any(|record| holds(record) >= length.value) {
         return Ok(());

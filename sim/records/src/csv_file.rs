@@ -1,4 +1,4 @@
-//! Columns of numbers from a text file, with line numbers for error messages.
+//! Numeric columns of a text file, with line numbers for error messages.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -14,10 +14,10 @@ use crate::number::{parse_decimal, parse_number};
 use crate::proposal::layout::detect_layout;
 use crate::refusal::Refusal;
 
-/// Separator of cells after runs of spaces are replaced: the ASCII unit separator.
+/// Separator of cells that replaces runs of spaces: the ASCII unit separator.
 const UNIT_SEPARATOR: u8 = 0x1f;
 
-/// Number of bytes at the beginning that show the encoding.
+/// Number of bytes at the start of the file from which the encoding is detected.
 const EXAMINED_BYTES: usize = 16;
 
 /// Byte order marks of UTF-16.
@@ -65,13 +65,13 @@ pub fn read_columns(
 pub(crate) struct TextFile<'t> {
     path: &'t Path,
     reader: Reader<&'t [u8]>,
-    /// Names of the columns; their numbers if the file has no names.
+    /// Names of the columns, or their numbers if the file has no names.
     pub header: Vec<String>,
     pub first_line: u64,
     pub units: Vec<String>,
     skipped_lines: u64,
     record: ByteRecord,
-    /// True before the first line is returned, if it contains numbers.
+    /// True if the first line contains numbers and has not been returned yet.
     is_pending: bool,
 }
 
@@ -161,7 +161,7 @@ impl<'t> TextFile<'t> {
         }
         let line = self.line();
         let (cells, expected) = (self.record.len(), self.header.len());
-        // Some programs end lines of numbers, but not the line of names, with a separator.
+        // Some programs write a separator at the end of lines of numbers, but not of the line of names.
         let is_open = cells == expected + 1 && self.record[expected].trim_ascii().is_empty();
         if cells != expected && !is_open {
             return Err(Refusal::line_error(
@@ -189,7 +189,7 @@ pub(crate) fn skip_lines<'b>(
         ));
     }
     let mut text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    // Without line feeds, carriage returns end the lines.
+    // If the text has no line feeds, carriage returns end the lines.
     let is_end = match text.contains(&b'\n') {
         true => |byte: &u8| *byte == b'\n',
         false => |byte: &u8| *byte == b'\r',
@@ -234,7 +234,7 @@ fn has_wide_characters(bytes: &[u8]) -> bool {
     head.len() > 3 && (has_pairs(0) || has_pairs(1))
 }
 
-/// Returns the error of names that are below other lines, with the number of lines to skip.
+/// Returns the error for names that follow other lines, with the number of lines to skip.
 fn names_below(
     path: &Path,
     bytes: &[u8],

@@ -22,7 +22,7 @@ pub enum Quantity {
     ObservedRate(ObservedRate),
     /// Index of a first-order state.
     State(usize),
-    /// Index of an input: a force that a given motion requires.
+    /// Index of an input: a force that is computed from the given motion.
     Input(usize),
 }
 
@@ -44,7 +44,8 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// Returns the noise, in SI, of a quantity that has no peak of one sample: an impact causes one in an acceleration or a force.
+    /// Returns the noise, in SI, of a quantity that cannot have a peak of one sample; `None` for accelerations and
+    /// forces, in which an impact causes such peaks.
     pub(crate) fn smooth_noise(&self) -> Option<f64> {
         let is_smooth = match self.quantity {
             Quantity::Coordinate(_) | Quantity::Rate(_) | Quantity::State(_) => true,
@@ -66,7 +67,7 @@ pub struct TransducerPriors {
     pub delay: Option<PriorInSi>,
 }
 
-/// Priors of an input: gain * (recorded(t - delay) + bias) acts at time t. `None` means exact.
+/// Priors of an input: gain * (recorded(t - delay) + bias) acts at time t. `None` means exactly known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InputPriors {
     /// Name of the input.
@@ -88,7 +89,7 @@ pub struct PriorInSi {
     pub sd: f64,
 }
 
-/// Parameter of the model that may be refitted.
+/// Parameter of the model that the fit may change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertain {
     /// Name of the parameter.
@@ -138,14 +139,14 @@ pub struct Dataset {
     pub window: Option<f64>,
     /// Source of a window's initial state.
     pub start: StartSource,
-    /// Parameters that may be refitted.
+    /// Parameters that the fit may change.
     pub uncertain: Vec<Uncertain>,
     /// Bounds of the next experiment.
     pub experiment: ExperimentBounds,
     /// Units of the next experiment's columns.
     pub experiment_units: ExperimentUnits,
-    /// All coordinates of the model if the records give the motion. Channels then measure the
-    /// inputs that the motion requires. Empty if the model computes the motion.
+    /// All coordinates of the model if the records give the motion. The channels then measure the inputs that cause
+    /// this motion. Empty if the model computes the motion.
     pub motion: Vec<String>,
     /// Notes for the user.
     pub notes: Vec<String>,

@@ -1,4 +1,4 @@
-//! Reading, checking and binding of a dataset file with its records.
+//! Reading and checking of a dataset file with its records, and binding to a model.
 
 use std::path::Path;
 
@@ -24,7 +24,7 @@ use crate::samples::MIN_SAMPLES;
 /// Reads a dataset for a model.
 ///
 /// # Errors
-/// Problems of the dataset file, or the first problem of a record, with its place.
+/// Errors of the dataset file, or the first error of a record, with its location.
 pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
     let description = Description::read(path, model)?;
     if let Some(impact) = model.impacts.first() {

@@ -1,6 +1,6 @@
-//! Decimal numbers without rounding, for differences of numbers that are much larger than the differences.
+//! Decimal numbers without rounding, for small differences of large numbers.
 
-/// Number of significant digits up to which every decimal number survives its conversion to a double and back.
+/// Number of significant digits that any decimal number keeps when it is converted to a double and back.
 const DIGITS_OF_DOUBLE: u32 = 15;
 
 /// Powers of ten up to this exponent are exact doubles.
@@ -30,7 +30,7 @@ impl Decimal {
         })
     }
 
-    /// Returns the shortest decimal number that rounds to a double; `None` if it is not finite.
+    /// Returns the shortest decimal number that rounds to a double; `None` if the double is not finite.
     pub fn from_double(value: f64) -> Option<Self> {
         Self::parse(&format!("{value:e}"))
     }
@@ -69,7 +69,7 @@ impl Decimal {
         text.parse().unwrap_or(f64::NAN)
     }
 
-    /// Returns true if the number has so many digits that it may be a rounded double.
+    /// Returns true if the number has so many digits that it may come from a rounded double.
     pub fn may_be_rounded(self) -> bool {
         let mut digits = self.digits.unsigned_abs();
         while digits > 0 && digits.is_multiple_of(10) {

@@ -1,27 +1,27 @@
-//! Decimation of samples. Channels pass a zero-phase low-pass filter first, which prevents
-//! aliasing. Inputs become their mean over the time for which they are held.
+//! Decimation of samples. Channels first pass a zero-phase low-pass filter, which prevents aliasing. Inputs are
+//! replaced by their mean over the time for which they are held.
 
 use std::f64::consts::PI;
 
-/// Frequency with half of the amplitude, relative to the new sampling rate.
+/// Frequency at which the low-pass filter halves the amplitude, relative to the new sampling rate.
 const RELATIVE_CUT_OFF: f64 = 0.4;
 
-/// Half length of the low-pass filter, in kept samples. With Blackman's window it keeps amplitudes up to three fifths of the
-/// new Nyquist frequency to 2e-4; above that frequency less than 2e-4 remains. A ripple of 1e-3, as of a Hamming window,
-/// exceeds the noise of many encoders.
+/// Half length of the low-pass filter, in kept samples. With Blackman's window it keeps amplitudes up to three fifths
+/// of the new Nyquist frequency within 2e-4; above that frequency less than 2e-4 remains. The ripple of 1e-3 of a
+/// Hamming window would exceed the noise of many encoders.
 const HALF_LENGTH_SAMPLES: usize = 14;
 
-/// Sum of the magnitudes of filter weights with missing samples above which a sample is missing. Weights without their
-/// counterparts on the other side shift a moving column.
+/// Sum of the magnitudes of filter weights at missing samples above which the result counts as missing. Weights without
+/// their counterparts on the other side shift a varying column.
 const MAX_MISSING_WEIGHT: f64 = 1e-3;
 
-/// Number of known samples on each side of a gap that determine the polynomial over it.
+/// Number of known samples on each side of a gap through which the interpolating polynomial passes.
 const GAP_NEIGHBOURS: usize = 2;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Decimation {
     factor: usize,
-    /// Weights of the low-pass filter from its middle on; `None` without a filter.
+    /// Weights of one half of the symmetric low-pass filter, from its middle on; `None` without a filter.
     low_pass: Option<Vec<f64>>,
 }
 
@@ -41,7 +41,7 @@ impl Decimation {
         self.low_pass.is_some()
     }
 
-    /// Returns the factor of the standard deviation of white noise.
+    /// Returns the factor by which the filter reduces the standard deviation of white noise.
     pub fn noise_factor(&self) -> f64 {
         let Some(weights) = &self.low_pass else {
             return 1.0;
@@ -66,8 +66,8 @@ impl Decimation {
         }
     }
 
-    /// Returns the moment of held samples about the middle of the time until the next kept sample, for a unit time between
-    /// kept samples.
+    /// Returns the first moment of held samples about the middle of their interval, the time between two kept samples.
+    /// The length of the interval is the unit of time.
     fn moment(&self, samples: &[f64], mean: f64) -> f64 {
         if samples.len() < self.factor {
             return 0.0;
@@ -113,7 +113,7 @@ impl Decimation {
     }
 }
 
-/// Returns a sinc in Blackman's window with the sum 1, from its middle on.
+/// Returns one half of a sinc function in Blackman's window with the sum 1, from its middle on.
 fn low_pass_weights(every: usize) -> Vec<f64> {
     let reach = (HALF_LENGTH_SAMPLES * every) as f64;
     let weight = |k: usize| {
@@ -128,7 +128,7 @@ fn low_pass_weights(every: usize) -> Vec<f64> {
     weights.into_iter().map(|weight| weight / sum).collect()
 }
 
-/// Returns the filtered column at a sample; beyond its ends the column is reflected at a point.
+/// Returns the filtered column at a sample; the column is continued beyond its ends by point reflection.
 fn filter_sample(column: &[f64], sample: usize, weights: &[f64]) -> f64 {
     let last = column.len() - 1;
     let at = |place: isize| match usize::try_from(place) {
@@ -154,7 +154,7 @@ fn filter_sample(column: &[f64], sample: usize, weights: &[f64]) -> f64 {
     sum / known
 }
 
-/// Fills gaps of at most `longest` samples by the polynomial through the nearest known samples.
+/// Fills gaps of at most `longest` samples with the polynomial through the nearest known samples.
 fn fill_short_gaps(column: &[f64], longest: usize) -> Vec<f64> {
     let mut filled = column.to_vec();
     let is_known = |place: &usize| column[*place].is_finite();
@@ -198,7 +198,7 @@ mod tests {
         (0..4000).map(|k| (phase(k) + 0.3).sin()).collect()
     }
 
-    /// Returns the largest difference of two columns, without their ends.
+    /// Returns the largest difference of two columns, excluding their ends.
     fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
         let middle = a.len() / 10..a.len() - a.len() / 10;
         let pairs = a[middle.clone()].iter().zip(&b[middle]);
@@ -312,7 +312,7 @@ mod tests {
         );
     }
 
-    /// Integrates a mass twice under a held force; returns the positions after each force.
+    /// Integrates the motion of a unit mass under a held force; returns the position after each step.
     fn move_mass(forces: &[f64], step: f64) -> Vec<f64> {
         let (mut x, mut v) = (0.0, 0.0);
         let moved = forces.iter().map(|force| {
@@ -325,13 +325,13 @@ mod tests {
 
     #[test]
     fn decimated_input_moves_a_mass_like_the_whole() {
-        // 40 kept samples per period.
+        // The wave has 40 kept samples per period.
         let force = wave(1.0 / 40.0);
         let kept = Decimation::new(10, true);
         let right = move_mass(&force, 0.1);
         let right: Vec<f64> = right.iter().skip(9).step_by(10).copied().collect();
         let missed = |held: &[f64]| {
-            // The error without its line, which is that of the initial state.
+            // A linear error comes from the initial state; the second difference removes it.
             let found = move_mass(held, 1.0);
             let errors: Vec<f64> = found.iter().zip(&right).map(|(a, b)| a - b).collect();
             let bends = errors

@@ -9,11 +9,11 @@ use eomgen_model_spec::model::{Controller, Model};
 use crate::description::Description;
 use crate::refusal::Refusal;
 
-/// Returns a model without its controllers, for a comparison in which their recorded outputs drive the machine, and a
-/// note about that. A model without controllers stays as it is.
+/// Returns a model without its controllers, and a note about this. In a comparison their recorded outputs then drive
+/// the machine. A model without controllers is returned unchanged.
 ///
 /// # Errors
-/// An invalid dataset file, and an output without a column.
+/// An invalid dataset file, or an output without a column.
 pub fn open_loop(model: Model, dataset: &Path) -> Result<(Model, Option<String>), Refusal> {
     if model.controllers.is_empty() {
         return Ok((model, None));
@@ -48,7 +48,7 @@ pub fn open_loop(model: Model, dataset: &Path) -> Result<(Model, Option<String>)
     Ok((alone, Some(note)))
 }
 
-/// Returns true if the records give an input. If they give the motion, channels measure inputs.
+/// Returns true if the records give an input. With given motion, channels measure the inputs.
 fn is_recorded(description: &Description, name: &str) -> bool {
     let mut inputs = description.inputs.iter();
     let mut channels = description.channels.iter();

@@ -1,28 +1,28 @@
-//! Gaps in a record: rows or cells that are missing. The inputs in a gap are unknown, so the parts become separate
+//! Gaps in a record: missing rows or cells. The inputs in a gap are unknown, so the parts between gaps become separate
 //! records.
 
 use std::ops::Range;
 
 use crate::samples::{MIN_GAP_STEPS, shown_time, typical_step};
 
-/// Number of gaps between rows above which a record has uneven steps and is not split.
+/// Number of gaps between rows above which a record counts as unevenly sampled and is not split.
 const MAX_GAPS: usize = 20;
 
-/// Times without a known sample, in s.
+/// Time interval without a known sample, in s.
 #[derive(Clone, Debug)]
 pub(crate) struct Gap {
-    /// Name of the column of the empty cells; `None` for missing rows.
+    /// Name of the column with the empty cells; `None` for missing rows.
     pub column: Option<String>,
     /// Number of missing samples.
     pub count: usize,
     /// Time of the last sample before the gap; negative infinity at the beginning of a record.
     pub before: f64,
-    /// Time of the first sample after it; infinity at the end of a record.
+    /// Time of the first sample after the gap; infinity at the end of a record.
     pub behind: f64,
 }
 
 impl Gap {
-    /// Describes the missing samples and their times, which are later by `origin` in the file.
+    /// Describes the missing samples and their times in the file, which are later by `origin`.
     pub fn describe(&self, origin: f64) -> String {
         let column = match &self.column {
             Some(name) => format!(" of `{name}`"),
@@ -43,7 +43,7 @@ impl Gap {
     }
 }
 
-/// Returns the gaps between rows; none if there are so many that the steps are uneven.
+/// Returns the gaps between rows; empty if their number shows uneven sampling.
 pub(crate) fn find_missing_rows(times: &[f64]) -> Vec<Gap> {
     let step = typical_step(times);
     let pairs = times.windows(2);
@@ -92,7 +92,7 @@ pub(crate) fn find_long_empty_cells(name: &str, times: &[f64], column: &[f64]) -
     find_empty_cells(name, times, column, MIN_GAP_STEPS as usize)
 }
 
-/// Returns the samples from one gap to the next of a column, from the first known one to the last.
+/// Returns the ranges of samples between the gaps of a column, from its first to its last known sample.
 pub(crate) fn find_contiguous_parts(times: &[f64], column: &[f64]) -> Vec<Range<usize>> {
     let mut gaps = find_missing_rows(times);
     gaps.extend(find_long_empty_cells("", times, column));
@@ -106,7 +106,7 @@ pub(crate) fn find_contiguous_parts(times: &[f64], column: &[f64]) -> Vec<Range<
     trimmed.collect()
 }
 
-/// Returns the samples between gaps, which may overlap.
+/// Returns the ranges of samples between gaps; the gaps may overlap.
 pub(crate) fn split_samples(times: &[f64], mut gaps: Vec<Gap>) -> Vec<Range<usize>> {
     gaps.sort_by(|a, b| a.before.total_cmp(&b.before));
     let mut parts = Vec::with_capacity(gaps.len() + 1);
@@ -124,7 +124,8 @@ pub(crate) fn split_samples(times: &[f64], mut gaps: Vec<Gap>) -> Vec<Range<usiz
     parts
 }
 
-/// Returns the number of missing samples and the time of the first one in the file; `None` without any.
+/// Describes the missing samples of a column by their number and the time of the first one in the file; `None` if there
+/// are none.
 pub(crate) fn describe_missing((times, origin): (&[f64], f64), column: &[f64]) -> Option<String> {
     let count = column.iter().filter(|value| !value.is_finite()).count();
     let first = column.iter().position(|value| !value.is_finite())?;

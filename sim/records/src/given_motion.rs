@@ -1,4 +1,4 @@
-//! Requirements on dataset files that give the motion and measure forces and torques.
+//! Requirements on dataset files with given motion and measured forces and torques.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
 use eomgen_model_spec::model::Model;
@@ -96,8 +96,8 @@ pub(crate) fn given_columns<'d>(
     columns
 }
 
-/// Returns the column of a coordinate with the unit `own`; its unit decides between position and
-/// speed. `initial` is the default position at the first sample.
+/// Returns the column of a coordinate whose unit is `own`. The unit of the column decides between position and speed.
+/// `initial` is the default position at the first sample.
 fn given_column<'d>(
     given: &'d MotionColumn,
     own: &Unit,
@@ -165,7 +165,7 @@ pub(crate) fn speed_notes(columns: &[GivenColumn<'_>], description: &Description
     unstated.filter_map(note).collect()
 }
 
-/// Checks that a channel is admissible: with a given motion it measures an input or a quantity.
+/// Checks that a channel is admissible. With given motion, a channel measures an input or a quantity of the motion.
 pub(crate) fn check_channel(
     quantity: Quantity,
     gives_motion: bool,
@@ -196,7 +196,7 @@ pub(crate) fn check_channel(
     Err(wrong)
 }
 
-/// Checks that one input per coordinate is measured, and that none of these is also given.
+/// Checks that one input per coordinate is measured, and that no measured input is also given.
 pub(crate) fn required_inputs(
     description: &Description,
     channels: &[Channel],

@@ -8,15 +8,15 @@ use crate::decimal::Decimal;
 use crate::description::columns::ColumnKey;
 use crate::refusal::Refusal;
 
-/// Maximum number of samples of a record, a hundred times more than a search handles in minutes.
+/// Maximum number of samples of a record. It is a hundred times the number that a search processes in minutes.
 pub const MAX_SAMPLES: usize = 1_000_000;
 
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     pub columns: Vec<Vec<f64>>,
-    /// Line number of each row, from 1; in files without lines row 1 has number 2.
+    /// Line number of each row, from 1; in files without lines the first row has number 2.
     pub lines: Vec<u64>,
-    /// Numbers of the first column without rounding; `None` for a missing one.
+    /// Numbers of the first column without rounding; `None` for a missing number.
     pub decimals: Vec<Option<Decimal>>,
 }
 
@@ -73,7 +73,7 @@ pub fn find_columns(
     wanted.iter().map(place).collect()
 }
 
-/// Returns the likely separator of names that were read as one column, with a cure.
+/// Returns the likely separator of names that were read as one column, with a remedy.
 fn guess_separator(there: &[String]) -> Option<String> {
     let [one] = there else { return None };
     let by = [

@@ -1,12 +1,12 @@
-//! Readings of the channels at a known initial state. They select the first branch of columns that wrap around.
+//! Readings of the channels at a known initial state. They determine the period in which a wrapped column starts.
 
 use eomgen_model_spec::evaluate::evaluate;
 use eomgen_model_spec::model::{Expr, ExprKind, Model};
 
 use crate::dataset::{Channel, Dataset, Initial, Quantity};
 
-/// Returns the reading of each channel at the start of a file, in SI; `None` if the initial state is not known or the quantity
-/// is not a function of parameters and the state that this module evaluates.
+/// Returns the reading of each channel at the start of a file, in SI. `None` if the initial state is unknown, or if the
+/// quantity depends on more than parameters and state.
 pub(crate) fn initial_readings(dataset: &Dataset, model: &Model) -> Vec<Option<f64>> {
     let start = KnownStart::new(&dataset.initial, model);
     let reading = |channel: &Channel| {
@@ -26,7 +26,7 @@ pub(crate) fn initial_readings(dataset: &Dataset, model: &Model) -> Vec<Option<f
 struct KnownStart<'m> {
     model: &'m Model,
     parameters: Vec<f64>,
-    /// Coordinates and modes, their rates, and the states.
+    /// Coordinates and modes, their rates, and the first-order states.
     state: Vec<f64>,
     /// Number of coordinates and modes.
     degrees: usize,

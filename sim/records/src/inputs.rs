@@ -1,4 +1,4 @@
-//! Inputs of a record, for a simulation with these inputs.
+//! Inputs of a record, for a simulation.
 
 use std::path::{Path, PathBuf};
 
@@ -29,10 +29,10 @@ pub struct RecordInputs {
     pub files: Vec<PathBuf>,
 }
 
-/// Reads the inputs, without channels, of a record such as `train[0]`. `driven` are names of inputs that need no column.
+/// Reads the inputs of a record such as `train[0]`, without channels. `driven` are names of inputs that need no column.
 ///
 /// # Errors
-/// Problems of the dataset file or of the record, with their places.
+/// Errors of the dataset file or of the record, with their locations.
 pub fn read_inputs(
     dataset: &Path,
     record: &str,
@@ -101,7 +101,7 @@ pub fn input_notes(description: &Description, (model, driven): (&Model, &[&str])
             ));
         }
     }
-    // A reference of controllers that are left out acts on nothing.
+    // The reference input of a controller that is left out has no effect.
     let unused = list_unused_inputs(model);
     for (place, (input, value)) in model.inputs.iter().zip(undriven).enumerate() {
         let name = &input.name;

@@ -23,8 +23,8 @@ pub(crate) enum GivenKind {
     },
 }
 
-/// Returns samples, rates and second rates by a cubic spline for each of the `parts` between gaps, NaN
-/// elsewhere; `None` without known samples.
+/// Returns samples, rates and second rates from one cubic spline for each of the `parts` between gaps; NaN in the gaps.
+/// `None` without known samples.
 pub(crate) fn differentiate_position(
     times: &[f64],
     column: &[f64],
@@ -45,9 +45,9 @@ pub(crate) fn differentiate_position(
     (!parts.is_empty()).then_some(found)
 }
 
-/// Returns positions, rates and second rates from samples of the speed; `None` without a known
-/// sample. The speed is the cubic spline through the known samples of `part`, before which it is constant. Its
-/// integral from `initial` at the first sample is the position, its derivative the second rate.
+/// Returns positions, rates and second rates from samples of the speed; `None` without a known sample. The speed is the
+/// cubic spline through the known samples of `part`, and constant before them. Its integral from `initial` at the first
+/// sample is the position; its derivative is the second rate.
 pub(crate) fn integrate_speed(
     times: &[f64],
     speeds: &[f64],
@@ -62,7 +62,7 @@ pub(crate) fn integrate_speed(
     positions[first] = position;
     for k in part.skip(1) {
         let h = times[k] - times[k - 1];
-        // Exact integral of a cubic.
+        // Exact integral of the cubic polynomial.
         position +=
             0.5 * h * (rates[k - 1] + rates[k]) - h.powi(3) / 24.0 * (bends[k - 1] + bends[k]);
         positions[k] = position;

@@ -2,34 +2,33 @@
 
 use crate::unwrapping::median;
 
-/// Orders of the differences. At high orders slow motion vanishes and noise remains.
+/// Orders of the differences. In differences of high order the slow motion vanishes and the noise remains.
 const DIFFERENCE_ORDERS: std::ops::RangeInclusive<usize> = 2..=8;
 
-/// Median absolute value of a normal distribution, in standard deviations.
+/// Median absolute value of a normal distribution with the standard deviation 1.
 const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
 
-/// Differences beyond this number of standard deviations are outliers.
+/// Differences beyond this multiple of the standard deviation are outliers.
 const MAX_DIFFERENCE_OVER_NOISE: f64 = 4.0;
 
-/// Excess over the estimate of a higher order, in standard deviations of that estimate, from which on
-/// motion counts as its cause. Among 1600 drawn motions with 200 to 8000 samples, 2 leaves a mean error
-/// of +0.4 to +2.3 %, 3 one of +0.6 to +3.1 %. The smallest estimate of all orders is 15 % low in one of
-/// twenty motions with 500 samples.
+/// An estimate that exceeds that of a higher order by more than this multiple of its standard deviation is attributed
+/// to motion. For 1600 random motions with 200 to 8000 samples, the factor 2 gives a mean error of +0.4 to +2.3 %, and
+/// 3 gives +0.6 to +3.1 %. The smallest estimate of all orders is 15 % low for one of twenty motions with 500 samples.
 const MAX_EXCESS_OVER_ERROR: f64 = 2.0;
 
-/// Estimate from differences of one order.
+/// Noise estimate from differences of one order.
 struct OrderEstimate {
     /// Standard deviation of the noise.
     noise: f64,
-    /// Standard deviation of the estimate, relative to it.
+    /// Standard deviation of the estimate, relative to the estimate.
     relative_error: f64,
 }
 
-/// Returns the standard deviation of the white noise of an evenly sampled column, at least that of
-/// its resolution; `None` for a constant column. Differences of order n of white noise have the
-/// variance binomial(2n, n). The estimate of the lowest order applies that no higher order contradicts
-/// (O. V. Lepskii, *Theory of Probability and its Applications* 35, 1990): motion increases the
-/// estimates of low orders, and those of high orders scatter more.
+/// Returns the standard deviation of the white noise of an evenly sampled column, at least that of its resolution;
+/// `None` for a constant column. Differences of order n of white noise have the variance binomial(2n, n). The result is
+/// the estimate of the lowest order that no higher order contradicts (O. V. Lepskii, *Theory of Probability and its
+/// Applications* 35, 1990). Motion increases the estimates of low orders, and estimates of high orders have a larger
+/// variance.
 pub fn estimate_noise(column: &[f64]) -> Option<f64> {
     let mut differences: Vec<f64> = column.to_vec();
     let mut estimates: Vec<OrderEstimate> = Vec::new();
@@ -54,9 +53,9 @@ pub fn estimate_noise(column: &[f64]) -> Option<f64> {
     (found > 0.0 && found.is_finite()).then_some(found)
 }
 
-/// Estimates the noise by the root mean square of differences without outliers. The correlation of two
-/// differences k samples apart is binomial(2n, n + k)/binomial(2n, n); the sum of its squares is
-/// binomial(4n, 2n)/binomial(2n, n)^2.
+/// Estimates the noise by the root mean square of the differences without outliers. The correlation of two differences
+/// k samples apart is binomial(2n, n + k)/binomial(2n, n). The sum of its squares is binomial(4n, 2n)/binomial(2n,
+/// n)^2.
 fn estimate_of_order(differences: &[f64], order: usize) -> Option<OrderEstimate> {
     let variance = central_binomial(order);
     let limit =
@@ -82,8 +81,8 @@ fn central_binomial(n: usize) -> f64 {
         .product()
 }
 
-/// Returns the standard deviation of white noise, robust against outliers, from differences that have this variance at a
-/// standard deviation of 1; `None` without known differences.
+/// Returns the standard deviation of white noise from differences, robust against outliers. `variance` is the variance
+/// of the differences for noise with a standard deviation of 1. `None` without known differences.
 pub(crate) fn noise_of_differences(differences: &[f64], variance: f64) -> Option<f64> {
     let known = differences
         .iter()
@@ -97,7 +96,7 @@ fn resolution(column: &[f64]) -> Option<f64> {
     let mut values: Vec<f64> = column.iter().copied().filter(|v| v.is_finite()).collect();
     values.sort_by(f64::total_cmp);
     let largest = values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
-    // Steps in the last digits of a double are rounding.
+    // Differences in the last digits of a double are rounding errors.
     let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
     let steps = steps.filter(|step| *step > 1e-12 * largest);
     steps.min_by(f64::total_cmp)

@@ -2,7 +2,7 @@
 
 use crate::decimal::Decimal;
 
-/// Returns the number in a cell with this decimal sign; `None` for other text. With a comma, a point is no number.
+/// Parses a number with the given decimal sign; `None` for other text. If the sign is a comma, a point is not allowed.
 pub(crate) fn parse_number(cell: &str, decimal: u8) -> Option<f64> {
     if decimal == b'.' {
         return cell.parse().ok();
@@ -13,7 +13,7 @@ pub(crate) fn parse_number(cell: &str, decimal: u8) -> Option<f64> {
     cell.replace(',', ".").parse().ok()
 }
 
-/// Returns the number in a cell without rounding; `None` for other text or too many digits.
+/// Parses a number without rounding; `None` for other text or too many digits.
 pub(crate) fn parse_decimal(cell: &[u8], decimal: u8) -> Option<Decimal> {
     let cell = std::str::from_utf8(cell.trim_ascii()).ok()?;
     match decimal {

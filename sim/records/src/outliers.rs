@@ -1,7 +1,7 @@
 //! Single wrong samples of a smooth quantity, such as a dropout of a sensor or of its transmission.
 //!
-//! A wrong sample changes the fourth differences by its error times 1, -4, 6, -4, 1; those of a smooth motion with a step
-//! or a kink have other patterns (F. B. Hildebrand, *Introduction to Numerical Analysis*, 4.9).
+//! A wrong sample changes the fourth differences by its error times 1, -4, 6, -4, 1. The fourth differences of a smooth
+//! motion with a step or a kink have other patterns (F. B. Hildebrand, *Introduction to Numerical Analysis*, 4.9).
 
 use crate::noise::noise_of_differences;
 use crate::samples::{MAX_JITTER_FRACTION, typical_step};
@@ -15,18 +15,19 @@ const PATTERN_SQUARE: f64 = 70.0;
 /// Smallest error of a wrong sample, relative to the noise. White noise reaches 7 in 1e12 samples.
 const MIN_ERROR_OVER_NOISE: f64 = 30.0;
 
-/// Largest part of the fourth differences that the pattern may leave, relative to its error. A step leaves 2.
+/// Largest remainder of the fourth differences after subtraction of the pattern, relative to the error. For a step the
+/// remainder is 2.
 const MAX_REST_FRACTION: f64 = 0.2;
 
 /// Wrong sample of a column.
 pub(crate) struct Outlier {
     pub sample: usize,
-    /// Difference from the value that its neighbours give.
+    /// Difference from the value interpolated from neighbouring samples.
     pub error: f64,
 }
 
-/// Returns the wrong samples of a column with a standard deviation `noise`, in order, except beside uneven steps, missing
-/// samples and other wrong ones.
+/// Returns the wrong samples of a column in order. `noise` is its standard deviation. Samples next to uneven steps,
+/// missing samples or other wrong samples are not examined.
 pub(crate) fn find_outliers(times: &[f64], column: &[f64], noise: f64) -> Vec<Outlier> {
     let step = typical_step(times);
     let is_even = |part: &[f64]| {

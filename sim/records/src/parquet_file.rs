@@ -1,4 +1,4 @@
-//! Columns of numbers from a Parquet file: doubles, floats and integers, not nested.
+//! Numeric columns of a Parquet file: doubles, floats and integers that are not nested.
 
 use std::path::Path;
 
@@ -29,7 +29,7 @@ pub fn read_columns(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Resul
     })
 }
 
-/// Returns names and numbers (from 1) of a file's numeric columns, in their order.
+/// Returns the names and numbers (from 1) of a file's numeric columns, in the order of the file.
 pub(crate) fn column_names(path: &Path, bytes: Vec<u8>) -> Result<Vec<(usize, String)>, Refusal> {
     let reader = SerializedFileReader::new(Bytes::from(bytes)).map_err(|error| {
         Refusal::file_error(path, format!("cannot be read as Parquet: {error}"))
@@ -115,7 +115,7 @@ fn decode_columns(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<
     })
 }
 
-/// Returns true if all offsets are inside the file. The reader does not check this.
+/// Returns true if all offsets are inside the file. The parquet crate does not check this.
 fn has_valid_offsets(metadata: &ParquetMetaData, length: usize) -> bool {
     let inside = |offset: i64, size: i64| {
         let end = offset.checked_add(size);

@@ -36,19 +36,19 @@ pub struct Record {
     pub name: String,
     /// Path of its file.
     pub path: PathBuf,
-    /// Times of the samples, in s, counted from the first sample of the file. If the model depends on the time, they are
-    /// those of the file.
+    /// Times of the samples, in s, counted from the first sample of the file. If the model depends on time, these are
+    /// the times of the file.
     pub times: Vec<f64>,
-    /// Difference of these times and those of the file, in s.
+    /// Time in the file at which `times` is 0, in s.
     pub origin: f64,
-    /// Inputs of the model, held between samples. If the motion is given, each row also contains
-    /// all coordinates, then all rates, then all second rates.
+    /// Inputs of the model, held between samples. With given motion, each row also contains all coordinates, then all
+    /// rates, then all second rates.
     pub inputs: HeldInputs,
     /// Columns of the inputs; NaN for a missing sample.
     pub input_columns: Vec<Vec<f64>>,
     /// Columns of the channels; NaN for a missing sample.
     pub channels: Vec<Vec<f64>>,
-    /// True if it starts after a gap, so that the initial state is unknown.
+    /// True if the record starts after a gap, so that its initial state is unknown.
     pub is_continued: bool,
 }
 
@@ -58,7 +58,7 @@ impl Record {
         self.column(inputs + coordinate)
     }
 
-    /// Returns the rate of a given coordinate; `coordinates` is their number.
+    /// Returns the rate of a given coordinate; `coordinates` is the number of coordinates.
     pub fn given_motion_rate(
         &self,
         coordinate: usize,
@@ -86,14 +86,14 @@ pub(crate) struct RecordReader<'d> {
     /// Known reading of each channel at the start of a file, in SI.
     pub initial_readings: &'d [Option<f64>],
     pub model: &'d Model,
-    /// True if times count from the first sample of a file.
+    /// True if times are counted from the first sample of a file.
     pub counts_from_first: bool,
     pub decimation: &'d Decimation,
     pub min_samples: usize,
 }
 
 impl RecordReader<'_> {
-    /// Reads a record, and the gaps of the inputs and of the given motion that are cells without a number.
+    /// Reads a record. Also returns gaps of the inputs and of the given motion in which cells have no number.
     pub fn read_record(
         &self,
         name: &str,
@@ -115,7 +115,7 @@ impl RecordReader<'_> {
         let motion = table.columns.split_off(first_motion);
         let mut columns = table.columns.into_iter();
         let times = columns.next().unwrap_or_default();
-        // Shorter runs of empty cells are filled by now.
+        // Shorter runs of empty cells have been filled before.
         for (given, positions) in self.motion.iter().zip(&motion) {
             gaps.extend(find_empty_cells(given.name, &times, positions, 1));
         }
@@ -142,7 +142,7 @@ impl RecordReader<'_> {
         Ok((record, gaps))
     }
 
-    /// Returns the gaps of input columns that are empty cells.
+    /// Returns the gaps of input columns that consist of empty cells.
     fn find_unknown_inputs(&self, table: &Table) -> Vec<Gap> {
         let fed = self.model.inputs.iter().zip(self.inputs);
         let fed = fed.filter(|(_, column)| column.is_some());
@@ -173,7 +173,7 @@ impl RecordReader<'_> {
         inputs.chain(motion).chain(channels).collect()
     }
 
-    /// Reads time, input columns, given motion and channels, in SI and unwrapped, and the part in use.
+    /// Reads time, input columns, given motion and channels in SI, unwrapped, and determines the used part of the file.
     fn read_table(
         &self,
         place: &Path,
@@ -189,7 +189,7 @@ impl RecordReader<'_> {
         let read_times = std::mem::replace(&mut table.columns[0], clock.times);
         for (column, read) in table.columns[1..].iter_mut().zip(&columns) {
             for value in column.iter_mut() {
-                // A number that overflows in SI counts as missing.
+                // A number that overflows when it is converted to SI counts as missing.
                 *value = Some(read.unit.to_si(*value))
                     .filter(|v| v.is_finite())
                     .unwrap_or(f64::NAN);
@@ -204,7 +204,7 @@ impl RecordReader<'_> {
         Ok((table, used))
     }
 
-    /// Replaces single wrong samples of the channels by missing ones, and notes them.
+    /// Replaces single wrong samples of the channels by missing ones, and adds a note.
     fn drop_outliers(
         &self,
         name: &str,
@@ -243,7 +243,7 @@ impl RecordReader<'_> {
         }
     }
 
-    /// Returns the part of a file in use. `read` are its times in their unit, `times` those in s.
+    /// Returns the used part of a file. `read` has its times in their unit, `times` in s.
     fn find_used_part(
         &self,
         stretch: &Stretch,
@@ -284,8 +284,8 @@ impl RecordReader<'_> {
         })
     }
 
-    /// Appends rates and second rates to a given motion, so that a filter keeps them consistent.
-    /// Short runs of empty cells are filled, and noted.
+    /// Appends rates and second rates to given motion before filtering, so that the filter keeps them consistent. Short
+    /// runs of empty cells are filled, with a note.
     fn add_rates(
         &self,
         place: &Path,
@@ -368,7 +368,7 @@ impl RecordReader<'_> {
         Ok(())
     }
 
-    /// Returns true if the input of a column is a prescribed motion, which is not held.
+    /// Returns true if the input of a column is prescribed motion, which is not held.
     fn is_prescribed(&self, column: usize) -> bool {
         let fed = self.model.inputs.iter().zip(self.inputs);
         let mut fed = fed.filter(|(_, column)| column.is_some());
@@ -376,7 +376,7 @@ impl RecordReader<'_> {
             .is_some_and(|(input, _)| input.rate.is_some())
     }
 
-    /// Returns the inputs, held or splines of prescribed motion, and columns of a given motion.
+    /// Returns the inputs: held values, splines of prescribed motion, and columns of given motion.
     fn build_inputs(
         &self,
         times: &[f64],
@@ -410,7 +410,7 @@ fn cut_to_rows(rows: Range<usize>, table: &mut Table) {
     }
 }
 
-/// Checks that a column of speeds has no gap before the end of the part in use: after it, its integral is unknown.
+/// Checks that a column of speeds has no gap before the end of the used part. After a gap, its integral is unknown.
 fn check_position_known(
     place: &Path,
     name: &str,

@@ -5,10 +5,10 @@ use crate::record::Record;
 use crate::refusal::Refusal;
 use crate::samples::MIN_SAMPLES;
 
-/// Splits a record at missing rows and at `empty` cells, which are added to `notes`, and drops short parts.
+/// Splits a record at missing rows and at `empty` cells, adds notes about these gaps to `notes`, and drops short parts.
 ///
 /// # Errors
-/// Empty cells between which all parts are short.
+/// All parts between empty cells are too short.
 pub(crate) fn split_at_gaps(
     record: Record,
     empty: Vec<Gap>,

@@ -1,4 +1,4 @@
-//! Removal of samples at rest and at reversals of a given motion.
+//! Removal of samples at rest and at reversals of given motion.
 
 use eomgen_model_spec::ids::{CoordinateId, DefinitionId};
 use eomgen_model_spec::model::{Expr, ExprKind, Model};
@@ -7,13 +7,13 @@ use crate::dataset::{Dataset, Quantity};
 use crate::noise;
 use crate::record::Record;
 
-/// Rate below which a coordinate is at rest, in standard deviations of its noise.
+/// Rate below which a coordinate counts as at rest, in standard deviations of its noise.
 const REST_SPEED_OVER_NOISE: f64 = 4.0;
 
-/// Rate below which a coordinate is at rest, relative to the record's largest, without noise.
+/// Rate below which a coordinate counts as at rest if no noise is known, relative to the largest rate in the record.
 const MIN_RELATIVE_RATE: f64 = 1e-9;
 
-/// Removes samples of inputs while their coordinate rests, where static friction is unknown.
+/// Removes samples of inputs while their coordinate is at rest, because the friction force is then unknown.
 pub(crate) fn remove_rest(dataset: &mut Dataset, model: &Model) -> Vec<String> {
     let mut notes = Vec::new();
     for place in 0..dataset.channels.len() {
@@ -85,7 +85,7 @@ fn contains_part(model: &Model, expr: &Expr, is: &dyn Fn(&ExprKind) -> bool) -> 
     found
 }
 
-/// Returns true for samples where a coordinate rests or reverses, so that friction is unknown.
+/// Returns true for samples at which a coordinate is at rest or reverses, because the friction force is then unknown.
 fn samples_at_rest(record: &Record, model: &Model, coordinates: &[usize]) -> Vec<bool> {
     let (inputs, count) = (model.inputs.len(), model.coordinates.len());
     let mut resting = vec![false; record.times.len()];

@@ -13,16 +13,16 @@ pub const MIN_INPUT_SAMPLES: usize = 2;
 /// Maximum fraction of missing samples of a held input or an interpolated given motion.
 const MAX_HELD_FRACTION: f64 = 0.1;
 
-/// Step, relative to the usual one, above which there is a gap. Smaller deviations are jitter.
+/// Time step, relative to the typical one, above which there is a gap. Smaller deviations are jitter.
 pub(crate) const MIN_GAP_STEPS: f64 = 5.0;
 
-/// Relative deviation of a step from the usual one that counts as jitter.
+/// Relative deviation of a time step from the typical one that counts as jitter.
 pub(crate) const MAX_JITTER_FRACTION: f64 = 0.1;
 
-/// Parts of a second to which times in messages are rounded.
+/// Resolution of times in messages: one second divided by this number.
 const SHOWN_PARTS: f64 = 1e9;
 
-/// Checks for at least `fewest` finite, increasing times; `lines` are their line numbers.
+/// Checks that there are at least `fewest` finite, increasing times; `lines` are their line numbers.
 pub fn check_times(
     path: &Path,
     times: &[f64],
@@ -52,7 +52,7 @@ pub fn check_times(
     Ok(())
 }
 
-/// Checks that an input or a given motion, named `what` in the message, has few missing samples.
+/// Checks that few samples are missing in an input or in given motion, which the message calls `what`.
 pub fn check_known(path: &Path, what: &str, column: &[f64]) -> Result<(), Refusal> {
     let missing = column.iter().filter(|value| !value.is_finite()).count();
     if missing as f64 > MAX_HELD_FRACTION * column.len() as f64 {
@@ -67,8 +67,8 @@ pub fn check_known(path: &Path, what: &str, column: &[f64]) -> Result<(), Refusa
     Ok(())
 }
 
-/// Returns the mean of the steps between samples that differ from their median by jitter, in s. Of times with few digits, the
-/// median is one of two rounded steps.
+/// Returns the typical time step, in s: the mean of the steps that differ from their median only by jitter. If times
+/// have few digits, the median itself would be one of two rounded steps.
 pub fn typical_step(times: &[f64]) -> f64 {
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);
@@ -81,7 +81,7 @@ pub fn typical_step(times: &[f64]) -> f64 {
     if count > 0.0 { sum / count } else { median }
 }
 
-/// Returns a time of a file, in s, without the rounding of its sum.
+/// Returns the time `origin + time` of a file, in s, without the rounding error of the sum.
 pub fn shown_time(origin: f64, time: f64) -> f64 {
     let shown = ((origin + time) * SHOWN_PARTS).round() / SHOWN_PARTS;
     if shown.is_finite() {

@@ -1,15 +1,15 @@
-//! Unwrapping: recovers the continuous motion from values that are known up to whole periods, for
-//! example an angle from -180 to 180 degrees or a counter that overflows.
+//! Unwrapping: recovers the continuous motion from values that are known up to multiples of a period, for example an
+//! angle from -180 to 180 degrees or a counter that overflows.
 
 use crate::samples::typical_step;
 
-/// Step, relative to the usual one, above which there is a gap.
+/// Time step, relative to the typical one, above which there is a gap.
 const MIN_GAP_STEPS: f64 = 1.5;
 
-/// Largest difference, in periods, between extrapolations over a gap from its two sides.
+/// Largest difference between the extrapolations over a gap from its two sides, in periods.
 const MAX_DIFFERENCE_PERIODS: f64 = 0.25;
 
-/// Number of steps whose median rate, robust against an outlier, predicts the next value.
+/// Number of steps whose median rate predicts the next value; the median is robust against an outlier.
 const RECENT_STEPS: usize = 5;
 
 pub(crate) struct UnwrappedColumn {
@@ -19,8 +19,8 @@ pub(crate) struct UnwrappedColumn {
     pub unknown: Vec<(f64, f64)>,
 }
 
-/// Unwraps a column from its first sample on. Each further sample gets the number of periods that
-/// is nearest to the extrapolated motion, which may exceed half a period per sample.
+/// Unwraps a column from its first sample on. Each later sample gets the number of periods for which it is nearest to
+/// the extrapolated motion, which may exceed half a period per sample.
 pub(crate) fn unwrap_values(times: &[f64], column: &[f64], period: f64) -> UnwrappedColumn {
     let samples: Vec<usize> = (0..column.len())
         .filter(|sample| column[*sample].is_finite())
@@ -65,7 +65,7 @@ struct WrappedColumn {
 }
 
 impl WrappedColumn {
-    /// Returns the periods to add at a sample, relative to the one before, for a given rate.
+    /// Returns the number of periods to add at a sample, relative to the preceding sample, for a given rate.
     fn turns(&self, k: usize, rate: f64) -> f64 {
         let expected = rate * (self.times[k] - self.times[k - 1]);
         ((expected - (self.values[k] - self.values[k - 1])) / self.period).round()
@@ -119,7 +119,7 @@ mod tests {
         motion.iter().map(counter).collect()
     }
 
-    /// Returns the largest error of an unwrapped motion that starts between 0 and 360.
+    /// Returns the largest error of an unwrapped motion that starts between 0 and 360 degrees.
     fn error(motion: &[f64], column: &[f64]) -> f64 {
         let found = unwrap_values(&times(motion.len()), column, 360.0);
         assert!(found.unknown.is_empty(), "{:?}", found.unknown);
@@ -138,7 +138,7 @@ mod tests {
                 assert!(error(&motion, &wrap_values(&motion)) < 0.1, "{per_sample}");
             }
         }
-        // From rest to 270 degrees per sample.
+        // The angle accelerates from rest to 270 degrees per sample.
         let faster: Vec<f64> = (0..900).map(|k| 0.15 * f64::from(k * k)).collect();
         assert!(error(&faster, &wrap_values(&faster)) < 0.1);
     }
@@ -163,7 +163,7 @@ mod tests {
         let mut column = wrap_values(&motion);
         column[200..230].fill(f64::NAN);
         assert!(error(&motion, &column) < 0.1);
-        // Twice as fast after the gap.
+        // The motion is twice as fast after the gap.
         let motion: Vec<f64> = (0..400)
             .map(|k| 50.0 * f64::from(k.min(215)) + 100.0 * f64::from((k - 215).max(0)))
             .collect();

@@ -5,16 +5,17 @@ use eomgen_sim::inputs::HeldInputs;
 use crate::record::Record;
 use crate::samples::typical_step;
 
-/// Samples at a window's start and end that a delayed or early sensor can read from outside.
+/// Numbers of samples at the start and at the end of a window. A sensor with a delay or lead reads them from outside
+/// the window.
 const MARGIN_SAMPLES: (usize, usize) = (MAX_DELAY_SAMPLES as usize, MAX_LEAD_SAMPLES as usize);
 
-/// Largest delay of a sensor, in samples; as many are ignored at the start of each window.
+/// Largest delay of a sensor, in samples; the same number of samples is ignored at the start of each window.
 pub const MAX_DELAY_SAMPLES: f64 = 8.0;
 
 /// Largest lead of a sensor, in samples: four standard deviations of its prior.
 pub const MAX_LEAD_SAMPLES: f64 = 2.0;
 
-/// Returns the samples to compare, without margins for delays unless these are most of the window.
+/// Returns the compared samples of a window: without the margins for delays, unless the margins are most of the window.
 pub fn compared_samples(samples: usize) -> std::ops::Range<usize> {
     let (begin, end) = MARGIN_SAMPLES;
     begin.min(samples / 4)..samples - end.min(samples / 4)
@@ -28,13 +29,13 @@ const MIN_RELATIVE_LENGTH: f64 = 0.5;
 pub struct Window {
     /// Index of the record.
     pub record: usize,
-    /// Index of its first sample in the record.
+    /// Index of the window's first sample in the record.
     pub first: usize,
     /// Times of its samples, in s.
     pub times: Vec<f64>,
-    /// Measurements, with a row per sample and a number per channel; NaN if missing.
+    /// Measurements, one row per sample and one number per channel; NaN if missing.
     pub measured: Vec<f64>,
-    /// Index of the window that ends at the start of this one.
+    /// Index of the window that ends at the start of this window.
     pub follows: Option<usize>,
 }
 
@@ -48,7 +49,7 @@ pub struct Windows<'d> {
 }
 
 impl<'d> Windows<'d> {
-    /// Splits records into windows of this length in s, or uses each record as one window.
+    /// Splits records into windows of `length` s, or uses each record as one window.
     pub fn split_records(records: &'d [Record], length: Option<f64>) -> Self {
         let mut list: Vec<Window> = Vec::new();
         for (place, record) in records.iter().enumerate() {
@@ -60,7 +61,7 @@ impl<'d> Windows<'d> {
                 count += 1.0;
                 let end = match length {
                     Some(length) => {
-                        // Half a sample, so that rounding does not decide.
+                        // The gap of half a sample absorbs rounding errors.
                         let gap = typical_step(&record.times);
                         let until = begin + count * length - 0.5 * gap;
                         record.times.partition_point(|t| *t < until)
@@ -96,13 +97,13 @@ impl<'d> Windows<'d> {
         }
     }
 
-    /// Returns the number of measurements in all windows, missing ones included.
+    /// Returns the number of measurements in all windows, including missing ones.
     pub fn measurement_count(&self) -> f64 {
         let counts = self.windows.iter().map(|window| window.measured.len());
         counts.sum::<usize>() as f64
     }
 
-    /// Returns the times of a window in its file, s.
+    /// Returns the times of a window as in its file, s.
     pub fn file_times(&self, window: &Window) -> impl Iterator<Item = f64> {
         let origin = self.records[window.record].origin;
         window.times.iter().map(move |t| origin + t)

@@ -1,6 +1,6 @@
-//! Detection of wrapped columns. A motion that leaves a sensor's range at one end jumps to the
-//! other end and continues at the same speed, opposite to the jump. A square wave has similar
-//! jumps, but rests at its levels, and rest proves nothing.
+//! Detection of wrapped columns. If a motion leaves a sensor's range at one end, the values jump to the other end, and
+//! the motion continues at the same speed, opposite to the jump. A square wave has similar jumps but is at rest at its
+//! levels, and rest gives no evidence of wrapping.
 
 use crate::noise;
 use crate::unwrapping::{median, unwrap_values};
@@ -14,7 +14,7 @@ pub(crate) const MAX_RELATIVE_DIFFERENCE: f64 = 0.1;
 /// Minimum motion, in standard deviations of the noise.
 const MIN_MOTION_OVER_NOISE: f64 = 5.0;
 
-/// Number of samples within which jumps back and forth are one crossing with noise.
+/// Number of samples within which jumps back and forth count as one crossing with noise.
 const MAX_CHATTER_SAMPLES: usize = 20;
 
 /// Number of samples around a crossing within which the motion must exceed its noise.
@@ -28,9 +28,9 @@ const STEPS_AROUND_JUMP: usize = 5;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WrapPattern {
-    /// Size in the unit of the values. A usual period within the uncertainty is exact.
+    /// Period in the unit of the values. If a common period is within the uncertainty, it is used exactly.
     pub period: f64,
-    /// Half width of the period's interval; `None` if it is below the resolution of the sensor.
+    /// Half width of the confidence interval of the period; `None` if it is below the resolution of the sensor.
     pub uncertainty: Option<f64>,
     pub is_usual: bool,
     pub first: f64,
@@ -41,12 +41,12 @@ pub(crate) struct WrapPattern {
 }
 
 impl WrapPattern {
-    /// Returns true if the column is wrapped. For an input, only jumps of a full turn prove it.
+    /// Returns true if the column is wrapped. For an input, only jumps by a full turn are sufficient evidence.
     pub fn is_wrapped(&self, is_input: bool) -> bool {
         self.is_turn || (self.has_full_travel && !is_input)
     }
 
-    /// Returns the number for a dataset file, to one digit beyond its uncertainty if not usual.
+    /// Formats the period for a dataset file: one digit beyond its uncertainty, unless the period is common.
     pub fn format_period(&self, period: f64) -> String {
         if self.is_turn {
             return format!("{period}");
@@ -61,7 +61,7 @@ impl WrapPattern {
         format!("{}", rounded.unwrap_or(period))
     }
 
-    /// Returns the uncertainty of the period as a remark, unless the sensor does not resolve it.
+    /// Returns a remark on the uncertainty of the period; `None` if the uncertainty is below the sensor's resolution.
     pub fn uncertainty_note(&self, period: f64) -> Option<String> {
         let own = self.uncertainty? / self.period * period;
         let rounded = format!("{own:.0e}").parse::<f64>().unwrap_or(own);
@@ -71,7 +71,7 @@ impl WrapPattern {
     }
 }
 
-/// Returns the pattern of a wrapped column; `None` if no jumps look like ends of the range.
+/// Detects the pattern of a wrapped column; `None` if no jumps look like ends of a range.
 pub(crate) fn detect_wrapping(
     times: &[f64],
     column: &[f64],
@@ -110,8 +110,8 @@ pub(crate) fn detect_wrapping(
     })
 }
 
-/// Returns the samples before the jumps of a column. Returns `None` if the sizes of the jumps,
-/// minus the motion at each, differ from each other or from the range.
+/// Returns the samples before the jumps of a column. The size of a jump is corrected by the motion during its step.
+/// `None` if the sizes differ from each other or from the range.
 fn common_jumps(values: &[f64]) -> Option<Vec<usize>> {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -140,7 +140,7 @@ fn common_jumps(values: &[f64]) -> Option<Vec<usize>> {
     (fills && alike as f64 >= MIN_CONTINUED_FRACTION * sizes.len() as f64).then_some(jumps)
 }
 
-/// Crossing of the range's end: one jump, or several back and forth by noise.
+/// Crossing of an end of the range: one jump, or several jumps back and forth by noise.
 struct Crossing {
     before: usize,
     after: usize,

@@ -1,34 +1,34 @@
-//! Period of a wrapped column, estimated from its jumps. A jump is the period minus the motion of
-//! one sample; the scatter of the steps around it gives the uncertainty.
+//! Period of a wrapped column, estimated from its jumps. A jump is the period minus the motion during one sample; the
+//! scatter of the steps near the jump gives the uncertainty.
 
 use crate::unwrapping::median;
 
-/// Number of steps on each side of a jump that determine the motion of one sample.
+/// Number of steps on each side of a jump from which the motion during one sample is estimated.
 const STEPS_BESIDE_JUMP: usize = 5;
 
 /// Uncertainty of the period, in standard errors.
 const STANDARD_ERRORS: f64 = 4.0;
 
-/// Minimum uncertainty in standard deviations of one jump, because noise shifts jumps in time.
+/// Minimum uncertainty, in standard deviations of one jump. Noise shifts jumps in time.
 const MIN_UNCERTAINTY_DEVIATIONS: f64 = 2.0;
 
-/// Largest uncertainty, relative to the period, with which a usual period is proposed.
+/// Largest uncertainty with which a common period is proposed, relative to the period.
 const MAX_RELATIVE_UNCERTAINTY: f64 = 0.01;
 
-/// Fraction of the range below which changes of the steps are rounding, not resolution.
+/// Fraction of the range below which changes of the steps are rounding errors, not the sensor's resolution.
 const MAX_ROUNDING_FRACTION: f64 = 1e-5;
 
 /// Powers of two at which counters overflow.
 const COUNTER_BITS: std::ops::RangeInclusive<i32> = 3..=32;
 
-/// Leading digits of usual decimal periods, for example 1000, 2500 or 3600.
+/// Leading digits of common decimal periods, for example 1000, 2500 or 3600.
 const DECIMAL_PERIOD_DIGITS: [f64; 6] = [1.0, 2.0, 2.5, 3.6, 4.0, 5.0];
 
 const HALF_TURN_DEG: f64 = 180.0;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ColumnUnit {
-    /// Size of the unit, in the unit of the values.
+    /// Unit of the column, expressed in the unit of `values`.
     pub size: f64,
     /// Full turn in the unit of the values, for an angle or a dimensionless number.
     pub turn: Option<f64>,
@@ -36,9 +36,10 @@ pub(crate) struct ColumnUnit {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Period {
-    /// Exact if a single usual period is within the uncertainty.
+    /// Period; exact if a single common period is within the uncertainty.
     pub value: f64,
-    /// Half width of the period's interval; `None` if it is below the resolution, or a full turn.
+    /// Half width of the confidence interval of the period; `None` if it is below the resolution, or if the period is a
+    /// full turn.
     pub uncertainty: Option<f64>,
     pub is_usual: bool,
     pub is_turn: bool,
@@ -135,7 +136,7 @@ impl Steps<'_> {
         near.filter(move |other| *other != k && self.is_regular(*other))
     }
 
-    /// Returns the step at `k` minus the mean of the regular steps near it.
+    /// Returns the difference of the step at `k` and the mean of the regular steps near it.
     fn step_excess(&self, k: usize) -> f64 {
         let (sum, count) = self
             .regular_steps_near(k)
@@ -145,7 +146,7 @@ impl Steps<'_> {
         self.step(k) - sum / f64::max(count, 1.0)
     }
 
-    /// Returns the standard deviation of the excess of one step, from the regular steps near jumps.
+    /// Returns the standard deviation of one step from the mean of its neighbours, from the regular steps near jumps.
     fn jump_deviation(&self) -> f64 {
         let regular = self
             .jumps
@@ -157,7 +158,7 @@ impl Steps<'_> {
         f64::sqrt(sum / f64::max(count, 1.0))
     }
 
-    /// Returns the resolution of the sensor: the smallest change between regular steps, or 0.
+    /// Returns the resolution of the sensor: the smallest difference between regular steps, or 0.
     fn resolution(&self) -> f64 {
         let low = self.values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = self

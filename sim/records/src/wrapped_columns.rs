@@ -1,4 +1,4 @@
-//! Unwraps columns with a declared period and rejects other columns that look wrapped.
+//! Unwraps columns with a declared period, and rejects other columns that look wrapped.
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -16,10 +16,10 @@ use crate::used_part::UsedPart;
 use crate::wrap_detection::{MAX_RELATIVE_DIFFERENCE, WrapPattern, detect_wrapping};
 use crate::wrap_period::ColumnUnit;
 
-/// Relative difference below which a period is a rounded full or half turn.
+/// Relative difference below which a period counts as a rounded full or half turn.
 const MAX_ROUNDING: f64 = 1e-3;
 
-/// Largest range of a wrapped column in periods, noise included.
+/// Largest range of a wrapped column in periods, including noise.
 const MAX_RANGE_PERIODS: f64 = 1.1;
 
 pub(crate) struct ReadColumn<'d> {
@@ -58,7 +58,7 @@ impl<'d> ReadColumn<'d> {
         full_turn(self.unit).map(|turn| self.unit.to_si(turn))
     }
 
-    /// Returns the declared period in SI; a rounded full or half turn becomes exact.
+    /// Returns the declared period in SI; a rounded full or half turn is replaced by the exact value.
     fn period_in_si(&self, number: Number) -> f64 {
         let period = self.unit.to_si(number.value);
         let turns = self.turn().into_iter().flat_map(|turn| [turn, 0.5 * turn]);
@@ -78,7 +78,7 @@ pub(crate) fn to_column_unit(unit: &Unit) -> ColumnUnit {
     }
 }
 
-/// Returns true for angles, counts and lengths, which can wrap around.
+/// Returns true for units of angles, counts and lengths, whose values can wrap around.
 pub(crate) fn can_wrap(unit: &Unit) -> bool {
     [Dimension::DIMENSIONLESS, Dimension::LENGTH].contains(&unit.dimension)
 }

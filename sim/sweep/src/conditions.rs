@@ -11,13 +11,13 @@ pub struct Conditions {
     pub state: StateRequest,
     /// Inputs given by expressions.
     pub inputs: ExpressionInputs,
-    /// Parameters of these expressions that are equal at all points, in declared units.
+    /// Parameters of these expressions that have the same value at all points, in declared units.
     pub settings: Vec<(String, f64)>,
-    /// Record of the other inputs. Without a record these have their default values.
+    /// Record of the other inputs. Without a record these inputs have their default values.
     pub record: Option<HeldInputs>,
 }
 
-/// Start of the motion at a point.
+/// Initial state and inputs of the motion at a point.
 pub struct Start {
     /// Initial state, SI; it may violate constraints.
     pub state: Vec<f64>,
@@ -26,12 +26,12 @@ pub struct Start {
 }
 
 impl Conditions {
-    /// Returns the times of the record in s, if a record gives the inputs.
+    /// Returns the times of the record in s; `None` without a record.
     pub fn record_times(&self) -> Option<&[f64]> {
         self.record.as_ref().map(HeldInputs::times)
     }
 
-    /// Returns the start of every motion, in s.
+    /// Returns the start time of every motion, in s.
     pub fn start(&self) -> f64 {
         let first = self.record_times().and_then(|times| times.first());
         first.copied().unwrap_or(0.0)
@@ -42,7 +42,7 @@ impl Conditions {
         self.record_times()?.last().copied()
     }
 
-    /// Returns true if inputs vary between samples, so that no motion is solved exactly.
+    /// Returns true if inputs vary between samples. The exact solver does not support such inputs.
     pub fn are_time_varying(&self) -> bool {
         let record = self.record.as_ref();
         self.inputs.are_time_varying() || record.is_some_and(HeldInputs::is_time_varying)

@@ -12,7 +12,7 @@ const MAX_SHOWN_GAPS: usize = 5;
 /// Error of a sweep.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SweepError {
-    /// Invalid request, with cause and cure.
+    /// Invalid request, with cause and remedy.
     #[error("{0}")]
     Request(String),
     #[error("cannot {action} {}: {reason}", path.display())]
@@ -22,7 +22,7 @@ pub enum SweepError {
         action: &'static str,
         /// Path of the file or folder.
         path: PathBuf,
-        /// Message of the system.
+        /// Error message of the operating system.
         reason: String,
     },
     /// Folder with a different sweep.

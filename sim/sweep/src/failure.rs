@@ -1,4 +1,4 @@
-//! Conversion of errors at a point to its status.
+//! Conversion of errors at a point into the status of the point.
 
 use eomgen_compiled_model::{Error, Motion, StopCause};
 use eomgen_sim::ode::SolveError;
@@ -8,7 +8,7 @@ use eomgen_sim::variational::GrowthError;
 use crate::measure::Failure;
 
 impl From<Error> for Failure {
-    /// An instance rejects only its parameters.
+    /// The only errors of an instance are inadmissible parameters.
     fn from(_: Error) -> Self {
         Self::Parameters
     }
@@ -16,7 +16,7 @@ impl From<Error> for Failure {
 
 pub fn finished_motion(motion: Result<Motion, Error>) -> Result<Motion, Failure> {
     let motion = motion.map_err(|error| match error {
-        // The motion stopped at its start.
+        // The motion has stopped at its start.
         Error::Stopped { .. } => Failure::NotFinite,
         error => error.into(),
     })?;

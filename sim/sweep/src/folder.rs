@@ -146,7 +146,7 @@ impl Folder {
         self.write_atomically(&self.part_path(chunk), text.as_bytes())
     }
 
-    /// Removes files of interrupted runs. Every chunk must be complete and no process may write.
+    /// Removes files of interrupted runs. Every chunk must be complete, and no process may write to the folder.
     pub(super) fn remove_unfinished_files(&self) -> Result<(), SweepError> {
         let parts = self.path.join(PARTS_FOLDER);
         let failed = |error| SweepError::file_error("clean up", &parts, &error);
@@ -190,7 +190,7 @@ fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>, SweepError> {
     Ok(bytes)
 }
 
-/// Makes a temporary file, which is private by default, readable for others.
+/// Makes a temporary file readable for other users; by default it is private.
 #[cfg(unix)]
 fn make_readable(file: &fs::File) -> std::io::Result<()> {
     use std::os::unix::fs::PermissionsExt;

@@ -21,13 +21,13 @@ pub enum Spacing {
 }
 
 impl Spacing {
-    /// Returns true for the default, which is omitted from plans.
+    /// Returns true for the default spacing, which is omitted from plans.
     fn is_linear(&self) -> bool {
         *self == Self::Linear
     }
 }
 
-/// Parameters that take the same values together.
+/// Parameters that vary together and take the same values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
     /// Names of the parameters.
@@ -36,7 +36,7 @@ pub struct Axis {
     pub from: f64,
     /// Last value.
     pub to: f64,
-    /// Number of values; the value is `from` if it is 1.
+    /// Number of values; if it is 1, the value is `from`.
     pub count: usize,
     /// Spacing of the values.
     #[serde(default, skip_serializing_if = "Spacing::is_linear")]
@@ -132,7 +132,7 @@ impl Axis {
             Spacing::Linear => {
                 self.from + (self.to - self.from) * index as f64 / (self.count - 1) as f64
             }
-            // The project's own functions give the same bits on every machine.
+            // The library functions may differ between machines; the project's own functions are bit-identical.
             Spacing::Log => {
                 let logarithm = Function::Ln.apply(&[self.to / self.from]);
                 self.from * Function::Exp.apply(&[logarithm * part])

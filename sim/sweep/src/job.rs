@@ -1,4 +1,4 @@
-//! Sweep as data: everything that its numbers depend on, with an identifying hash.
+//! Sweep as data: everything that determines its numbers, with an identifying hash.
 
 use eomgen_model_spec::argument::Argument;
 use std::ops::Range;
@@ -15,13 +15,13 @@ use super::samples::Samples;
 /// Version of plans, parts and the division into chunks.
 const SCHEMA: u32 = 1;
 
-/// Maximum number of chunks: not too many files for a folder, but small losses at an interruption.
+/// Maximum number of chunks. The files are few enough for one folder, and an interruption loses little.
 const MAX_CHUNKS: usize = 1000;
 
-/// Everything that the numbers of a sweep depend on.
+/// Everything that determines the numbers of a sweep.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
-    /// Version of this description.
+    /// Version of the plan format.
     pub schema: u32,
     /// Version of the program.
     pub version: String,
@@ -31,14 +31,14 @@ pub struct Plan {
     pub specification: String,
     /// Orders of the model's fields.
     pub orders: Vec<usize>,
-    /// Parameters with other values than in the specification, in declared units.
+    /// Parameters whose values differ from the specification, in declared units.
     pub set: Vec<(String, f64)>,
-    /// Varied axes, the last one fastest; empty with samples.
+    /// Varied axes, the last one fastest; empty if samples are used.
     pub vary: Vec<Axis>,
-    /// Random samples, if there is no grid.
+    /// Random samples; `None` for a grid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<Samples>,
-    /// Inputs and initial state, if they are not those of the specification.
+    /// Inputs and initial state, if they differ from those of the specification.
     #[serde(flatten)]
     pub conditions: PlannedConditions,
     /// Columns of the varied parameters, with declared units.
@@ -58,7 +58,7 @@ pub struct PlannedConditions {
     /// Name of the record that drives the inputs, and a hash of its samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub record: Option<String>,
-    /// Initial states.
+    /// Requested initial states.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub state: Vec<String>,
 }
@@ -103,7 +103,7 @@ impl Plan {
         }
     }
 
-    /// Returns the options in which two plans differ, as on the command line.
+    /// Returns the command-line options in which two plans differ.
     pub fn differences(&self, other: &Self) -> Vec<String> {
         let same = [
             (

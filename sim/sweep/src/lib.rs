@@ -8,7 +8,7 @@
 //! - [`measure`]: interface of the measures [`poincare`], [`lyapunov`] and [`over_time`];
 //!   `forcing`, [`span`] and [`window`] select their times;
 //! - [`sweep`](mod@sweep): points, conditions and measures from a request;
-//! - [`job`]: all of this as data, with an identifying hash;
+//! - [`job`]: the request as data, with an identifying hash;
 //! - [`folder`] and `part`: the job and its finished chunks as files;
 //! - [`shard`]: selection of chunks for one run; [`run`](mod@run): their computation;
 //!   [`merge`](mod@merge): all chunks in one table; `missing_numbers`: points without numbers.

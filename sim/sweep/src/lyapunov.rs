@@ -26,7 +26,7 @@ pub struct Lyapunov<'a> {
 }
 
 impl<'a> Lyapunov<'a> {
-    /// Creates the measure: once per forcing period, or over the second half of a time.
+    /// Creates the measure. Growth is measured once per forcing period, or over the second half of a time.
     ///
     /// # Errors
     /// An invalid window, or a model that cannot be differentiated.

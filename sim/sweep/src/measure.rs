@@ -26,18 +26,18 @@ impl Column {
     }
 }
 
-/// Description of a measure, part of the job's hash: equal descriptions give equal numbers.
+/// Description of a measure, part of the job's hash. Equal descriptions imply equal numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Description {
     /// Name of the measure on the command line.
     pub name: String,
-    /// Description of quantity and method.
+    /// Quantity and method.
     pub about: String,
-    /// Options that the numbers depend on, in addition to the model.
+    /// Options that determine the numbers, in addition to the model.
     pub options: BTreeMap<String, String>,
     /// Columns of the result.
     pub columns: Vec<Column>,
-    /// Columns in a figure: one over a plane, all of them over a line.
+    /// Columns in a figure: the first one over a plane, all of them over a line.
     pub drawn: Vec<String>,
     /// Name of the quantity in these columns, for example `lambda_1`.
     pub quantity: String,
@@ -71,7 +71,7 @@ pub enum Failure {
     Limit,
     /// Switching surfaces that are crossed too often, or that hold the motion.
     Switching,
-    /// Motion for which the measure has no value.
+    /// Motion for which the measure is undefined.
     Undefined,
     /// Section that the motion crosses too rarely; contains the number of crossings.
     FewCrossings(usize),

@@ -25,7 +25,7 @@ impl Table {
 /// Merges all chunks and removes unfinished files of interrupted runs.
 ///
 /// # Errors
-/// All missing or damaged chunks, parts of another job, or files that cannot be read.
+/// Missing or damaged chunks (all are listed), parts of another job, or files that cannot be read.
 pub fn merge(folder: &Folder) -> Result<Table, SweepError> {
     let job = folder.job();
     let (all, measured) = (job.points(), job.measured_count());

@@ -10,10 +10,10 @@ use crate::poincare::crossings_column;
 /// Maximum number of points that a message lists.
 const MAX_LISTED_POINTS: usize = 5;
 
-/// Maximum number of parameters that name a point.
+/// Maximum number of parameters in the description of a point.
 const MAX_LISTED_PARAMETERS: usize = 3;
 
-/// Points of a sweep without numbers, in words.
+/// Messages about points of a sweep without numbers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MissingNumbers {
     /// One message for each measure and each reason.
@@ -23,7 +23,7 @@ pub struct MissingNumbers {
 }
 
 impl MissingNumbers {
-    /// Returns the points without numbers of a merged sweep.
+    /// Finds the points without numbers in a merged sweep.
     pub fn find(job: &Job, table: &Table) -> Self {
         let measures = &job.plan().measures;
         let statuses = |measure: &Description| {
@@ -59,7 +59,7 @@ impl MissingNumbers {
     }
 }
 
-/// Points without a number of a measure, for one reason.
+/// Points at which a measure has no number for one reason.
 struct Missing<'a> {
     job: &'a Job,
     table: &'a Table,
@@ -111,7 +111,7 @@ impl Missing<'_> {
         count.copied().unwrap_or(f64::NAN)
     }
 
-    /// Returns the number of crossings that the measure needs.
+    /// Returns the number of crossings that the measure requires.
     fn wanted(&self) -> usize {
         let option = |name: &str| self.measure.options.get(name)?.parse::<usize>().ok();
         ["transient", "periods"]
@@ -120,7 +120,7 @@ impl Missing<'_> {
             .sum()
     }
 
-    /// Returns the parameters of a point, in declared units.
+    /// Describes a point by its parameters, in declared units.
     fn name(&self, point: usize) -> String {
         let parameters = self.job.plan().parameters.iter();
         let values = parameters.map(|parameter| {

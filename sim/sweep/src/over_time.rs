@@ -1,4 +1,4 @@
-//! Measures `max:NAME` and `rms:NAME`, of the entire motion, and `final:NAME`, the last row of `simulate`.
+//! Measures `max:NAME` and `rms:NAME` of the entire motion, and `final:NAME`, the last row of `simulate`.
 
 use eomgen_model_spec::argument::Argument;
 use std::collections::BTreeMap;
@@ -14,7 +14,7 @@ use crate::failure::finished_motion;
 use crate::measure::{Column, Description, Failure, Measure, Worker};
 use crate::window::{Times, Window};
 
-/// Number of sample intervals of `final:NAME`, the same as in `simulate`.
+/// Number of output intervals of `final:NAME`, the same as in `simulate`.
 const SAMPLES_IN_WINDOW: usize = 1000;
 
 const TOLERANCE: f64 = 1e-9;
@@ -101,7 +101,7 @@ fn find_number(model: &CompiledModel, asked: &str) -> Result<NumberOfQuantity, S
     })
 }
 
-/// Numbers of quantities at many parameter values, from one motion per point.
+/// Measures of quantities at many parameter values, from one motion per point.
 pub struct OverTime<'a> {
     model: &'a CompiledModel,
     conditions: &'a Conditions,
@@ -109,7 +109,7 @@ pub struct OverTime<'a> {
     times: Times,
 }
 
-/// Number of a quantity.
+/// Measure of one quantity.
 struct NumberOfQuantity {
     number: Number,
     quantity: Quantity,
@@ -127,15 +127,15 @@ impl NumberOfQuantity {
 }
 
 impl<'a> OverTime<'a> {
-    /// Returns true for the name of a measure over time, for example `max:tip`.
+    /// Returns true if `name` is a measure over time, for example `max:tip`.
     pub fn accepts(asked: &str) -> bool {
         split_name(asked).is_some()
     }
 
-    /// Creates the measures with these names.
+    /// Creates the measures with the given names.
     ///
     /// # Errors
-    /// Another measure's name, a quantity that the model does not have, or an invalid window.
+    /// The name of another measure, a quantity that the model does not have, or an invalid window.
     pub fn new(
         (model, conditions): (&'a CompiledModel, &'a Conditions),
         asked: &[String],
@@ -151,7 +151,7 @@ impl<'a> OverTime<'a> {
         })
     }
 
-    /// Returns the rows of `simulate` up to the end of the window, s.
+    /// Returns the output times of `simulate` up to the end of the window, s.
     fn row_times(&self, (begin, end): (f64, f64)) -> Vec<f64> {
         if let (Times::Until(_), Some(record)) = (&self.times, self.conditions.record_times()) {
             return record.iter().copied().take_while(|t| *t <= end).collect();

@@ -6,7 +6,7 @@ use crate::error::SweepError;
 use crate::measure::Column;
 use crate::points::Points;
 
-/// Returns the columns of the parameters that differ between points, in declared units.
+/// Returns one column per parameter that varies between points, in declared units.
 pub fn columns(model: &Model, points: &Points) -> Result<Vec<Column>, SweepError> {
     let column = |name: &str| {
         let mut known = model.parameters.iter();

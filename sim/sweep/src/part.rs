@@ -25,7 +25,7 @@ pub enum PartState {
     OtherJob,
 }
 
-/// Returns the bytes of a chunk; all NaNs are equal, because their bits depend on the machine.
+/// Returns the bytes of a chunk. All NaNs become equal, because their bits depend on the machine.
 pub fn encode(job: &Job, chunk: usize, numbers: &[f64]) -> String {
     let mut text = header(job, chunk);
     text.reserve(numbers.len() * 17);
@@ -94,7 +94,7 @@ mod tests {
     use super::super::job::tests::job;
     use super::*;
 
-    /// Two points per chunk, two numbers per point.
+    /// Returns numbers of a chunk with two points and two numbers per point.
     fn numbers() -> [f64; 4] {
         [-0.0, f64::NAN, f64::NEG_INFINITY, 5e-324]
     }

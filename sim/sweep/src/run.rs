@@ -15,25 +15,25 @@ use super::shard::Shard;
 /// Result of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RunSummary {
-    /// Points of this shard that were complete before.
+    /// Number of points of this shard that were already complete.
     pub complete_points: usize,
-    /// Points computed.
+    /// Number of computed points.
     pub computed_points: usize,
 }
 
-/// A worker with the ranges of its numbers at a point, one per description; the status follows each.
+/// Worker with the ranges of its numbers at a point, one range per description; a status follows each range.
 struct WorkerColumns<'a> {
     worker: Box<dyn Worker + 'a>,
     ranges: Vec<Range<usize>>,
     numbers: Vec<f64>,
 }
 
-/// Computes the missing chunks of a shard, with the plan's `measures` and `threads` threads (0: one
-/// per core). `progress` receives the numbers of computed points and of all points.
+/// Computes the missing chunks of a shard, with the plan's `measures` and `threads` threads (0: one per core).
+/// `progress` receives the number of computed points and the number of all points.
 ///
 /// # Errors
-/// Parts of another job in the folder, files that cannot be read or written, or threads that cannot
-/// be started. Finished chunks remain for the next run.
+/// Parts of another job in the folder, files that cannot be read or written, or threads that cannot be started.
+/// Finished chunks are kept for the next run.
 pub fn run(
     folder: &Folder,
     measures: &[Box<dyn Measure + '_>],
@@ -49,7 +49,7 @@ pub fn run(
         .sum();
     let state = Mutex::new((0, progress));
     let point_is_done = || {
-        // A thread that panicked with the lock did not change the count.
+        // A thread that panicked while it held the lock did not change the count.
         let mut state = state
             .lock()
             .unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -109,7 +109,7 @@ fn workers<'a>(measures: &'a [Box<dyn Measure + 'a>]) -> Vec<WorkerColumns<'a>> 
     workers.collect()
 }
 
-/// Returns the numbers of a chunk, point by point: each measure's, then its status.
+/// Returns the numbers of a chunk, point by point: for each measure its numbers, then its status.
 fn compute_chunk(
     job: &Job,
     chunk: usize,
@@ -127,7 +127,7 @@ fn compute_chunk(
             let mut found = &columns.numbers[..];
             for range in &columns.ranges {
                 let (own, rest) = found.split_at(range.len());
-                // The worker wrote the number of crossings only.
+                // For too few crossings, the worker wrote only their number.
                 if matches!(outcome, Ok(()) | Err(Failure::FewCrossings(_))) {
                     row[range.clone()].copy_from_slice(own);
                 }
@@ -147,7 +147,7 @@ mod tests {
     use super::super::merge::merge;
     use super::*;
 
-    /// Returns 1/x, undefined at 0; previous results in its memory must not become visible.
+    /// Measure 1/x, undefined at 0. It leaves the previous result in its memory, which must not appear at later points.
     struct Reciprocal;
 
     impl Measure for Reciprocal {

@@ -1,9 +1,9 @@
 //! Random samples of the uncertain parameters of a specification.
 //!
-//! The generator is SplitMix64 (Steele, Lea and Flood 2014) with the transform of Box and Muller
-//! (1958) for normal numbers. The project's own functions give the same bits on every machine. Each
-//! number depends only on the seed, the parameter's name and the sample. Shards are therefore
-//! independent, and a further uncertain parameter does not change the samples of the others.
+//! The generator is SplitMix64 (Steele, Lea and Flood 2014) with the transform of Box and Muller (1958) for normal
+//! numbers. The project's own functions are bit-identical on every machine. Each number depends only on the seed, the
+//! parameter's name and the sample. Shards are therefore independent, and a further uncertain parameter does not change
+//! the samples of the others.
 
 use eomgen_model_spec::argument::Argument;
 use std::f64::consts::TAU;
@@ -19,8 +19,8 @@ use serde::{Deserialize, Serialize};
 use crate::error::SweepError;
 use crate::grid::MAX_POINTS;
 
-/// Maximum number of draws of a normal number within its bounds; then the mean is used. The bounds
-/// are at least one standard deviation away, so all draws fail with a probability of 10^-30.
+/// Maximum number of draws of a normal number within its bounds; after them the mean is used. The bounds are at least
+/// one standard deviation away, so all draws fail with a probability of 10^-30.
 const MAX_DRAWS: usize = 64;
 
 /// Independent random samples of parameters.
@@ -173,7 +173,7 @@ fn draw_unit(random: &mut SplitMix64) -> f64 {
 }
 
 fn draw_normal(random: &mut SplitMix64) -> f64 {
-    // 1 - [0, 1) excludes 0, so its logarithm exists.
+    // 1 - [0, 1) excludes 0, for which the logarithm is infinite.
     let radius = (-2.0 * Function::Ln.apply(&[1.0 - draw_unit(random)])).sqrt();
     radius * Function::Cos.apply(&[TAU * draw_unit(random)])
 }
@@ -217,7 +217,7 @@ mod tests {
         let n = 40_000;
         let values = values(&normal_law("k", None), 1, n);
         let root = (n as f64).sqrt();
-        // Four standard errors of the first four moments.
+        // The tolerances are four standard errors of the first four moments.
         assert!((moment(&values, 0.0, 1) - 3.0).abs() < 4.0 * 0.5 / root);
         assert!((moment(&values, 3.0, 2) - 0.25).abs() < 4.0 * 0.25 * 2_f64.sqrt() / root);
         assert!(moment(&values, 3.0, 3).abs() < 4.0 * 0.125 * 15_f64.sqrt() / root);
@@ -235,7 +235,7 @@ mod tests {
         let n = 10_000;
         let cut = values(&normal_law("k", Some(2.5)), 1, n);
         assert!(cut.iter().all(|value| *value >= 2.5));
-        // phi(1)/Phi(1) = 0.287600 standard deviations above the mean.
+        // The mean of the truncated normal distribution is phi(1)/Phi(1) = 0.287600 standard deviations above the mean.
         let root = (n as f64).sqrt();
         assert!((moment(&cut, 3.0, 1) - 0.5 * 0.2876).abs() < 4.0 * 0.5 / root);
         let [one, name, seed] = [("k", 1), ("c", 1), ("k", 2)]

@@ -2,7 +2,7 @@
 
 use super::error::SweepError;
 
-/// Part `number` of `count`, from 1. Chunks are assigned in turn, to share slow regions.
+/// Part `number` of `count`, from 1. Chunks are assigned in turn, so that all shards get a share of slow regions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     number: usize,
@@ -10,13 +10,13 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// The whole sweep.
+    /// Shard with all chunks.
     pub const WHOLE: Self = Self {
         number: 1,
         count: 1,
     };
 
-    /// Parses for example `2/3`.
+    /// Parses a shard, for example `2/3`.
     ///
     /// # Errors
     /// Another form, or a number outside 1 to the count.

@@ -3,15 +3,15 @@
 use super::error::SweepError;
 use eomgen_model_spec::argument::Argument;
 
-/// Maximum number of periods of a measurement; rounding dominates long before.
+/// Maximum number of periods of a measurement; with more periods rounding errors dominate.
 pub const MAX_PERIODS: usize = 1_000_000;
 
 /// Transient and measured time, in forcing periods.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Span {
-    /// Periods before the measurement.
+    /// Number of periods before the measurement.
     pub transient: usize,
-    /// Measured periods.
+    /// Number of measured periods.
     pub periods: usize,
 }
 

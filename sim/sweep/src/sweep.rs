@@ -41,21 +41,21 @@ pub struct SweepRequest {
     pub seed: u64,
     /// Names of the measures.
     pub measures: Vec<String>,
-    /// Parameters with other values than in the specification, in declared units.
+    /// Parameters whose values differ from the specification, in declared units.
     pub set: Vec<(String, f64)>,
-    /// Order of every field; none for the orders of the specification.
+    /// Order of every field; `None` for the orders of the specification.
     pub order: Option<usize>,
     /// Parameter that is the angular frequency of the forcing.
     pub frequency: String,
     /// Discarded and measured forcing periods or crossings.
     pub span: Span,
-    /// End of the motion in s, instead of forcing periods. Default with a record: its end.
+    /// End of the motion in s, instead of forcing periods. Default with a record: the end of the record.
     pub until: Option<f64>,
     /// Poincaré section, `NAME=VALUE[:up|:down]`.
     pub section: Option<String>,
     /// Inputs given by expressions, `NAME=EXPR`.
     pub inputs: Vec<String>,
-    /// Dataset file, and the name of the record that drives the inputs.
+    /// Dataset file, and name of the record that drives the inputs.
     pub record: Option<(std::path::PathBuf, String)>,
     /// Initial states, `NAME=EXPR`, and the word `trim`.
     pub state: Vec<String>,
@@ -83,11 +83,12 @@ impl Sweep {
     /// Derives the model of a request and reads its conditions.
     ///
     /// # Errors
-    /// An invalid request with its place, or a model that cannot be derived.
+    /// An invalid request with its location, or a model that cannot be derived.
     pub fn new(declared: &Model, request: SweepRequest) -> Result<Self, Error> {
         let set = request.settings();
         let points = points(declared, &request, &set)?;
-        // Bounds are intervals: if both ends of an axis are admissible, all values between them are.
+        // If both ends of an axis are admissible, so are all values between them, because admissible values form
+        // intervals.
         let at = |point: usize| [&set[..], &points.settings(point)].concat();
         with_parameters(declared, &at(points.count() - 1))?;
         let first = at(0);
@@ -110,7 +111,7 @@ impl Sweep {
         if let Some(until) = request.until {
             check_end(until, &conditions)?;
         }
-        // Reports invalid names and values now instead of at every point.
+        // Reports invalid names and values once instead of at every point.
         match model.with_parameters(&points.settings(0)) {
             Ok(instance) => match instance.requested_state(&conditions.state) {
                 Err(error @ (Error::Specification(_) | Error::Request(_))) => return Err(error),
@@ -192,7 +193,7 @@ impl Sweep {
         Ok(Box::new(measure.ok_or_else(|| unknown_measure(name))??))
     }
 
-    /// Returns the job of these measures.
+    /// Returns the job of the given measures.
     ///
     /// # Errors
     /// Repeated measures.
@@ -219,7 +220,7 @@ impl Sweep {
     }
 }
 
-/// Returns the points of a model with parameters set.
+/// Returns the points of a sweep; `set` are parameters with other values.
 fn points(declared: &Model, request: &SweepRequest, set: &[(&str, f64)]) -> Result<Points, Error> {
     if let Some(count) = request.samples {
         let model = with_parameters(declared, set)?;
@@ -244,7 +245,7 @@ fn with_parameters(model: &Model, settings: &[(&str, f64)]) -> Result<Model, Err
         .map_err(|error| Diagnostics::from_one(model.source.clone(), error.diagnostic()).into())
 }
 
-/// Derives the model with the inputs of expressions, as `simulate` does: controllers may measure the inputs.
+/// Derives the model with inputs given by expressions, as `simulate` does: controllers may measure these inputs.
 fn driven_model(
     declared: &Model,
     given: &[Assignment],

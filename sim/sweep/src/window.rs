@@ -11,7 +11,7 @@ use crate::forcing::{Frequency, frequency};
 use crate::measure::Failure;
 use crate::span::Span;
 
-/// Number of intervals in the second half of a time for the measurement of growth.
+/// Number of intervals in the second half of a time, over which growth is measured.
 const GROWTH_INTERVALS: usize = 100;
 
 /// Time window of a measure.
@@ -38,7 +38,7 @@ pub enum Times {
 }
 
 impl Times {
-    /// Creates the window of the measure `asked`, which requires at least `least` periods.
+    /// Creates the window of the measure `name`, which requires at least `least` periods.
     ///
     /// # Errors
     /// An invalid window, or a parameter that is not a frequency.
@@ -64,7 +64,7 @@ impl Times {
         }
     }
 
-    /// Returns the options on which a measure's numbers depend.
+    /// Returns the options that determine a measure's numbers.
     pub fn options(&self) -> Vec<(String, String)> {
         let option = |name: &str, value: String| (name.to_owned(), value);
         match self {
@@ -80,7 +80,7 @@ impl Times {
     /// Returns the first and the last time of the window, in s.
     ///
     /// # Errors
-    /// [`Failure::Undefined`] if the frequency is not positive, or if the record ends before.
+    /// [`Failure::Undefined`] if the frequency is not positive, or if the record ends earlier.
     pub fn range(
         &self,
         instance: &Instance<'_>,
@@ -99,10 +99,10 @@ impl Times {
         Ok((begin, end))
     }
 
-    /// Returns the intervals of growth: once per period, or over the second half of the time.
+    /// Returns the time intervals over which growth is measured: once per period, or over the second half of the time.
     ///
     /// # Errors
-    /// Same as [`Times::range`].
+    /// See [`Times::range`].
     pub fn stretches(
         &self,
         instance: &Instance<'_>,
@@ -162,10 +162,10 @@ pub fn require_inputs(end: f64, conditions: &Conditions) -> Result<(), Failure> 
     }
 }
 
-/// Rejects a model with controllers for a measure that does not run them.
+/// Rejects a model with controllers, for a measure that does not support them.
 ///
 /// # Errors
-/// The first controller.
+/// The model has a controller; the message names the first one.
 pub fn reject_controllers(model: &CompiledModel, measure: &str) -> Result<(), SweepError> {
     let controlled = model.model().reject_controllers("this measure");
     let refused = |error| {

@@ -22,9 +22,9 @@ pub struct UndisclosedParameters {
     pub second_moment: f64,
     /// Constant motor torque a_m of Eq. (11), N m.
     pub a_m: f64,
-    /// Decrease of the motor torque with speed, b_m, N m s.
+    /// Decrease b_m of the motor torque with speed, N m s.
     pub b_m: f64,
-    /// Amplitude of the torque ripple F_w, N m.
+    /// Amplitude F_w of the torque ripple, N m.
     pub f_w: f64,
     /// Damping of both meshes, c_sp = c_pr, N s/m.
     pub c: f64,
@@ -67,7 +67,8 @@ pub enum ArmShapes {
     /// Mode shapes of a clamped-free beam.
     #[default]
     Corrected,
-    /// Printed Eq. (18) and (19): a value that is not a root, and a wrong sign.
+    /// Mode shapes by Eq. (18) and (19) as printed: a value that is not a root of the frequency equation, and a wrong
+    /// sign.
     Printed,
 }
 
@@ -175,15 +176,14 @@ impl Arm {
         value.copied().unwrap_or(f64::NAN)
     }
 
-    /// Computes the natural frequencies of the machine with both meshes in contact on one side, Hz.
+    /// Computes the natural frequencies of the machine while both meshes are in contact on one side, Hz.
     ///
     /// # Errors
     /// An order that was not derived, or inadmissible values.
     pub fn closed_mesh_frequencies(&self, case: &Case) -> Result<Vec<f64>, StudyError> {
         let compiled = self.compiled(case)?;
         let instance = compiled.with_parameters(&settings(case))?;
-        // A point beyond every backlash of the paper; the linearisation is the same in the whole
-        // regime.
+        // The deflection exceeds every backlash of the paper; the linearisation is the same in the whole regime.
         let beyond = 2.0 * case.backlash + 1e-3;
         let at = instance.operating_point(&[("x_sp", beyond), ("x_pr", beyond)])?;
         let linear = instance.linearise(at.point())?;
@@ -219,7 +219,7 @@ impl Arm {
     }
 }
 
-/// Returns the parameters set by a case, in SI.
+/// Returns the parameters that a case sets, in SI.
 fn settings(case: &Case) -> [(&'static str, f64); 9] {
     let UndisclosedParameters {
         second_moment,
@@ -241,21 +241,21 @@ fn settings(case: &Case) -> [(&'static str, f64); 9] {
     ]
 }
 
-/// Factors that convert a state to the quantities of the paper, and scales of energy.
+/// Factors that convert a state to the quantities of the paper, and scales of the energy norm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConversionFactors {
     /// Ratio l dtheta/(x_sp + x_pr) of Eq. (23), (24): l/(r_s i_sH).
     pub transmission_factor: f64,
     /// phi_i(l) of each mode.
     pub tip_amplitudes: Vec<f64>,
-    /// Rate x_c' at which the drive has the kinetic energy of the arm at unit rate.
+    /// Rate x_c' at which the drive has the kinetic energy that the arm has at unit rate.
     pub carrier_rate: f64,
-    /// Deflection of a mesh with the energy of the arm at unit rate.
+    /// Deflection of a mesh at which it has the energy that the arm has at unit rate.
     pub mesh_deflection: f64,
-    /// Rate of a mesh with this energy, if the sun moves.
+    /// Rate of a mesh at which it has the energy that the arm has at unit rate, if the sun moves.
     pub mesh_rate: f64,
     /// Natural frequencies of the clamped arm, Hz.
     pub natural_frequencies: Vec<f64>,
-    /// Inertia of the drive with a rigid arm and tight meshes, referred to the sun, kg m^2.
+    /// Inertia of the drive with a rigid arm and without backlash, referred to the sun, kg m^2.
     pub inertia: f64,
 }

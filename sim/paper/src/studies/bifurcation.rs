@@ -1,5 +1,5 @@
-//! Stroboscopic points of mesh and arm over the backlash. Coincident points show a motion with the
-//! forcing period, scattered points a motion without a period.
+//! Stroboscopic points of mesh and arm over the backlash. If points coincide, the motion has the forcing period;
+//! scattered points show a motion without a period.
 
 use std::f64::consts::PI;
 
@@ -15,7 +15,7 @@ use super::series::Record;
 
 /// Half-backlashes, um.
 const HALF_BACKLASHES_UM: std::ops::RangeInclusive<u32> = 0..=100;
-/// Numbers of forcing periods of the transient, and of the plot.
+/// Numbers of forcing periods of the transient and of the plot.
 const TRANSIENT_PERIODS: usize = 160;
 const SHOWN_PERIODS: usize = 80;
 
@@ -33,7 +33,7 @@ pub(super) struct Bifurcation {
 }
 
 impl Bifurcation {
-    /// Runs all backlashes, each from rest at zero.
+    /// Simulates the motion for every backlash, from rest at zero.
     pub fn run(arm: &Arm, order: usize, omega: f64) -> Result<Self, StudyError> {
         let sections = HALF_BACKLASHES_UM.into_par_iter().map(|micrometres| {
             let case = Case {
@@ -88,7 +88,7 @@ impl Bifurcation {
         }
     }
 
-    /// Returns a frame of the compression over b.
+    /// Returns the panel of the compression over b.
     fn mesh(&self, letter: &str) -> Frame<'_> {
         let title = format!(
             "{letter} mesh, {}, ω = {:.0}π rad/s",
@@ -126,7 +126,7 @@ fn frame<'a>(title: String, quantity: &str, b: &'a [f64], values: &'a [f64]) -> 
     }
 }
 
-/// Draws mesh and deflection of one arm, or the meshes of two.
+/// Draws mesh and deflection of one arm, or the meshes of two arms.
 pub(super) fn figure(found: &[Bifurcation]) -> Result<Figure, StudyError> {
     let letters = ["(a)", "(b)"];
     let meshes = found

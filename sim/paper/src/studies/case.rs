@@ -1,9 +1,8 @@
-//! Measurement of one case after its transient: kind of motion, positioning error with its two
-//! components, dominant mode.
+//! Measurement of one case after its transient: kind of motion, positioning error with its two components, and dominant
+//! mode.
 //!
-//! After the transient, a_m affects only the speed of rotation: no force depends on the angle of
-//! the drive, and in the rotating frame the mean torque is zero. Only for b_m = 0, when the drive
-//! keeps accelerating, does a_m load the teeth.
+//! After the transient, a_m affects only the speed of rotation: no force depends on the angle of the drive, and in the
+//! rotating frame the mean torque is zero. If b_m = 0, the drive keeps accelerating, and a_m loads the teeth.
 
 use eomgen_analysis::classify::{Evidence, Verdict};
 use eomgen_analysis::modes::{BandPower, TipShares, band_power, tip_shares};
@@ -19,40 +18,40 @@ use super::run::Run;
 use super::series::extents;
 pub use super::series::{Amplitude, Record};
 
-/// Forcing periods per segment of a spectrum: harmonics are then 20 steps apart.
+/// Number of forcing periods per segment of a spectrum; harmonics are then 20 frequency steps apart.
 const PERIODS_PER_SEGMENT: usize = 20;
-/// Smallest number of segments, overlapping by half, for which peaks of noise do not count as
-/// lines.
+/// Smallest number of segments, overlapping by half, for which peaks of noise do not count as spectral lines.
 const MIN_SEGMENTS: usize = 8;
-/// Approximate ratio of the limits of a band to its natural frequency.
+/// Approximate ratio of the upper limit of a band to its natural frequency, and of the natural frequency to the lower
+/// limit.
 const BAND_RATIO: f64 = 2.5;
 /// Limits of the number of samples per forcing period.
 const MIN_SAMPLES_PER_PERIOD: usize = 64;
 const MAX_SAMPLES_PER_PERIOD: usize = 16_384;
-/// Length of the transient in time constants J/b_m of the drive. The first mode of the arm decays
-/// through the motor about six times more slowly than the rotation (estimated from the extracted
-/// power, with the assumed values). From the second mode on, the arm is nearly undamped: remaining
-/// vibrations can make a motion quasi-periodic that would be periodic after minutes.
+/// Length of the transient in time constants J/b_m of the drive. The first mode of the arm decays through the motor
+/// about six times more slowly than the rotation (estimated from the extracted power, with the assumed values). From
+/// the second mode on, the arm is nearly undamped. Remaining vibrations can make a motion quasi-periodic that would
+/// become periodic after minutes.
 const TRANSIENT_TIME_CONSTANTS: f64 = 30.0;
 
 /// Lengths of the phases of a run, in forcing periods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RunLength {
-    /// Limits of the transient. Between them it is 30 time constants J/b_m of the drive, which also
-    /// determine the decay of the first mode. `Measurement::trend` shows a remaining transient.
+    /// Limits of the transient. Between the limits it is 30 time constants J/b_m of the drive, which also determine the
+    /// decay of the first mode. `Measurement::trend` shows a remaining transient.
     pub transient: (usize, usize),
-    /// Recorded forcing periods, at least 100 for the 0-1 test.
+    /// Number of recorded forcing periods, at least 100 for the 0-1 test.
     pub periods: usize,
-    /// Limits of the periods used for the classification, doubled until it is decided. The record
-    /// does not grow with them. The exponent of intermittent chaos has a reliable error from about
-    /// 1000 on.
+    /// Limits of the number of periods used for the classification, which is doubled until the kind of motion is
+    /// decided. The record does not grow with it. The exponent of intermittent chaos has a reliable error from about
+    /// 1000 periods on.
     pub classified_periods: (usize, usize),
-    /// Recorded periods after which fast growth ends the classification: by more than a factor e
-    /// per period after three standard errors. Such chaos needs no second test and is the most
-    /// expensive to simulate. `None` disables this.
+    /// Number of recorded periods after which fast growth ends the classification. Growth is fast if it exceeds a
+    /// factor e per period by three standard errors. Such chaos needs no second test and is the most expensive to
+    /// simulate. `None` disables this rule.
     pub strong_growth_periods: Option<usize>,
-    /// Number of modes whose bands the spectra resolve, which sets the sampling rate. The variance
-    /// of a modal coordinate does not need this rate.
+    /// Number of modes whose bands the spectra resolve, which determines the sampling rate. The variance of a modal
+    /// coordinate does not need this rate.
     pub modes: usize,
 }
 
@@ -99,22 +98,23 @@ impl RunLength {
 pub struct Measurement {
     /// Case of the run.
     pub case: Case,
-    /// Evidence on the kind of motion of the reducer.
+    /// Evidence for the kind of motion of the reducer.
     pub evidence: Evidence,
     /// Kind of motion.
     pub verdict: Verdict,
-    /// Forcing periods used for the classification.
+    /// Number of forcing periods used for the classification.
     pub periods: usize,
     /// Stroboscopic section: points of x_sp, x_pr and their rates once per forcing period; m and
     /// m/s.
     pub section: Vec<f64>,
-    /// Properties of the section.
+    /// Geometric properties of the section.
     pub shape: Shape,
     /// x_sp, m.
     pub x_sp: Amplitude,
     /// f_la as printed in Eq. (24), m.
     pub f_la: Amplitude,
-    /// dr - l dtheta, m: the error of the end point, because dtheta is a lag and dr a lead.
+    /// dr - l dtheta, m: the positioning error of the end point. dtheta is a lag and dr a lead, so they have opposite
+    /// signs.
     pub f_la_signed: Amplitude,
     /// l dtheta, m.
     pub transmission: Amplitude,
@@ -125,13 +125,12 @@ pub struct Measurement {
     /// Mean square of phi_i(l) q_i above the band of the first mode, m^2, which excludes the
     /// quasi-static deflection.
     pub vibration: Vec<f64>,
-    /// Power of dr in bands around the natural frequencies of the clamped arm. With the closed
-    /// drive the first frequency is 15 % higher, which does not matter for bands from 0.4 to 2.5
-    /// times the frequency. `None` for a rigid arm, and if the samples do not resolve the highest
-    /// mode.
+    /// Power of dr in bands around the natural frequencies of the clamped arm. With closed meshes the first frequency
+    /// is 15 % higher, which is small compared with the band from 0.4 to 2.5 times the frequency. `None` for a rigid
+    /// arm, or if the samples do not resolve the highest mode.
     pub bands: Option<BandPower>,
-    /// Logarithm of the ratio of the RMS of f_la in the second half of the record to that in the
-    /// first; 0 without a remaining transient.
+    /// Logarithm of the ratio of two RMS values of f_la, in the second and in the first half of the record; 0 without a
+    /// remaining transient.
     pub trend: f64,
     /// Length of the transient, s.
     pub transient: f64,
@@ -214,7 +213,7 @@ pub fn measure(arm: &Arm, case: &Case, length: &RunLength) -> Result<Measurement
     })
 }
 
-/// Reports growth over the first periods that is fast enough to decide.
+/// Returns true if growth over the first periods is fast enough to decide the kind of motion.
 fn grows_fast_at_once(
     neighbours: &mut TangentMotion,
     propagator: &mut Propagator,
@@ -236,8 +235,8 @@ fn transient_periods(case: &Case, length: &RunLength, lengths: &ConversionFactor
     ((time / case.period()).ceil() as usize).clamp(least, most.max(least))
 }
 
-/// Returns the share of spectral lines in the power of x_sp outside the forcing harmonics, or
-/// `None` if the record is so short that noise would count as lines.
+/// Returns the fraction of the power of x_sp outside the forcing harmonics that spectral lines have. `None` if the
+/// record is so short that noise would count as lines.
 fn line_share(x_sp: &[f64], interval: f64, samples: usize) -> Result<Option<f64>, StudyError> {
     if x_sp.len() < MIN_SEGMENTS * PERIODS_PER_SEGMENT * samples / 2 {
         return Ok(None);
@@ -248,8 +247,8 @@ fn line_share(x_sp: &[f64], interval: f64, samples: usize) -> Result<Option<f64>
     Ok(welch(&rest, interval, PERIODS_PER_SEGMENT * samples, Trend::Mean)?.line_share())
 }
 
-/// Computes the power above the first band. Frequencies above half the sampling rate are aliased
-/// and keep their power, except for a small part aliased below the band.
+/// Computes the power above the band of the first mode. Frequencies above half the sampling rate are aliased and keep
+/// their power, except for a small part that is aliased below the band.
 fn vibration(
     modal: &[Vec<f64>],
     interval: f64,

@@ -1,4 +1,4 @@
-//! Figures of a search: number of claims that hold at once, and share of sets for each claim.
+//! Figures of a search: number of claims that hold at once, and share of parameter sets in which each claim holds.
 
 use eomgen_plot::bars::{Histogram, Shares, histogram, shares};
 use eomgen_plot::{PlotError, Reference};
@@ -22,7 +22,7 @@ pub fn draw_charts(found: &SearchResult, assumed: &[Judgement]) -> Result<Vec<Fi
     ])
 }
 
-/// Draws the numbers of sets over the number of claims that hold.
+/// Draws a histogram of the parameter sets over the number of claims that hold.
 fn draw_claims_at_once(found: &SearchResult, assumed: &[Judgement]) -> Result<Figure, PlotError> {
     let holds = |judgement: &&Judgement| judgement.holding == Verdict::Holds;
     let mark = |label: &str, number: usize| Reference {
@@ -49,11 +49,11 @@ fn draw_claims_at_once(found: &SearchResult, assumed: &[Judgement]) -> Result<Fi
     Ok(figure("together.svg", caption, svg))
 }
 
-/// Draws the share of the sets in which each claim holds.
+/// Draws the share of parameter sets in which each claim holds.
 fn draw_shares_of_claims(found: &SearchResult) -> Result<Figure, PlotError> {
     let rows = CLAIMS.iter().zip(tally::shares(&found.screened));
     let rows = rows.map(|(claim, share)| {
-        // An underscore would start a subscript.
+        // An underscore would be drawn as a subscript.
         let parts = vec![
             share.holds_strictly,
             share.holds - share.holds_strictly,

@@ -1,9 +1,8 @@
 //! Claims of sections 3, 4.1 to 4.3 and 5 of the paper as data: text, place, rule and cases.
 //!
-//! The paper calls every motion quasi-periodic that is not chaotic. In the generous reading, such a
-//! claim holds for regular motion, periodic or quasi-periodic. In the strict reading, which is
-//! counted separately, a periodic motion contradicts it. The positioning error also has two
-//! readings: with the correct sign, and as printed.
+//! The paper calls every motion quasi-periodic that is not chaotic. In the generous reading, such a claim holds for
+//! regular motion: periodic or quasi-periodic. In the strict reading, which is counted separately, a periodic motion
+//! contradicts the claim. The positioning error also has two readings: with the correct sign, and as printed.
 
 use super::reading::{CaseKey, Forcing};
 
@@ -14,25 +13,24 @@ pub enum Rule {
     Regular(CaseKey),
     /// Chaotic motion.
     Chaotic(CaseKey),
-    /// Regular motion at b = 10 um, chaotic at 100 um, without a return to regular in between.
+    /// Regular motion at b = 10 um and chaotic motion at 100 um, without a return to regular motion in between.
     Route(Forcing),
-    /// The greatest positioning error grows from each b to the next, 0 to 100 um, and by 5 % in
-    /// total; a decrease of 1 % is tolerated. The strict reading uses f_la of Eq. (24) as printed,
-    /// a sum of opposed parts. In the generous reading the error dr - l dtheta of the end point is
-    /// sufficient.
+    /// The greatest positioning error grows from each b to the next, 0 to 100 um, and by 5 % in total; a decrease of 1
+    /// % is tolerated. The strict reading uses f_la of Eq. (24) as printed, a sum of opposed parts. In the generous
+    /// reading, growth of the error dr - l dtheta of the end point suffices.
     ErrorGrows(Forcing),
-    /// dr exceeds l dtheta, peak to peak and in RMS; undecided if these disagree.
+    /// dr exceeds l dtheta, peak to peak and in RMS; undecided if the two measures disagree.
     DeflectionDominates(CaseKey),
-    /// l dtheta exceeds dr, peak to peak and in RMS; undecided if these disagree.
+    /// l dtheta exceeds dr, peak to peak and in RMS; undecided if the two measures disagree.
     TransmissionDominates(CaseKey),
     /// The ratio of l dtheta to dr, peak to peak, grows from each b to the next.
     ShareGrows(Forcing),
     /// This mode, counted from 1, has the largest vibration at the tip.
     DominantMode(CaseKey, usize),
-    /// The mode with the largest vibration differs between the b > 0.
+    /// The mode with the largest vibration is not the same for all b > 0.
     ModeChanges(Forcing),
-    /// Between b = 10 and 100 um, dr changes, peak to peak and in RMS, by less than a factor of 1.5
-    /// and by less than l dtheta.
+    /// Between b = 10 and 100 um, dr changes by less than a factor of 1.5 and by less than l dtheta, peak to peak and
+    /// in RMS.
     DeflectionSteady(Forcing),
     /// For at least one b > 0 the motion is regular at one forcing frequency and chaotic at the
     /// other.
@@ -51,9 +49,9 @@ pub struct Claim {
     pub id: &'static str,
     /// Section and figure of the paper.
     pub place: &'static str,
-    /// Paraphrased claim.
+    /// Claim in other words than the paper's.
     pub text: &'static str,
-    /// Rule that decides it.
+    /// Rule that decides the claim.
     pub rule: Rule,
 }
 
@@ -121,7 +119,7 @@ pub const CLAIMS: [Claim; 30] = [
 ];
 
 impl Rule {
-    /// Returns the cases of the rule.
+    /// Returns the cases that the rule needs.
     pub fn cases(self) -> Vec<CaseKey> {
         let all = |forcing, backlashes: &[u32]| -> Vec<CaseKey> {
             let keys = backlashes.iter().map(|b| CaseKey::flexible(forcing, *b));

@@ -1,5 +1,4 @@
-//! Markdown table of the claims: paraphrase, verdicts at the assumed values, and shares of the
-//! searched sets.
+//! Markdown table of the claims: text, verdicts at the assumed values, and shares of the searched parameter sets.
 
 use super::claims::CLAIMS;
 use super::judge::{Judgement, Verdict};

@@ -9,15 +9,15 @@ use super::case::Record;
 use super::error::StudyError;
 use super::series::{FIRST_MODE, X_SP};
 
-/// Sampling rate, Hz: twice the rate needed for the 5 kHz vibration of the meshes.
+/// Sampling rate, Hz: twice the minimum for the 5 kHz vibration of the meshes.
 const SAMPLING_RATE_HZ: f64 = 20_480.0;
 /// Recorded time for spectra, s: a whole number of forcing periods.
 const RECORDED_S: f64 = 40.0;
-/// Forcing periods per segment of a spectrum, averaged over at least 19 segments.
+/// Number of forcing periods per segment of a spectrum, which averages at least 19 segments.
 const PERIODS_PER_SEGMENT: usize = 10;
 /// Length of the time histories in figures, s: 5 or 10 forcing periods.
 pub(super) const FIGURE_WINDOW_S: f64 = 2.0;
-/// Components of a point of the section.
+/// Number of components of a point of the section.
 const SECTION_COMPONENTS: usize = 4;
 /// Band of the spectra, Hz: from below the forcing to above the meshes.
 pub(super) const FIGURE_BAND_HZ: (f64, f64) = (1.0, 1e4);
@@ -27,14 +27,14 @@ pub(super) const FIGURE_BAND_HZ: (f64, f64) = (1.0, 1e4);
 pub struct SampledCase {
     /// Case of the run.
     pub case: Case,
-    /// Natural frequencies of the machine with both meshes closed, Hz.
+    /// Natural frequencies of the machine with both meshes in contact, Hz.
     pub natural: Vec<f64>,
     /// Series over the time window of the figures; times from the start at rest.
     pub history: Record,
     /// Rate of x_sp over the same window, m/s.
     pub x_sp_dot: Vec<f64>,
-    /// Stroboscopic section: points of x_sp, x_pr and their rates once per forcing period; m and
-    /// m/s. Empty if none was taken.
+    /// Stroboscopic section: points of x_sp, x_pr and their rates once per forcing period; m and m/s. Empty if no
+    /// section was taken.
     pub section: Vec<f64>,
     /// Spectrum of x_sp over the band of the figures, m^2/Hz.
     pub x_sp: PowerSpectrum,
@@ -45,7 +45,7 @@ pub struct SampledCase {
 }
 
 impl SampledCase {
-    /// Runs a case from rest at zero and records it from `transient` s on.
+    /// Simulates a case from rest at zero and records it from the time `transient` (s) on.
     ///
     /// # Errors
     /// Inadmissible values, an unbounded number of switches.
@@ -95,7 +95,7 @@ pub(super) fn even_times(begin: f64, step: f64, steps: usize) -> Vec<f64> {
     (0..=steps).map(|n| begin + n as f64 * step).collect()
 }
 
-/// Simulates a case from rest at zero and returns its series at these times, s.
+/// Simulates a case from rest at zero and returns its series at the given times, s.
 pub(super) fn sample_series(arm: &Arm, case: &Case, times: &[f64]) -> Result<Record, StudyError> {
     Ok(sample_with_rate(arm, case, times)?.0)
 }

@@ -7,7 +7,7 @@ use eomgen_sim::piecewise_linear::ExactError;
 /// Reason for a failed study.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StudyError {
-    /// Invalid request, with the correction.
+    /// Invalid request, with its remedy.
     #[error("{0}")]
     Request(String),
     /// Failed simulation.
@@ -17,7 +17,7 @@ pub enum StudyError {
     #[error(transparent)]
     Analysis(#[from] AnalysisError),
     #[error("{0}")]
-    /// File that could not be read or written, with the message of the system.
+    /// File that could not be read or written, with the message of the operating system.
     File(String),
 }
 

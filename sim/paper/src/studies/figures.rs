@@ -10,8 +10,8 @@ use super::error::StudyError;
 use super::planes::{orbit, section};
 use super::report::{Figure, case_name};
 
-/// Smallest density drawn, relative to the greatest. Smaller values are rounding or leakage of the
-/// window and are drawn at this level.
+/// Smallest density drawn, relative to the greatest. Smaller values are rounding or leakage of the window; they are
+/// replaced by this level.
 const MIN_RELATIVE_DENSITY: f64 = 1e-13;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +71,7 @@ pub(super) struct Heading {
     pub caption: String,
 }
 
-/// Draws rows of two frames.
+/// Draws rows of two panels.
 pub(super) fn draw_rows(heading: Heading, rows: &[FigureRow<'_>]) -> Result<Figure, StudyError> {
     let drawn: Vec<Vec<Vec<f64>>> = rows.iter().map(densities).collect();
     let sections: Vec<[Vec<f64>; 2]> = rows.iter().map(section_columns).collect();
@@ -104,7 +104,7 @@ fn section_columns(row: &FigureRow<'_>) -> [Vec<f64>; 2] {
     }
 }
 
-/// Draws frames in two columns.
+/// Draws panels in two columns.
 pub(super) fn draw_frames(
     Heading {
         file,
@@ -139,7 +139,7 @@ fn densities(row: &FigureRow<'_>) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Raises densities below the floor to the floor.
+/// Replaces densities below the floor by the floor.
 pub(super) fn raise_to_floor(density: &[f64]) -> Vec<f64> {
     let floor = MIN_RELATIVE_DENSITY * density.iter().copied().fold(0.0, f64::max);
     density.iter().map(|density| density.max(floor)).collect()
@@ -208,7 +208,7 @@ pub(super) fn density_panel<'a>(of: &str, series: Vec<Series<'a>>) -> Panel<'a> 
     }
 }
 
-/// Returns marks at the forcing frequency and at the natural frequencies with both meshes closed.
+/// Returns marks at the forcing frequency and at the natural frequencies with both meshes in contact.
 pub(super) fn frequency_marks(display: &SampledCase) -> Vec<Reference> {
     let forcing = Reference {
         label: "ω/2π".to_owned(),

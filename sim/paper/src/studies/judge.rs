@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 use super::claims::{Claim, Rule};
 use super::reading::{CaseKey, Kind, Reading};
 
-/// Readings by case.
+/// Readings of the measured cases.
 pub type Readings = BTreeMap<CaseKey, Reading>;
 
 /// Relative decrease that still counts as growth, because the extremes of a chaotic record scatter.
 const MAX_RELATIVE_DECREASE: f64 = 0.01;
-/// Smallest total growth.
+/// Smallest relative growth in total.
 const MIN_TOTAL_GROWTH: f64 = 0.05;
-/// Largest ratio of a little change.
+/// Largest ratio of two amplitudes that counts as a small change.
 const MAX_LITTLE_RATIO: f64 = 1.5;
 /// Largest relative difference between converged truncation orders.
 const MAX_CONVERGED_DIFFERENCE: f64 = 0.02;
@@ -54,7 +54,7 @@ impl Verdict {
         if holds { Self::Holds } else { Self::Fails }
     }
 
-    /// Holds if all hold, fails if one fails.
+    /// Combines verdicts: holds if all hold, fails if one fails.
     fn all(parts: &[Self]) -> Self {
         if parts.contains(&Self::Fails) {
             Self::Fails
@@ -119,14 +119,14 @@ fn is_quasi_periodic(found: &[&Reading]) -> Verdict {
     }
 }
 
-/// Judges a route: motion may become chaotic anywhere between the ends, but not regular again. It
-/// is undecided if the unknown cases permit both.
+/// Judges a route to chaos: motion may become chaotic anywhere between the ends, but not regular again. The verdict is
+/// undecided if the unknown cases permit both.
 fn judge_route(found: &[&Reading]) -> Verdict {
     let (Some(first), Some(last)) = (found.first(), found.last()) else {
         return Verdict::Undecided;
     };
     let kinds: Vec<Kind> = found.iter().map(|reading| reading.kind).collect();
-    // A chaotic case before a regular one is a return; an unknown case may be one.
+    // A chaotic case before a regular one is a return to regular motion; an unknown case may be chaotic or regular.
     let pairs = |before: &[Kind], after: &[Kind]| {
         let turns = |(place, kind): (usize, &Kind)| {
             before.contains(kind) && kinds.iter().skip(place + 1).any(|k| after.contains(k))
@@ -150,7 +150,7 @@ fn judge_route(found: &[&Reading]) -> Verdict {
     ])
 }
 
-/// Requires quasi-periodic motion in the strict sense at the smallest backlash.
+/// Judges a route to chaos that must start with quasi-periodic motion in the strict sense, at the smallest backlash.
 fn judge_strict_route(found: &[&Reading]) -> Verdict {
     let first = found
         .first()
@@ -175,7 +175,7 @@ fn grows(sizes: &[f64]) -> Verdict {
     }
 }
 
-/// Returns the verdicts with either sign of the transmission error, and as printed.
+/// Returns two verdicts: for the error with the correct sign or as printed, and for the error as printed.
 fn judge_error_growth(found: &[&Reading]) -> (Verdict, Verdict) {
     let printed = grows(&sizes(found, |r| r.f_la.largest));
     let signed = grows(&sizes(found, |r| r.f_la_signed.largest));
@@ -185,7 +185,7 @@ fn judge_error_growth(found: &[&Reading]) -> (Verdict, Verdict) {
     }
 }
 
-/// Compares dr with l dtheta by both measures: larger for `sign` 1, smaller for -1.
+/// Compares dr with l dtheta, peak to peak and in RMS: dr must be larger for `sign` 1, smaller for `sign` -1.
 fn judge_dominance(found: &[&Reading], sign: f64) -> Verdict {
     let [reading] = found else {
         return Verdict::Undecided;
@@ -220,7 +220,7 @@ fn mode_changes(found: &[&Reading]) -> Verdict {
     }
 }
 
-/// Returns the ratio of the greatest to the least size.
+/// Returns the ratio of the largest to the smallest size.
 fn size_ratio(sizes: &[f64]) -> f64 {
     let least = sizes.iter().copied().fold(f64::INFINITY, f64::min);
     sizes.iter().copied().fold(0.0, f64::max) / least
@@ -236,7 +236,7 @@ fn is_steady(found: &[&Reading]) -> Verdict {
     Verdict::of(spans < MAX_LITTLE_RATIO && rms < MAX_LITTLE_RATIO && spans < transmission)
 }
 
-/// Expects the readings of the first frequency, then those of the second.
+/// Judges whether the frequency matters. `found` has the readings of the first frequency, then those of the second.
 fn judge_frequency(found: &[&Reading]) -> Verdict {
     let (one, other) = found.split_at(found.len() / 2);
     let pairs: Vec<Verdict> = one

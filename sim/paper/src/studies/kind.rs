@@ -1,4 +1,4 @@
-//! Kind of motion of a case, from as many forcing periods as needed.
+//! Classification of the motion of a case, from as many forcing periods as needed.
 
 use eomgen_analysis::classify::{Evidence, Motion, SIGNIFICANT_STANDARD_ERRORS, Verdict, classify};
 use eomgen_analysis::exponent::Exponent;
@@ -11,8 +11,8 @@ use super::error::StudyError;
 use super::neighbours::TangentMotion;
 use super::series::{FIRST_MODE, X_PR, X_SP};
 
-/// Tolerance for equal points of the section, relative to the extent of the motion: above the
-/// remains of a transient that decays over tens of periods, below visible differences.
+/// Tolerance for equal points of the section, relative to the extent of the motion. It exceeds the rest of a transient
+/// that decays over tens of periods, and is below visible differences.
 const SECTION_TOLERANCE: f64 = 2e-3;
 
 /// Kind of a motion with its evidence.
@@ -22,11 +22,11 @@ pub(super) struct Classification {
     /// Points of x_sp, x_pr and their rates once per forcing period; m and m/s.
     pub section: Vec<f64>,
     pub shape: Shape,
-    /// Forcing periods used.
+    /// Number of forcing periods used.
     pub periods: usize,
 }
 
-/// Properties of a motion that do not come from neighbouring motions.
+/// Properties of a motion that are known without the Lyapunov exponent.
 pub(super) struct MotionProperties<'a> {
     pub case: &'a Case,
     /// Extent of each component of the state.
@@ -34,8 +34,8 @@ pub(super) struct MotionProperties<'a> {
     pub line_share: Option<f64>,
 }
 
-/// Classifies a motion from `periods` forcing periods, and doubles them up to `most` until the kind
-/// is decided.
+/// Classifies a motion from `periods` forcing periods. Doubles this number up to `most` until the kind of motion is
+/// decided.
 pub(super) fn classify_motion(
     neighbours: &mut TangentMotion,
     propagator: &mut Propagator,
@@ -63,7 +63,7 @@ fn weigh(
         .iter()
         .flat_map(|state| places.map(|place| state.get(place).copied().unwrap_or_default()))
         .collect();
-    // The scale of a constant coordinate is arbitrary.
+    // A constant coordinate has no scale; any value will do.
     let scale = places.map(|place| match known.extents.get(place) {
         Some(scale) if *scale > 0.0 => *scale,
         _ => 1.0,
@@ -98,7 +98,7 @@ impl Classification {
     }
 }
 
-/// Reports growth that is fast enough to decide without other evidence.
+/// Returns true if the growth is fast enough to decide without other evidence.
 pub(super) fn is_strong_growth(exponent: &Exponent, case: &Case) -> bool {
     (exponent.value - SIGNIFICANT_STANDARD_ERRORS * exponent.standard_error) * case.period() > 1.0
 }

@@ -1,5 +1,5 @@
-//! Drawing of the machine with the positive direction of every angle, deflection and error. Radii
-//! and the length of the arm are to scale (Table I); deflections are exaggerated.
+//! Drawing of the machine with the positive direction of every angle, deflection and error. Radii and the length of the
+//! arm are to scale (Table I); deflections are exaggerated.
 
 use eomgen_plot::drawing::{Drawing, LineStyle, Part, arc_points, draw_sketch, point_on_circle};
 
@@ -8,7 +8,7 @@ use super::report::Figure;
 /// Centre of the sun, px.
 const CENTRE: (f64, f64) = (200.0, 236.0);
 const SCALE: f64 = 0.86;
-/// Half the module, mm; times the teeth of sun, planet and ring, it gives the pitch radii.
+/// Half the module, mm; multiplied by the numbers of teeth of sun, planet and ring, it gives the pitch radii.
 const HALF_MODULE: f64 = 1.5;
 const SUN: f64 = 27.0 * HALF_MODULE * SCALE;
 const PLANET: f64 = 36.0 * HALF_MODULE * SCALE;
@@ -91,8 +91,8 @@ fn gears() -> Vec<Part> {
     parts
 }
 
-/// Draws the lines of action at both meshes of the upper planet, with the leading side of a
-/// positive deflection.
+/// Draws the lines of action at both meshes of the upper planet. An arrow marks the side that leads if the deflection
+/// is positive.
 fn meshes() -> Vec<Part> {
     let (sun, ring) = (
         point_on_circle(CENTRE, SUN, 90.0),
@@ -105,16 +105,16 @@ fn meshes() -> Vec<Part> {
         ]
     };
     vec![
-        // The teeth of the sun move to the left there and push the planet.
+        // The teeth of the sun move to the left at this mesh and push the planet.
         Part::Arrow(LineStyle::Dimension, along(sun, 180.0 - PRESSURE)),
         words((sun.0 - 48.0, sun.1 - 22.0), 1, "x_sp"),
-        // The teeth of the planet move to the right there and push the ring, outwards too.
+        // The teeth of the planet move to the right at this mesh and push the ring, also outwards.
         Part::Arrow(LineStyle::Dimension, along(ring, PRESSURE)),
         words((ring.0 + 46.0, ring.1 - 14.0), -1, "x_pr"),
     ]
 }
 
-/// Draws the forces of both meshes on the right planet. Their radial components push it out of each mesh.
+/// Draws the forces of both meshes on the right planet. The radial components push the planet out of the meshes.
 fn forces() -> Vec<Part> {
     let place = PLANETS[2];
     let planet = point_on_circle(CENTRE, SUN + PLANET, place);
@@ -135,11 +135,11 @@ fn forces() -> Vec<Part> {
     parts
 }
 
-/// Draws the arm at rest on its carrier, and bent.
+/// Draws the arm at rest on its carrier, and the bent arm.
 fn arm() -> Vec<Part> {
     let bent = (0..=40).map(|step| {
         let s = f64::from(step) / 40.0;
-        // Deflection by a load at the end, which is close to the first mode.
+        // Deflection by a load at the end, which is similar to the first mode shape.
         let w = TIP * s * s * (3.0 - s) / 2.0;
         let along = point_on_circle(CENTRE, LENGTH * s, CARRIER);
         point_on_circle(along, w, CARRIER + 90.0)

@@ -1,14 +1,14 @@
 //! Numerical studies of the paper: cases, claims, and their verdicts with this model.
 //!
-//! - [`arm`] derives the arm with any undisclosed values. [`case`](mod@case) measures one case:
-//!   `run` simulates it, `neighbours` computes the Lyapunov exponent, `kind` classifies the motion,
-//!   `series` has the quantities of the paper.
-//! - [`reading`] extracts the numbers for the claims. [`claims`] has the claims with their rules,
-//!   [`judge`] the verdicts, `evidence` their reasons.
-//! - [`sets`] spreads the undisclosed values over plausible ranges, [`search`] judges all claims at
-//!   each, [`tally`] counts, [`charts`] draws.
-//! - [`responses`] and [`order`] are the studies, `report` their files. `display` samples cases for
-//!   `figures` and `planes`, `bifurcation` varies the backlash, `machine` draws the arm.
+//! - [`arm`] derives the arm with any undisclosed values.
+//! - [`case`](mod@case) measures one case: `run` simulates it, `neighbours` computes the Lyapunov exponent, `kind`
+//!   classifies the motion, and `series` has the quantities of the paper.
+//! - [`reading`] extracts the numbers for the claims. [`claims`] has the claims with their rules, [`judge`] the
+//!   verdicts, `evidence` the reasons.
+//! - [`sets`] distributes the undisclosed values over plausible ranges, [`search`] judges all claims for each set,
+//!   [`tally`] counts verdicts, [`charts`] draws them.
+//! - [`responses`] and [`order`] are the studies; `report` creates their files.
+//! - `display` samples cases for `figures` and `planes`, `bifurcation` varies the backlash, `machine` draws the arm.
 
 pub mod arm;
 mod bifurcation;

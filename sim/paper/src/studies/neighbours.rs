@@ -1,10 +1,9 @@
 //! Largest Lyapunov exponent of the motion relative to the free rotation of the machine.
 //!
-//! A tangent vector is propagated exactly along the motion and measured once per forcing period (G.
-//! Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn, Meccanica 15 (1980) 9-30). The displacement
-//! of the carrier is excluded: no force depends on it, so its exponent is zero and would hide
-//! negative ones. If the rotation is undamped, its rate is excluded too, because its linear growth
-//! would appear as a slow divergence.
+//! A tangent vector is propagated exactly along the motion and measured once per forcing period (G. Benettin, L.
+//! Galgani, A. Giorgilli, J.-M. Strelcyn, Meccanica 15 (1980) 9-30). The displacement of the carrier is excluded: no
+//! force depends on it, so its exponent is zero and would hide negative ones. If the rotation is undamped, its rate is
+//! excluded too, because its linear growth would appear as a slow divergence.
 
 use std::f64::consts::TAU;
 
@@ -17,22 +16,22 @@ use super::error::StudyError;
 use super::run::Run;
 use super::series::{FIRST_MODE, X_C, X_PR, X_SP};
 
-/// Forcing periods after which the tangent vector has the direction of fastest growth.
+/// Number of forcing periods after which the tangent vector has the direction of fastest growth.
 const ALIGNMENT_PERIODS: usize = 5;
 
-/// Motion with a tangent vector, once per forcing period.
+/// Motion with a tangent vector, sampled once per forcing period.
 pub(super) struct TangentMotion {
     carried: MotionWithTangents,
     begin: f64,
     period: f64,
-    /// Logarithm of the growth of the vector over each period.
+    /// Logarithm of the growth of the tangent vector over each period.
     growths: Vec<f64>,
-    /// State at the beginning and after each period.
+    /// State at the start and after each period.
     states: Vec<Vec<f64>>,
 }
 
 impl TangentMotion {
-    /// Starts a tangent vector at the beginning of a recorded motion.
+    /// Starts a tangent vector at the start of a recorded motion.
     pub fn start(
         run: &Run,
         propagator: &mut Propagator,
@@ -52,7 +51,7 @@ impl TangentMotion {
         })
     }
 
-    /// Propagates until `periods` forcing periods are available.
+    /// Propagates the motion until `periods` forcing periods are available.
     pub fn extend(
         &mut self,
         propagator: &mut Propagator,
@@ -72,16 +71,15 @@ impl TangentMotion {
         &self.states
     }
 
-    /// Computes the largest exponent so far.
+    /// Computes the largest exponent from the periods so far.
     pub fn exponent(&self) -> Result<Exponent, StudyError> {
         let turned = self.growths.get(ALIGNMENT_PERIODS..).unwrap_or_default();
         Ok(mean_exponent(turned, self.period)?)
     }
 }
 
-/// Returns weights for which a free vibration of the arm on the closed drive keeps its norm, as it
-/// keeps its energy. Otherwise the phase of the vibration would appear as growth. Excluded
-/// components have weight 0.
+/// Returns weights for which a free vibration of the arm with closed meshes has a constant norm, just as its energy is
+/// constant. Otherwise the phase of the vibration would appear as growth. Excluded components have the weight 0.
 fn weights(case: &Case, lengths: &ConversionFactors) -> Vec<f64> {
     let rates = FIRST_MODE + case.order;
     let mut weights = vec![1.0; 2 * rates];

@@ -4,13 +4,13 @@ use eomgen_plot::{Axes, Frame, Panel, Reference, Series, SeriesStyle};
 
 use super::display::SampledCase;
 
-/// Axes x_sp and its rate.
+/// Axes of the phase plane: x_sp and its rate.
 const PLANE: Axes = Axes::Quantity {
     symbol: "x_sp",
     unit: "m",
 };
 
-/// Draws the phase plane over the first displayed forcing period.
+/// Draws the phase plane over the first forcing period shown.
 pub(super) fn orbit<'a>(letter: &str, display: &'a SampledCase) -> Frame<'a> {
     let count = display.per_period() + 1;
     let first = |values: &'a [f64]| values.get(..count).unwrap_or(values);

@@ -1,4 +1,4 @@
-//! Numbers of a measured case that the claims use, without its series.
+//! Numbers of a measured case that the claims use, without time series.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -51,7 +51,7 @@ impl CaseKey {
         }
     }
 
-    /// Returns the case with these undisclosed values.
+    /// Returns the case with the given undisclosed values.
     pub fn case(self, undisclosed: UndisclosedParameters) -> Case {
         Case {
             order: self.order,
@@ -83,7 +83,7 @@ pub enum Kind {
     Regular,
     /// Chaotic motion.
     Chaotic,
-    /// Undecided kind.
+    /// The kind of motion is undecided.
     Unknown,
 }
 
@@ -92,7 +92,7 @@ pub enum Kind {
 pub struct Reading {
     /// Kind of motion.
     pub kind: Kind,
-    /// Quasi-periodic in the strict sense: regular, without a period.
+    /// True for quasi-periodic motion in the strict sense: regular, without a period.
     pub is_strictly_quasi_periodic: bool,
     /// Sentence with the kind and its numbers.
     pub sentence: String,
@@ -109,14 +109,12 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Reads a measurement.
+    /// Extracts the numbers of a measurement.
     ///
-    /// The verdict of [`eomgen_analysis::classify`] applies if it is decided. If it is undecided,
-    /// the exponent decides: the motion is regular if the exponent is not positive and its error
-    /// cannot hide growth of more than 0.1 per forcing period. The 0-1 test mistakes the slow beat
-    /// of a nearly undamped mode with the forcing for diffusion, unless the record is much longer
-    /// than the beat. The motion is chaotic if it grows by more than a factor e per forcing period
-    /// and no period was found.
+    /// If the verdict of [`eomgen_analysis::classify`] is undecided, the exponent decides. The motion is regular if the
+    /// exponent is not positive and its error cannot hide growth of more than 0.1 per forcing period. It is chaotic if
+    /// it grows by more than a factor e per forcing period and no period was found. Unless the record is much longer
+    /// than the beat, the 0-1 test mistakes the slow beat of a nearly undamped mode with the forcing for diffusion.
     pub fn from_measurement(measurement: &Measurement) -> Self {
         let motion = measurement.verdict.motion;
         let kind = match motion {
@@ -154,7 +152,7 @@ impl Reading {
     }
 }
 
-/// Reports growth that is fast enough to decide without the 0-1 test.
+/// Returns true if the growth is fast enough to decide without the 0-1 test.
 fn grows_fast(measurement: &Measurement) -> bool {
     let Evidence {
         exponent, period, ..
@@ -163,7 +161,7 @@ fn grows_fast(measurement: &Measurement) -> bool {
     period.is_none() && exponent.is_some_and(|exponent| is_strong_growth(&exponent, case))
 }
 
-/// Reports an exponent that is not positive within a small error.
+/// Returns true if the exponent is not positive within a small error.
 fn does_not_grow(evidence: &Evidence) -> bool {
     let Some(exponent) = evidence.exponent else {
         return false;

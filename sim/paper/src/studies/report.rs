@@ -1,4 +1,4 @@
-//! Files of a study: figures, tables, and a document that describes them and the measurements.
+//! Files of a study: figures, tables, and a JSON document that describes them and the measurements.
 
 use serde_json::{Value, json};
 
@@ -10,7 +10,7 @@ use super::arm::Case;
 use super::case::{Amplitude, Measurement};
 use super::display::SampledCase;
 
-/// Files of a study with their description.
+/// Files of a study, with the data of its JSON document.
 #[derive(Clone, Debug)]
 pub struct Study {
     /// Figures.
@@ -48,7 +48,7 @@ pub struct Table {
 }
 
 impl Study {
-    /// Returns the document of a study.
+    /// Returns the JSON document of a study.
     pub fn document(&self, name: &str, model: &Model) -> Value {
         let figures = self.figures.iter().map(|figure| {
             json!({
@@ -82,7 +82,7 @@ pub(super) fn case_name(case: &Case) -> String {
     format!("b{micrometres:03}_w{multiple:02}pi_s{}", case.order)
 }
 
-/// Returns the given parameters with their sources, except those set by the cases.
+/// Returns the values of the parameters with their sources, except those that the cases set.
 fn parameters(model: &Model) -> Value {
     let values = model.parameter_values().unwrap_or_default();
     let given = model.parameters.iter().zip(values);
@@ -100,7 +100,7 @@ fn parameters(model: &Model) -> Value {
     Value::Object(entries.collect())
 }
 
-/// Returns the series and the spectra of a displayed case as tables.
+/// Returns the tables of a sampled case: time series and spectra.
 pub(super) fn tables(display: &SampledCase) -> [Table; 2] {
     let id = case_name(&display.case);
     let history = &display.history;
@@ -136,7 +136,7 @@ pub(super) fn tables(display: &SampledCase) -> [Table; 2] {
     ]
 }
 
-/// Returns a measured case with the names of its files.
+/// Returns a measured case as JSON, with the names of its files.
 pub(super) fn case_json(measured: &Measurement) -> Value {
     let id = case_name(&measured.case);
     let evidence = &measured.evidence;

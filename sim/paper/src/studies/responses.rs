@@ -20,29 +20,29 @@ use super::report::{Figure, Study, Table, case_json, case_name, tables};
 /// Truncation order of the paper.
 const PAPER_ORDER: usize = 4;
 
-/// Callback with the completed share of the work.
+/// Callback that receives the completed fraction of the work.
 pub type Progress<'a> = &'a (dyn Fn(f64) + Sync);
 
-/// Runs the cases of Fig. 5-10: omega = 5 pi, b = 0 to 100 um.
+/// Runs the study of Fig. 5-10: omega = 5 pi, b = 0 to 100 um.
 ///
 /// # Errors
-/// A case that cannot be run, a figure that cannot be drawn.
+/// A case that cannot be simulated, a figure that cannot be drawn.
 pub fn backlash(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
     responses(5.0 * PI, 5, progress)
 }
 
-/// Runs the cases of Fig. 11-15: omega = 10 pi, b = 0 to 100 um.
+/// Runs the study of Fig. 11-15: omega = 10 pi, b = 0 to 100 um.
 ///
 /// # Errors
-/// As for [`backlash`].
+/// See [`backlash`].
 pub fn frequency(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
     responses(10.0 * PI, 11, progress)
 }
 
-/// Runs the cases of Fig. 16-19: rigid and flexible arm at omega = 10 pi, b = 10 to 100 um.
+/// Runs the study of Fig. 16-19: rigid and flexible arm at omega = 10 pi, b = 10 to 100 um.
 ///
 /// # Errors
-/// As for [`backlash`].
+/// See [`backlash`].
 pub fn flexibility(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
     let arm = Arm::new(&[0, PAPER_ORDER])?;
     let pairs = HALF_BACKLASHES_UM.into_iter().filter(|b| *b > 0);
@@ -176,7 +176,7 @@ fn draw_deflections(
     draw_rows(heading, &drawn)
 }
 
-/// Returns the description of a case in the title of a panel.
+/// Returns a short description of a case for the title of a panel.
 fn short_title(case: &Case) -> String {
     let (micrometres, multiple) = (case.backlash * 1e6, case.omega / PI);
     format!("b = {micrometres:.0} µm, ω = {multiple:.0}π rad/s")
@@ -191,7 +191,7 @@ fn conditions(case: &Case) -> String {
     )
 }
 
-/// Measures and displays cases in parallel.
+/// Measures and samples cases in parallel.
 pub(super) fn run(
     arm: &Arm,
     cases: &[Case],
@@ -201,8 +201,7 @@ pub(super) fn run(
     let whole = 2.0 * cases.len() as f64;
     let step = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / whole);
     let found = cases.par_iter().map(|each| {
-        // The long record, 100 MB, is dropped; only the transient time, the section and the numbers
-        // are kept.
+        // The long record has 100 MB and is dropped; the transient time, the section and the numbers are kept.
         let (transient, section, mut report) = measure_case(arm, each)?;
         step();
         let display = SampledCase {
@@ -236,7 +235,7 @@ fn section_table(each: &Case) -> String {
     format!("{}_section.parquet", case_name(each))
 }
 
-/// Returns the series, the spectra and the section of a case as tables.
+/// Returns all tables of a case: time series, spectra and section.
 fn all_tables(display: &SampledCase) -> Vec<Table> {
     let names = ["x_sp", "x_pr", "x_sp_dot", "x_pr_dot"]
         .into_iter()
@@ -249,7 +248,7 @@ fn all_tables(display: &SampledCase) -> Vec<Table> {
     tables(display).into_iter().chain([section]).collect()
 }
 
-/// Definitions of the numbers in the document.
+/// Definitions of the numbers in the JSON document.
 const NOTES: [&str; 8] = [
     "lengths in m, times in s, exponents in 1/s, densities in m^2/Hz; t = 0 is the start at rest",
     "rms is about the mean; peak is the greatest magnitude",

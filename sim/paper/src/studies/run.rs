@@ -1,4 +1,4 @@
-//! Motion after its transient, from rest at zero, that can be extended.
+//! Motion after its transient, from rest at zero. It can be extended.
 
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::piecewise_linear::Propagator;
@@ -9,20 +9,20 @@ use super::error::StudyError;
 pub(super) struct Run {
     /// Evenly spaced times, s.
     pub times: Vec<f64>,
-    /// States at these times.
+    /// States at the recorded times.
     pub states: Vec<Vec<f64>>,
     /// Start of the record, s.
     pub begin: f64,
     /// Number of switches in the record.
     pub switches: usize,
-    /// Numbers of samples per forcing period and before the record.
+    /// Numbers of samples: per forcing period, and before the record.
     samples: usize,
     before: usize,
     step: f64,
 }
 
 impl Run {
-    /// Simulates the transient of `waited` forcing periods.
+    /// Simulates the transient, which has `waited` forcing periods.
     pub fn start(
         propagator: &mut Propagator,
         case: &Case,
@@ -61,7 +61,7 @@ impl Run {
         let none = HeldInputs::zero(0);
         let span = (self.end(), end);
         let trajectory = propagator.simulate(state, span, &times, &none, &mut |_| {})?;
-        // Without play, the two flanks of a mesh change at one instant.
+        // Without play, the contact changes from one flank of a mesh to the other at one instant.
         let instants = trajectory.events.chunk_by(|a, b| a.t == b.t);
         self.switches += instants.count();
         self.times.extend(trajectory.times);

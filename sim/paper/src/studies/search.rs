@@ -1,8 +1,8 @@
-//! Search: judges all claims at thousands of parameter sets, the best again with longer runs, and
-//! the neighbourhood of the best.
+//! Search: judges all claims for thousands of parameter sets, then the best sets again with longer runs, and the
+//! neighbourhood of the best set.
 //!
-//! Sets are judged in parallel, in chunks. A complete chunk is written to a temporary name and
-//! renamed. An interrupted search resumes and gives the same bytes.
+//! Sets are judged in parallel, in chunks. The file of a complete chunk is written under a temporary name and renamed.
+//! A search that is interrupted and resumed gives a bit-identical result.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ const RULES_VERSION: u32 = 3;
 
 const SETS_PER_CHUNK: usize = 20;
 
-/// Request of a search.
+/// Request for a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SearchRequest {
     /// Number of screened sets.
@@ -31,7 +31,7 @@ pub struct SearchRequest {
     pub seed: u64,
     /// Number of the best sets that are judged again with longer runs.
     pub confirmed: usize,
-    /// Number of judged neighbours of the best set, within 10 % in each parameter.
+    /// Number of judged neighbours of the best set, which differ by up to 10 % in each parameter.
     pub neighbours: usize,
     /// Lengths of the runs for screening.
     pub screening: RunLength,
@@ -72,12 +72,12 @@ impl JudgedSet {
             .count()
     }
 
-    /// Returns the number of claims that hold strictly.
+    /// Returns the number of claims that hold in the strict reading.
     pub fn strictly_holding(&self) -> usize {
         self.strict.iter().filter(|letter| **letter == 'H').count()
     }
 
-    /// Formats a line: index, values, counts, verdicts, strict verdicts.
+    /// Formats a line: index, values, counts, verdicts, verdicts in the strict reading.
     pub fn to_line(&self) -> String {
         let UndisclosedParameters {
             second_moment,
@@ -119,7 +119,7 @@ impl JudgedSet {
     }
 }
 
-/// Returns the orders of all claims.
+/// Returns the truncation orders that the claims need.
 pub fn orders() -> Vec<usize> {
     let mut orders: Vec<usize> = cases().iter().map(|key| key.order).collect();
     orders.sort_unstable();
@@ -127,8 +127,8 @@ pub fn orders() -> Vec<usize> {
     orders
 }
 
-/// Measures all cases in parallel and judges all claims at one set. A case that cannot be measured
-/// leaves its claims undecided.
+/// Measures all cases in parallel and judges all claims for one parameter set. If a case cannot be measured, its claims
+/// are undecided.
 pub fn judge_all(
     arm: &Arm,
     undisclosed: UndisclosedParameters,
@@ -162,7 +162,7 @@ fn judged(
     }
 }
 
-/// Runs a search with its results in `folder`. `progress` receives the number of completed sets.
+/// Runs a search and stores its results in `folder`. `progress` receives the number of completed sets.
 ///
 /// # Errors
 /// A folder that cannot be written, or that contains another search.
@@ -213,7 +213,8 @@ pub fn search(
     })
 }
 
-/// Sorts by the number of claims that hold, then that hold strictly, then by index.
+/// Sorts parameter sets by the number of claims that hold, then by the number that hold in the strict reading, then by
+/// index.
 pub fn rank(judged: &[JudgedSet]) -> Vec<&JudgedSet> {
     let mut ranked: Vec<&JudgedSet> = judged.iter().collect();
     ranked.sort_by_key(|judged| {
@@ -277,7 +278,7 @@ impl Store {
         Ok(all)
     }
 
-    /// Writes a file to a temporary name and renames it.
+    /// Writes a file under a temporary name and renames it.
     fn write(&self, path: &Path, text: &str) -> Result<(), StudyError> {
         let unfinished = path.with_extension("unfinished");
         fs::write(&unfinished, text)

@@ -11,7 +11,7 @@ use super::tally::{exclusive_pairs, histogram, share_with, shares, undecided};
 /// Number of sets listed in the document.
 const LISTED_SETS: usize = 20;
 
-/// Formats every judged set, with one column per claim: H holds, F fails, U undecided.
+/// Formats every judged set as a CSV line, with one column per claim: H holds, F fails, U undecided.
 pub fn csv(found: &SearchResult) -> String {
     let mut text = "stage,set,I,a_m,b_m,F_w,c,holding,strictly_holding".to_owned();
     for claim in &CLAIMS {
@@ -121,7 +121,7 @@ fn set_json(set: &JudgedSet) -> Value {
     })
 }
 
-/// Formats the verdicts at the assumed values and the number of claims that hold together.
+/// Formats the verdicts at the assumed values, and the number of claims that hold at once.
 pub fn summary(assumed: &[Judgement], found: &SearchResult) -> String {
     let mut text = String::new();
     for (claim, judged) in CLAIMS.iter().zip(assumed) {
@@ -147,7 +147,7 @@ pub fn summary(assumed: &[Judgement], found: &SearchResult) -> String {
     text
 }
 
-/// Formats the best set, its number of claims and its robustness.
+/// Formats the best set, its number of claims, and the verdicts of its neighbours.
 fn format_best_set(best: &JudgedSet, found: &SearchResult) -> String {
     let u = best.undisclosed;
     let sets = found.screened.len();

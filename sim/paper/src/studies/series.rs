@@ -1,28 +1,28 @@
-//! Recorded series of a case in the quantities of the paper, and their sizes.
+//! Recorded series of a case in the quantities of the paper, and their amplitudes.
 
 use super::arm::ConversionFactors;
 
-/// Indices of the coordinates in the state; the modes follow, then the rates.
+/// Indices of the coordinates in the state. The modes follow the coordinates, and the rates follow the modes.
 pub(super) const X_SP: usize = 0;
 pub(super) const X_PR: usize = 1;
 pub(super) const X_C: usize = 2;
 pub(super) const FIRST_MODE: usize = 3;
 
-/// Size of a quantity over the record, in its unit.
+/// Amplitude of a quantity over the record, in its unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Amplitude {
     /// Greatest magnitude.
     pub largest: f64,
     /// Mean.
     pub mean: f64,
-    /// Standard deviation.
+    /// RMS about the mean.
     pub rms: f64,
-    /// Difference of greatest and least value.
+    /// Difference between the greatest and the least value.
     pub span: f64,
 }
 
 impl Amplitude {
-    /// Computes the sizes of a series.
+    /// Computes the amplitude of a series.
     pub fn from_values(values: &[f64]) -> Self {
         let count = values.len().max(1) as f64;
         let mean = values.iter().sum::<f64>() / count;

@@ -1,4 +1,4 @@
-//! Undisclosed parameters, spread evenly over plausible ranges.
+//! Sets of the undisclosed parameters, distributed evenly over plausible ranges.
 
 use super::arm::UndisclosedParameters;
 
@@ -15,7 +15,7 @@ pub struct Range {
     pub reason: &'static str,
 }
 
-/// Searched ranges; values are spread evenly in their logarithms.
+/// Searched ranges; the logarithms of the values are evenly distributed.
 #[rustfmt::skip]
 pub const RANGES: [Range; 5] = [
     Range { name: "I", unit: "m^4", bounds: (1e-10, 1e-8), reason: "sections of 1e-4 m^2: a strip 3.5 mm thick (1e-10), a 10 mm square (8.3e-10), a bar 30 mm high (7.5e-9), a thin tube (1e-8)" },
@@ -25,11 +25,11 @@ pub const RANGES: [Range; 5] = [
     Range { name: "c", unit: "N s/m", bounds: (195.0, 1950.0), reason: "3 % to 30 % of critical damping of the sun-planet mesh; damping ratios of 3 % to 17 % are usual for gear meshes" },
 ];
 
-/// Interval of the sets with b_m = 0.
+/// Every set at this interval has b_m = 0.
 const UNDAMPED_INTERVAL: usize = 4;
 
-/// Root above 1 of x^6 = x + 1. Powers of its inverse fill five dimensions evenly (M. Roberts, "The
-/// unreasonable effectiveness of quasirandom sequences", 2018).
+/// Root above 1 of x^6 = x + 1. Powers of its reciprocal fill five dimensions evenly (M. Roberts, "The unreasonable
+/// effectiveness of quasirandom sequences", 2018).
 const HARMONIOUS_ROOT: f64 = 1.134_724_138_401_519_5;
 
 /// Returns point `index` of a sequence that fills the unit cube evenly; the seed shifts it.

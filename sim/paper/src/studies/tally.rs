@@ -1,4 +1,4 @@
-//! Counts of a search: share of each claim, number of claims that hold at once, exclusive pairs.
+//! Counts of a search: shares of the verdicts on each claim, number of claims that hold at once, exclusive pairs.
 
 use super::claims::CLAIMS;
 use super::search::JudgedSet;
@@ -6,13 +6,13 @@ use super::search::JudgedSet;
 /// Shares of the verdicts on one claim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Share {
-    /// Share of the sets in which it holds.
+    /// Share of the parameter sets in which the claim holds.
     pub holds: f64,
-    /// Share of the sets in which it fails.
+    /// Share of the parameter sets in which the claim fails.
     pub fails: f64,
-    /// Share of the sets in which it is undecided.
+    /// Share of the parameter sets in which the claim is undecided.
     pub undecided_share: f64,
-    /// Share of the sets in which it holds strictly.
+    /// Share of the parameter sets in which the claim holds in the strict reading.
     pub holds_strictly: f64,
 }
 
@@ -52,7 +52,7 @@ pub fn histogram(judged: &[JudgedSet]) -> Vec<usize> {
     counts
 }
 
-/// Returns pairs of claims that each hold in some set and never together.
+/// Returns pairs of claims that each hold in some set but never hold together.
 pub fn exclusive_pairs(judged: &[JudgedSet]) -> Vec<(usize, usize)> {
     let holds = |set: &JudgedSet, claim: usize| set.verdicts.get(claim) == Some(&'H');
     let somewhere: Vec<usize> = (0..CLAIMS.len())
@@ -72,7 +72,7 @@ pub fn exclusive_pairs(judged: &[JudgedSet]) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// Returns the share of the sets with at least `holding` claims that hold.
+/// Returns the share of the sets in which at least `holding` claims hold.
 pub fn share_with(judged: &[JudgedSet], holding: usize) -> f64 {
     let found = judged
         .iter()

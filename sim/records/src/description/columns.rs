@@ -23,7 +23,7 @@ pub enum ColumnKey {
 }
 
 impl ColumnKey {
-    /// Returns its place in the dataset file.
+    /// Returns the location in the dataset file.
     pub fn span(&self) -> Span {
         match self {
             Self::Name(written) => written.span,
@@ -46,8 +46,8 @@ pub struct Column {
 }
 
 impl Column {
-    /// Evaluates the period of wrapped values if it is an expression, at the parameter values of a model. An invalid unit of
-    /// the column is reported elsewhere.
+    /// Evaluates the period of wrapped values if it is an expression, at the parameter values of a model. An invalid
+    /// unit of the column is reported elsewhere.
     ///
     /// # Errors
     /// An invalid expression, another unit, and a period that is not positive.
@@ -76,16 +76,16 @@ impl Column {
     }
 }
 
-/// Values of `wrap`, in messages.
+/// Admissible values of `wrap`, for messages.
 const PERIOD_FORMS: &str =
     "expected a number in the column's unit, an expression such as \"2*pi rad\", or \"none\"";
 
-/// Declaration of jumps from one end of a range to the other.
+/// Declaration for a column with jumps from one end of a range to the other.
 #[derive(Clone, Copy, Debug)]
 pub enum Wrap {
     /// Period of wrapped values, in the column's unit.
     Period(Number),
-    /// The jumps are real.
+    /// The jumps are part of the motion.
     Never,
 }
 
@@ -94,9 +94,9 @@ pub enum Wrap {
 pub struct Time {
     /// Column of the time.
     pub column: Column,
-    /// Number of samples that become one.
+    /// Decimation factor: number of samples of which one is kept.
     pub every: usize,
-    /// True if the channels pass a low-pass filter first.
+    /// True if a low-pass filter is applied to the channels before decimation.
     pub filter: bool,
 }
 
@@ -120,9 +120,9 @@ pub struct InputColumn {
 pub struct MotionColumn {
     /// Name of the coordinate.
     pub name: Name,
-    /// Column of the position or, by its unit, of the speed.
+    /// Column of the position or of the speed; its unit decides.
     pub column: Column,
-    /// Position at a file's first sample, in SI, for a speed.
+    /// Position at the first sample of a file, in SI; only for a speed.
     pub initial: Option<Number>,
 }
 
@@ -135,7 +135,7 @@ pub struct ChannelColumn {
     pub column: Column,
     /// Standard deviation of the noise, in the column's unit.
     pub noise: Number,
-    /// Measured quantity, if it is not the channel's name.
+    /// Measured quantity, if it differs from the channel's name.
     pub observable: Option<StringValue>,
     /// Prior of the gain.
     pub gain: Option<Prior>,

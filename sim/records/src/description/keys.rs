@@ -1,5 +1,5 @@
-//! Tables and keys of a dataset file. The reader, its messages and the reference page
-//! (`docs/discovery.md`) follow this table.
+//! Tables and keys of a dataset file. The reader, its messages and the reference page (`docs/discovery.md`) are based
+//! on these lists.
 
 use eomgen_model_spec::keys::{Key, Keys, Kind};
 
@@ -96,7 +96,7 @@ pub static EXPERIMENT_INPUT: Keys = Keys::new(&[
     Key::new("rate", "number", "100", "highest rate of change, in the unit of the column per s; that of a sine with its range at the upper end of its band if absent"),
     Key::new("band", "two numbers", "[0.1, 20]", "lowest and highest frequency of oscillating forms, in Hz; from one period in the record to the limit of 99 % of the recorded power if absent"),
 ]);
-/// First level of a dataset file.
+/// Top-level tables of a dataset file.
 pub static TABLES: Keys = Keys::new(&[
     Key::new("title", "text", "\"First runs\"", "title of the report"),
     Key::new("source", "text", "\"...\"", "origin of the records"),

@@ -1,4 +1,4 @@
-//! Dataset file: tables and keys with their places. Names, units and numbers are checked elsewhere.
+//! Dataset file: tables and keys with their locations. Other modules check names, units and numbers.
 
 pub mod columns;
 pub mod experiment;
@@ -57,10 +57,10 @@ pub struct Description {
 }
 
 impl Description {
-    /// Reads a dataset file, with the names and parameter values of a model in its expressions.
+    /// Reads a dataset file. Its expressions may contain names of a model, with the parameter values of the model.
     ///
     /// # Errors
-    /// A file that cannot be read, all errors of grammar, tables and keys, and those of expressions.
+    /// A file that cannot be read, all errors of grammar, tables and keys, and errors of expressions.
     pub fn read(path: &Path, model: &Model) -> Result<Self, Diagnostics> {
         let mut description = Self::parse(toml_file::source(path, MAX_DESCRIPTION_BYTES)?)?;
         let mut found = Diagnostics::new(description.source.clone());
@@ -171,7 +171,7 @@ fn read_uncertain(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(Name, N
     Some((entry.name.clone(), relative))
 }
 
-/// Reads a table; its default if it is absent.
+/// Reads a table, or returns its default if it is absent.
 fn read_or_default<T: Default>(
     top: &Record<'_>,
     name: &str,

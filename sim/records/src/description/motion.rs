@@ -91,7 +91,7 @@ fn read_values(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InitialStat
     Some(InitialState::Values(given))
 }
 
-/// Reads the length of a window that is a text.
+/// Reads the length of a window that is given as text.
 fn length_in_words(written: &StringValue) -> Result<Option<Number>, Diagnostic> {
     const RECORD: &str = "record";
     if written.text == RECORD {

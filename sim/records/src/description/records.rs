@@ -15,7 +15,7 @@ pub struct Records {
     pub train: Vec<Stretch>,
     /// Test files, relative to the dataset's folder.
     pub test: Vec<Stretch>,
-    /// Place of the table.
+    /// Location of the table.
     pub span: Span,
 }
 
@@ -26,7 +26,7 @@ pub struct Stretch {
     pub file: StringValue,
     /// First time, in the unit of the time column.
     pub from: Option<Number>,
-    /// End time, which is not included.
+    /// End time, exclusive.
     pub to: Option<Number>,
 }
 

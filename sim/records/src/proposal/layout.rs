@@ -1,4 +1,4 @@
-//! Detection of separator and decimal sign: those with the longest block of lines of numbers.
+//! Detection of separator and decimal sign: the choice with the longest block of lines of numbers.
 
 use crate::description::format::{DECIMALS, Format, SEPARATORS, Separator};
 use crate::number::parse_number;
@@ -52,12 +52,12 @@ struct Block<'t> {
     decimal: u8,
     first: usize,
     cells: usize,
-    /// Number of numbers, weighted by their fraction of all cells; 0 without a block.
+    /// Number of numeric cells, weighted by their fraction of all cells; 0 without a block.
     score: f64,
 }
 
 impl<'t> Block<'t> {
-    /// Returns the block up to the last complete line.
+    /// Finds the block, up to the last complete line.
     fn find_block(
         lines: &'t [&'t str],
         separator: Separator,
@@ -162,7 +162,7 @@ impl<'t> Block<'t> {
             };
         };
         if is_comment(nearest) {
-            // Names after a comment sign are read only here. The reader of records skips that line.
+            // Names after a comment sign are read only here, because the reader of records skips that line.
             format.comment = comment.map(|sign| sign as u8);
             let line = self.lines[nearest]
                 .trim_start()
@@ -222,7 +222,7 @@ impl<'t> Block<'t> {
     }
 }
 
-/// Splits a line into cells without quotes; a separator at its end adds no cell.
+/// Splits a line into cells without quotes; a separator at the end of the line adds no cell.
 fn split_cells(line: &str, separator: Separator) -> Vec<String> {
     split_row(line, separator, None)
 }
@@ -245,7 +245,7 @@ fn split_row(line: &str, separator: Separator, count: Option<usize>) -> Vec<Stri
     cells
 }
 
-/// Splits a line whose cells may be quoted, and then contain the separator.
+/// Splits a line whose cells may be quoted; quoted cells may contain the separator.
 fn read_quoted_row(line: &str, separator: u8) -> Vec<String> {
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(separator)

@@ -43,7 +43,7 @@ impl FileColumn {
         }
     }
 
-    /// Reads the unit from the end of the name, for example `time_ms`, if none is known.
+    /// If no unit is known, reads the unit from the end of the name, for example `time_ms`.
     pub fn read_unit_suffix(&mut self) {
         let Some((stem, unit)) = self.stem.rsplit_once('_') else {
             return;
@@ -61,7 +61,8 @@ pub(crate) struct Quantity {
     pub name: String,
     pub unit: Unit,
     pub is_input: bool,
-    /// True if a unit without a name can identify it. Derivatives of observables need their name.
+    /// True if the unit of a column without a name can identify this quantity. Derivatives of observables need their
+    /// name.
     is_found_by_unit: bool,
 }
 
@@ -147,10 +148,11 @@ const MATCHING_RULES: [(Rule, &str); 5] = [
     ),
 ];
 
-/// Number of rules that do not guess: they precede the reading of units at the ends of names.
+/// Number of rules that do not guess. They are applied before units are read from the ends of names.
 const EXACT_RULES: usize = 3;
 
-/// Matches unambiguous columns and quantities: by their whole names, then with the ends of other names as units.
+/// Matches unambiguous columns and quantities: first by their whole names, then with the ends of other names read as
+/// units.
 pub(crate) fn match_columns(columns: &mut [FileColumn], quantities: &[Quantity]) -> Vec<Match> {
     let mut matches = Vec::new();
     apply_rules(
@@ -178,7 +180,7 @@ fn apply_rules(
     for (rule, why) in rules {
         let may = |column: usize, quantity: usize| {
             let (c, q) = (&columns[column], &quantities[quantity]);
-            // An unknown unit can have any dimension.
+            // A column with an unknown unit can have any dimension.
             let of_unit = match (&c.unit, &c.unknown_unit) {
                 (Some(unit), _) => unit.dimension == q.unit.dimension,
                 (None, unknown) => unknown.is_none(),
@@ -333,7 +335,7 @@ mod tests {
                 pair("TIP_mm", "tip")
             ]
         );
-        // Of a short name the end is a unit, not a misspelling.
+        // The end of a short name is a unit, not a spelling error.
         let units = |name: &str| {
             let mut columns = [FileColumn::from_header(1, name, "")];
             let found = match_columns(&mut columns, &all);

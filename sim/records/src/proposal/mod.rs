@@ -1,5 +1,5 @@
-//! Proposal of a dataset file for a record and a model: `layout` of the file, `matching` of its
-//! columns, their `noise`, and the text with the reason for every guess (`written`).
+//! Proposal of a dataset file for a record and a model. `layout` detects the layout of the file, `matching` matches its
+//! columns, and `dataset_file` writes the text with the reason for every guess.
 
 mod dataset_file;
 pub(crate) mod layout;
@@ -30,7 +30,7 @@ const WINDOWS_PER_RECORD: f64 = 20.0;
 
 const MIN_SAMPLES_PER_WINDOW: f64 = 100.0;
 
-/// Number of samples above which the record is decimated, because a search would take long.
+/// Number of samples above which decimation is proposed, because a search would take too long.
 const MAX_UNDECIMATED_SAMPLES: usize = 100_000;
 
 const TIME_COLUMN_NAMES: [&str; 6] = ["t", "time", "zeit", "timestamp", "seconds", "sec"];
@@ -52,7 +52,7 @@ impl DetectedRecord<'_> {
         &self.values[self.time]
     }
 
-    /// Returns the unit of a matched column and its source: the file or a guess.
+    /// Returns the unit of a matched column, and its source: the file or a guess.
     fn unit(&self, matched: &Match) -> (Unit, &'static str) {
         let own = &self.quantities[matched.quantity].unit;
         let degree = || {
@@ -195,7 +195,7 @@ pub fn propose_dataset(record: &Path, name: &str, model: &Model) -> Result<Strin
 }
 
 fn detect_columns(record: &Path, bytes: &[u8]) -> Result<(Format, Vec<FileColumn>), Refusal> {
-    // The reader reports a file that is not text.
+    // If the file is not text, the reader reports the error.
     let text = csv_file::skip_lines(record, bytes, &Format::default())?;
     let text = String::from_utf8_lossy(&text);
     let layout = layout::detect_layout(&text).ok_or_else(|| {

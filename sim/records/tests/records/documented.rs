@@ -56,7 +56,7 @@ fn example_records_match_their_script() {
         };
         let (anew, shipped) = (numbers(&anew), numbers(&shipped));
         assert_eq!(anew.len(), shipped.len());
-        // The last digit can differ between implementations of the cosine.
+        // The last digit may depend on the implementation of the cosine.
         let pairs = anew.iter().zip(&shipped);
         assert!(
             pairs.into_iter().all(|(a, b)| (a - b).abs() < 2e-3),

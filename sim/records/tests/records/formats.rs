@@ -1,5 +1,5 @@
-//! Tests of record formats: separators, decimal signs, comments, columns without names, parts of a
-//! file, decimation. Each is read exactly or rejected with place and cure.
+//! Tests of record formats: separators, decimal signs, comments, columns without names, parts of a file, decimation.
+//! Each format is read exactly, or rejected with location and remedy.
 
 mod wrapped;
 
@@ -11,7 +11,7 @@ use eomgen_records::dataset::Dataset;
 use eomgen_records::{Refusal, propose_dataset, read_dataset};
 use tempfile::TempDir;
 
-/// Dataset file of a pendulum; `format` is the place of further tables.
+/// Dataset file of a pendulum; `format` is replaced by further tables.
 const DESCRIPTION: &str = r#"
 [records]
 train = ["train.csv"]
@@ -41,7 +41,7 @@ fn angle(sample: usize, turn: f64) -> f64 {
     100.0 * (1.3 * STEP * sample as f64 + turn).cos() + 20.0 * (3.1 * STEP * sample as f64).sin()
 }
 
-/// Returns a record with the lines that `line` writes for time and angle.
+/// Returns the text of a record: `head`, then one line per sample, written by `line` from time and angle.
 fn record(head: &str, turn: f64, line: impl Fn(f64, f64) -> String) -> String {
     let samples = 0..SAMPLES;
     let lines = samples.map(|sample| line(STEP * sample as f64, angle(sample, turn)));
@@ -89,7 +89,7 @@ fn holds(dataset: &Dataset) {
     }
 }
 
-/// Writer of a line, given time and angle.
+/// Function that writes a line from time and angle.
 type Line = Box<dyn Fn(f64, f64) -> String>;
 
 #[test]
@@ -260,7 +260,7 @@ fn file_is_split_by_times() {
 
 #[test]
 fn decimation_works_with_and_without_low_pass() {
-    // Ripple far above the new Nyquist frequency.
+    // The ripple is far above the new Nyquist frequency.
     let ripple = |t: f64| 5.0 * (2.0 * std::f64::consts::PI * 19.0 * t + 0.4).sin();
     let line = move |t: f64, a: f64| format!("{t:.2},{:.6}\n", a + ripple(t));
     let every = |more: &str| DESCRIPTION.replace("\"s\"", &format!("\"s\"\nevery = 5\n{more}"));
@@ -332,7 +332,7 @@ fn sensor_priors_are_converted_to_si() {
 #[test]
 fn proposed_dataset_file_reads_original_numbers() {
     let comma = |number: f64| format!("{number:.6}").replace('.', ",");
-    // Repeatable noise with about one standard deviation.
+    // Repeatable noise with a standard deviation of about one.
     let noise = |t: f64| 3.4 * ((t * 7919.123).sin() * 43_758.545).fract().abs() - 1.7;
     let cases: [(&str, Line, &[&str]); 4] = [
         (
@@ -601,7 +601,7 @@ fn first_order_state_is_a_channel() {
     assert!(refused.to_string().contains("`i_2`"), "{refused}");
 }
 
-/// Slide with a force that is measured along a given motion.
+/// Slide whose motion is given and whose force is measured.
 const SLIDE: &str = r#"
 [model]
 name = "slide"
@@ -669,7 +669,7 @@ fn given_motion_has_rates() {
         assert_eq!(dataset.motion, ["x", "y"]);
         let record = &dataset.train[0];
         for (place, t) in record.times.iter().enumerate() {
-            // Three inputs, then coordinates, rates and second rates of both.
+            // The row has three inputs, then coordinates, rates and second rates of both coordinates.
             let row = record.inputs.last_sample(*t);
             assert_eq!(row.len(), 3 + 6);
             let (sine, cosine) = (3.0 * t).sin_cos();
@@ -694,7 +694,7 @@ fn given_motion_has_rates() {
     }
 }
 
-/// Reads a dataset of a given motion whose cells of `x` between two samples, of the training record, are empty.
+/// Reads a dataset with given motion; in the training record, the cells of `x` between two samples are empty.
 fn along_with_empty(description: &str, empty: std::ops::Range<usize>) -> Result<Dataset, Refusal> {
     let folder = tempfile::tempdir().expect("a folder");
     write(folder.path(), "dataset.toml", description);
@@ -761,7 +761,7 @@ fn empty_cells_of_a_given_motion_split_a_record_and_few_are_filled() {
     let notes = dataset.notes.join("\n");
     let note = "train[0]: missing, and interpolated: 4 samples from t = 1.8 s on of `x`";
     assert!(notes.contains(note), "{notes}");
-    // Nothing is known before the first position.
+    // The position is unknown before its first value.
     let dataset = along_with_empty(ALONG, 0..20);
     let dataset = dataset.unwrap_or_else(|refusal| panic!("{refusal}"));
     assert_eq!(dataset.train[0].times[0], 0.2);
@@ -776,7 +776,7 @@ fn integrated_speed_with_a_gap_is_rejected() {
     let said = said.expect_err("an unknown position").to_string();
     let place = "30 samples of `y` are missing between 1.790000 s and 2.100000 s";
     assert!(said.contains(place) && said.contains("train.csv"), "{said}");
-    // The part before the gap has a known position.
+    // In the part before the gap the position is known.
     let before = given.replacen(
         "train = [\"train.csv\"]",
         "train = [{ file = \"train.csv\", to = 1.7 }]",
@@ -967,7 +967,7 @@ fn missing_last_cell_keeps_column_names() {
     assert!(text.contains("column = \"theta\""), "{text}");
 }
 
-/// Trolley with prescribed position and rope with prescribed length.
+/// Trolley with prescribed position, and rope with prescribed length.
 const CRANE: &str = r#"[model]
 name = "crane"
 [parameters]

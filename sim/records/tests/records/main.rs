@@ -1,4 +1,4 @@
-//! Reading records: documented forms, file formats, wrapped angles.
+//! Tests of reading records: documented forms, file formats, wrapped angles.
 
 mod documented;
 mod formats;

@@ -1,5 +1,5 @@
-//! Sections by an event: a coordinate or a rate that crosses a value in one direction. A periodic
-//! angle crosses it once per turn. The general solver locates these events like its switches.
+//! Sections at events: a coordinate or a rate crosses a value in one direction. A periodic angle crosses the value once
+//! per turn. The general solver locates these events like switches of the model.
 
 use eomgen_model_spec::argument::Argument;
 use std::cell::{Cell, RefCell};
@@ -17,10 +17,10 @@ use crate::conditions::Start;
 use crate::error::SweepError;
 use crate::measure::Failure;
 
-/// Number of parts of the simulated time, so that it can end soon after the last crossing.
+/// Number of parts of the simulated time. The simulation ends with the part that has the last crossing.
 const TIME_PARTS: usize = 64;
 
-/// Number of samples in each part, for the extent of the motion.
+/// Number of samples in each part, which give the extent of the motion.
 const SAMPLES_PER_PART: usize = 64;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +65,7 @@ impl Crossing {
         })
     }
 
-    /// Returns the fraction of the way at which the motion crosses `value` in the right direction.
+    /// Returns the fraction of the step at which the motion crosses `value` in the required direction.
     fn crossing_fraction(&self, value: f64, before: &[f64], after: &[f64]) -> Option<f64> {
         let sign = if self.is_upwards { 1.0 } else { -1.0 };
         let above = |y: &[f64]| sign * (y[self.state] - value);
@@ -73,7 +73,7 @@ impl Crossing {
         (from <= 0.0 && to > 0.0).then(|| -from / (to - from))
     }
 
-    /// Returns true if all crossings are at one value, or at values with equal equations.
+    /// Returns true if all crossings are at the same value, or at values with equal equations of motion.
     fn is_one_value(
         &self,
         (instance, start): (&Instance<'_>, &Start),
@@ -102,14 +102,14 @@ impl std::fmt::Display for Crossing {
 pub struct CrossingResult {
     pub times: Vec<f64>,
     pub points: Vec<Vec<f64>>,
-    /// States between the crossings, approximately from the first one on.
+    /// States between the crossings, approximately from the first crossing on.
     pub states_between: Vec<Vec<f64>>,
 }
 
-/// Returns `kept` crossings after the first `transient`, in every turn of a periodic angle. `span` is in s.
+/// Returns `kept` crossings after the first `transient` ones, in every turn of a periodic angle. `span` is in s.
 ///
 /// # Errors
-/// [`Failure::FewCrossings`], or a motion that cannot be followed.
+/// [`Failure::FewCrossings`], or a motion that the solver does not support.
 pub fn find_crossings(
     driven: (&Instance<'_>, &Start),
     crossing: &Crossing,
@@ -135,7 +135,7 @@ pub fn find_crossings(
     Ok(seen)
 }
 
-/// Returns crossings, in every turn or only at the value itself, until there are enough.
+/// Returns crossings, in every turn or only at the value itself, until their number suffices.
 fn follow_crossings(
     (instance, start): (&Instance<'_>, &Start),
     (crossing, in_every_turn): (&Crossing, bool),
@@ -165,12 +165,12 @@ fn follow_crossings(
 
 struct Surface<'c> {
     crossing: &'c Crossing,
-    /// Current turn, if every turn has a section. It changes only at crossings, so none is skipped.
+    /// Current turn, if every turn has a section. It changes only at crossings, so no crossing is skipped.
     turn_start: Option<Cell<f64>>,
 }
 
 impl Surface<'_> {
-    /// Returns the values that bound a turn, which starts at the section.
+    /// Returns the values of the coordinate at both ends of a turn, which starts at the section.
     fn bounds(&self, turn: f64) -> (f64, f64) {
         let start = |turn: f64| self.crossing.value + TAU * turn;
         (start(turn), start(turn + 1.0))
@@ -188,7 +188,7 @@ impl Surface<'_> {
         });
     }
 
-    /// Returns the guard; its sign alternates between turns, so that it is continuous.
+    /// Returns the guard. Its sign alternates between turns, which makes it continuous.
     fn guard(&self, y: &[f64]) -> f64 {
         let value = y[self.crossing.state];
         let Some(turn) = &self.turn_start else {
@@ -220,7 +220,7 @@ struct SectionSystem<'c, S> {
 }
 
 impl<S: System> SectionSystem<'_, S> {
-    /// Simulates up to the last crossing; returns the samples from the first one that counts.
+    /// Simulates up to the last crossing. Returns the samples from the first counted crossing on.
     fn follow(
         &self,
         initial: &[f64],

@@ -26,18 +26,18 @@ use eomgen_analysis::poincare::LONGEST_PERIOD;
 use eomgen_compiled_model::{CompiledModel, Instance};
 use eomgen_sim::ode::{Settings, Trajectory, simulate};
 
-/// Samples per forcing period: one is on the section, all give the extent of the motion.
+/// Number of samples per forcing period: one is on the section, all are used for the extent of the motion.
 const SAMPLES_PER_PERIOD: usize = 8;
 
 /// Maximum number of points that become columns.
 pub const MAX_POINTS_KEPT: usize = 1000;
 
-/// Relative accuracy of the exact solver's states. That of the general solver is ten tolerances.
+/// Relative accuracy of the states of the exact solver. For the general solver it is ten times the tolerance.
 const EXACT_RESOLUTION: f64 = 1e-12;
 
 const NAME: &str = "poincare";
 
-/// Ending of the column with the number of crossings.
+/// Suffix of the column with the number of crossings.
 const CROSSINGS: &str = "crossings";
 
 /// Returns the column with the number of crossings of a measure.
@@ -50,7 +50,7 @@ pub(crate) fn crossings_column(measure: &str) -> String {
 pub enum Section {
     /// Once per forcing period; contains the parameter that is the angular frequency.
     Forcing(String),
-    /// At a crossing of a value by a coordinate or a rate.
+    /// Crossings of a value by a coordinate or a rate.
     Crossing {
         /// `NAME=VALUE` (upwards), `NAME=VALUE:up` or `NAME=VALUE:down`.
         event: String,
@@ -77,9 +77,9 @@ pub struct Poincare<'a> {
 }
 
 impl<'a> Poincare<'a> {
-    /// Creates the measure `asked`: `poincare` for the first coordinate, or for example
-    /// `poincare:theta`. `span` counts forcing periods or crossings. With `keep_points`, the points
-    /// become columns of a bifurcation diagram. Returns `None` for the name of another measure.
+    /// Creates the measure `name`: `poincare` for the first coordinate, or for example `poincare:theta`. `span` counts
+    /// forcing periods or crossings. With `keep_points`, the points become columns of a bifurcation diagram. Returns
+    /// `None` for the name of another measure.
     ///
     /// # Errors
     /// A missing coordinate, rate or forcing, an invalid section or an invalid span.
@@ -210,7 +210,7 @@ impl<'a> Poincare<'a> {
         format!("{}_{part}", self.measure_name)
     }
 
-    /// Returns the place of the number of crossings among the columns; `None` for a section per forcing period.
+    /// Returns the index of the column with the number of crossings; `None` for a section per forcing period.
     fn crossings_place(&self) -> Option<usize> {
         let name = crossings_column(&self.measure_name);
         self.columns().iter().position(|column| column.name == name)
@@ -329,7 +329,7 @@ impl Worker for &Poincare<'_> {
 struct SectionPoints {
     /// Points, without full turns of a rotating angle.
     points: Vec<[f64; 2]>,
-    /// Period and clusters of the points; 0 for none.
+    /// Period and number of clusters of the points; 0 if there is none.
     repetition: [f64; 2],
     /// Mean time between crossings, in s.
     time: Option<f64>,
@@ -452,7 +452,7 @@ impl Poincare<'_> {
         )?)
     }
 
-    /// Returns the times of all samples in s; every [`LOOKS`]th, from the first, is on the section.
+    /// Returns the times of all samples in s. Every [`SAMPLES_PER_PERIOD`]th sample, from the first, is on the section.
     fn sample_times(&self, period: f64) -> Vec<f64> {
         let start = self.conditions.start();
         let look = |look: usize| {

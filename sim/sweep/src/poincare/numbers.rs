@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use eomgen_analysis::poincare::{Section, Shape};
 
-/// Distance below which points are equal, relative to the extent of the motion.
+/// Distance below which points count as equal, relative to the extent of the motion.
 pub const MAX_RELATIVE_DISTANCE: f64 = 1e-3;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub enum CoordinateComparison {
     Ignored,
 }
 
-/// Returns period and clusters of the points, 0 for none; `None` if they are not finite.
+/// Returns period and number of clusters of the points, 0 if there is none; `None` if a point is not finite.
 pub fn find_repetition(points: &[[f64; 2]], parts: [CoordinateComparison; 2]) -> Option<[f64; 2]> {
     let mut scale = Vec::with_capacity(4);
     for part in parts {
@@ -33,7 +33,7 @@ pub fn find_repetition(points: &[[f64; 2]], parts: [CoordinateComparison; 2]) ->
     if !points.as_flattened().iter().all(|value| value.is_finite()) {
         return None;
     }
-    // A motion at rest has no extent and nothing to compare.
+    // A motion at rest has no extent, so all points are equal.
     if scale.is_empty() {
         return Some([1.0, 1.0]);
     }
@@ -71,7 +71,7 @@ pub fn statistics(points: &[[f64; 2]]) -> Option<[f64; 4]> {
         .then_some(found)
 }
 
-/// Returns comparisons; a coordinate is constant if it changes by at most `resolution` of its size.
+/// Returns comparisons of the coordinates. A coordinate is constant if it changes by at most `resolution` of its size.
 pub fn linear_comparisons(seen: &[[f64; 2]], resolution: f64) -> [CoordinateComparison; 2] {
     extents(seen.iter()).map(|(least, greatest)| {
         let extent = greatest - least;
@@ -125,7 +125,7 @@ mod tests {
     }
 
     fn assert_close(found: f64, expected: f64) {
-        // Rounding of a few dozen terms of order 10.
+        // Rounding error of a few dozen terms of order 10.
         assert!((found - expected).abs() < 1e-13, "{found} for {expected}");
     }
 
@@ -151,7 +151,7 @@ mod tests {
 
     #[test]
     fn angles_repeat_across_end_of_turn() {
-        // Two and a half turns more each time, with noise on both sides of half a turn.
+        // The angle advances by two and a half turns each time, with noise on both sides of half a turn.
         let points: Vec<[f64; 2]> = (0..20)
             .map(|k| [PI + 2.0 * TAU * f64::from(k) + 1e-9 * f64::from(k % 2), 1.0])
             .collect();

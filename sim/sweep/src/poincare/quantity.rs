@@ -21,7 +21,7 @@ pub struct Quantity {
     /// SI unit of the reported quantity.
     pub unit: String,
     state_indices: [usize; 2],
-    /// Position of the coordinate among the two; the other one is its rate.
+    /// Index of the coordinate in the pair; the other entry is its rate.
     coordinate: usize,
 }
 
@@ -40,7 +40,7 @@ impl Quantity {
         })
     }
 
-    /// Returns the position of the coordinate among the two, and its index in the state.
+    /// Returns the index of the coordinate in the pair, and its index in the state.
     pub fn coordinate(&self) -> (usize, usize) {
         (self.coordinate, self.state_indices[self.coordinate])
     }

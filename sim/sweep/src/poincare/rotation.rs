@@ -1,6 +1,7 @@
 //! Coordinates of a section that grow without bound, for example in rotating machines.
 //!
-//! A cyclic coordinate does not distinguish points; a periodic angle does, within a turn.
+//! Points that differ only in a cyclic coordinate are equal. Points that differ by full turns of a periodic angle are
+//! equal.
 
 use std::f64::consts::TAU;
 
@@ -33,8 +34,8 @@ impl MotionSamples<'_> {
     }
 }
 
-/// Replaces the comparison of a drifting coordinate, and removes full turns from the points.
-/// `resolution`: relative error of the states.
+/// Replaces the comparison of a drifting coordinate, and removes full turns from the points. `resolution` is the
+/// relative error of the states.
 pub fn remove_drift(
     (instance, resolution): (&Instance<'_>, f64),
     quantity: &Quantity,
@@ -53,7 +54,7 @@ pub fn remove_drift(
     } else {
         return Ok(());
     }
-    // The error of a solver is relative to the angle, which grows without bound; it enters the rate.
+    // The solver's error is relative to the angle, which grows without bound, and affects the rate.
     let [angle, rate] = [shown, 1 - shown].map(|place| extents(seen.iter())[place]);
     let size = |(least, greatest): (f64, f64)| least.abs().max(greatest.abs());
     if is_angle && rate.1 - rate.0 <= resolution * size(angle).max(1.0) * size(rate) {
@@ -77,7 +78,7 @@ pub fn is_periodic_angle(
     if !instance.is_angle(place) {
         return Ok(false);
     }
-    // All samples can be at one angle, so the angle is varied.
+    // All samples may be at one angle, so the angle is varied.
     let turned = |state: &[f64], part: usize| {
         let mut state = state.to_vec();
         state[place] += TAU * part as f64 / COMPARED_STATES as f64;
@@ -101,7 +102,7 @@ fn is_cyclic(
         return Ok(false);
     };
     let at = looks.point(*t, state.clone());
-    // A model without Jacobians has no known cyclic direction.
+    // Without Jacobians no cyclic direction is known.
     let directions = instance.find_cyclic_directions(&at).unwrap_or_default();
     Ok(directions.iter().any(|direction| direction[place] != 0.0))
 }

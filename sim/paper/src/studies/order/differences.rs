@@ -1,5 +1,4 @@
-//! Differences between truncation orders and the reference order: over time, as RMS, and in the
-//! statistics of a long time.
+//! Differences between truncation orders and the reference order: over time, as RMS, and in long-time statistics.
 
 use serde_json::{Value, json};
 
@@ -11,7 +10,7 @@ use super::run::{
     OMEGA, REFERENCE_ORDER, Run, SAMPLING_INTERVAL_S, STATISTICS_TIME_S, TRANSIENT_S,
 };
 
-/// Samples per interval of the largest differences: 5 ms.
+/// Number of samples per interval of 5 ms, over which the largest difference is taken.
 const SAMPLES_PER_INTERVAL: usize = 102;
 
 pub(super) const NAMES: [&str; 3] = ["x_sp", "f_la", "dr"];
@@ -27,7 +26,7 @@ pub(super) fn run_at_order(runs: &[Run], order: usize) -> Result<&Run, StudyErro
     found.ok_or_else(|| StudyError::Request(format!("order {order} was not run")))
 }
 
-/// Computes the RMS difference from the reference over the first `seconds`, m.
+/// Computes the RMS difference from the reference over the first `seconds` s, in m.
 pub(super) fn convergence(runs: &[Run], seconds: f64) -> Result<Convergence, StudyError> {
     let reference = run_at_order(runs, REFERENCE_ORDER)?;
     let count = (seconds / SAMPLING_INTERVAL_S) as usize;
@@ -98,7 +97,7 @@ pub(super) fn largest_differences(of: &Record, reference: &Record) -> (Vec<f64>,
     )
 }
 
-/// Returns the differences and the long-time RMS as a table.
+/// Returns a table of the differences and the long-time RMS.
 pub(super) fn table(file: &str, runs: &[Run], of: &Convergence) -> Table {
     let mut columns = vec![("S".to_owned(), of.orders.clone())];
     for (which, (name, values)) in NAMES.iter().zip(&of.values).enumerate() {
@@ -112,7 +111,7 @@ pub(super) fn table(file: &str, runs: &[Run], of: &Convergence) -> Table {
     }
 }
 
-/// Returns the differences and the long-time RMS for the document of the study.
+/// Returns the differences and the long-time RMS for the JSON document of the study.
 pub(super) fn convergence_json(
     micrometres: u32,
     seconds: f64,

@@ -1,10 +1,10 @@
-//! Study of the modal truncation order: Fig. 4 (S = 4 and S = 5 without backlash), and convergence
-//! over S = 1 to 16 without and with backlash.
+//! Study of the modal truncation order: Fig. 4 (S = 4 and S = 5 without backlash), and convergence over S = 1 to 16
+//! without and with backlash.
 //!
-//! Without backlash the machine is linear, and every quantity converges at every time. With
-//! backlash the motion is chaotic, and two orders diverge exponentially. Differences are then taken
-//! over a short time from the start; over a long time, only statistics are compared. `differences`
-//! computes the numbers, `plates` draws the figures.
+//! Without backlash the machine is linear, and every quantity converges at every time. With backlash the motion is
+//! chaotic, and the motions of two orders diverge exponentially. Therefore differences are taken over a short time from
+//! the start; over a long time, only statistics are compared. `differences` computes the numbers, `plates` draws the
+//! figures.
 
 mod differences;
 mod plates;
@@ -31,7 +31,7 @@ use run::{
 /// Runs the study of Fig. 4 and of convergence.
 ///
 /// # Errors
-/// A case that cannot be run, a figure that cannot be drawn.
+/// A case that cannot be simulated, a figure that cannot be drawn.
 pub fn order(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
     let orders: Vec<usize> = (1..=HIGHEST_ORDER).chain([REFERENCE_ORDER]).collect();
     let arm = Arm::new(&orders)?;

@@ -22,7 +22,7 @@ pub(super) fn fig_4(
     convergence: &Convergence,
 ) -> Result<Figure, StudyError> {
     let (four, five) = (&run_at_order(runs, 4)?.start, &run_at_order(runs, 5)?.start);
-    // One second.
+    // The time history shows one second.
     let count = ((1.0 / SAMPLING_INTERVAL_S) as usize + 1).min(four.dr.len());
     let first = |values: &[f64]| values.get(..count).unwrap_or_default().to_vec();
     let (t, dr_4, dr_5) = (first(&four.times), first(&four.dr), first(&five.dr));
@@ -70,7 +70,7 @@ pub(super) fn fig_4(
     draw_frames(heading, ids(displays), frames)
 }
 
-/// Draws the convergence with backlash: over time, over a short time, and of long-time statistics.
+/// Draws the convergence with backlash: differences over time, differences over a short time, and long-time statistics.
 pub(super) fn chaotic(
     runs: &[Run],
     displays: &[SampledCase],
@@ -183,7 +183,7 @@ fn over_order<'a>(title: &str, unit: &str, quantity: &str, of: &'a Convergence) 
     }
 }
 
-/// Returns the spectra of dr or f_la, which have the same frequencies.
+/// Returns the spectra of dr or f_la at their common frequencies.
 fn spectra<'a>(
     letter: &str,
     displays: &'a [SampledCase],

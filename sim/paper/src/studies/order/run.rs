@@ -16,7 +16,7 @@ pub const SAMPLING_INTERVAL_S: f64 = 1.0 / 20_480.0;
 pub const COARSE_INTERVAL_S: f64 = 1.0 / 4_096.0;
 /// Recorded time from the start, s.
 pub const START_TIME_S: f64 = 6.0;
-/// Time from the start for differences with backlash, s.
+/// Time from the start over which differences with backlash are taken, s.
 pub const SHORT_TIME_S: f64 = 0.02;
 /// Time of the statistics and of the transient before them, s.
 pub const STATISTICS_TIME_S: f64 = 40.0;

@@ -1,4 +1,4 @@
-//! Tests of wrapped columns: rejected with a cure, unwrapped by `wrap`, and unlike real jumps.
+//! Tests of wrapped columns: they are rejected with a remedy, or unwrapped by `wrap`; other jumps are accepted.
 
 use std::fmt::Write;
 
@@ -45,13 +45,13 @@ fn rotor() -> Model {
     eomgen_model_spec::check(source).expect("a model").model
 }
 
-/// Returns the angle in degrees, over many turns with reversals.
+/// Returns an angle in degrees over many turns with reversals; `turn` is the size of a turn.
 fn angle(k: usize, turn: f64) -> f64 {
     let t = 0.01 * k as f64;
     900.0 * (1.1 * t + turn).sin() + 700.0 * t
 }
 
-/// Creates a folder with records of an angle, as measured by a sensor, and of an input.
+/// Creates a folder with records of an angle and an input. `sensor` gives the reading of an angle.
 fn folder(description: &str, sensor: impl Fn(f64) -> f64, u: impl Fn(usize) -> f64) -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     write(folder.path(), "dataset.toml", description);
@@ -81,7 +81,7 @@ fn refused(folder: &TempDir) -> String {
         .to_string()
 }
 
-/// Returns the description with further keys of the channel.
+/// Returns the dataset file with additional keys of the channel.
 fn with(keys: &str) -> String {
     format!("{DESCRIPTION}{keys}\n")
 }
@@ -90,7 +90,7 @@ fn with(keys: &str) -> String {
 fn error(values: &[f64], turn: f64, every: usize) -> f64 {
     let degrees = |k: usize| values[k].to_degrees() - angle(k * every, turn);
     let offset = (degrees(0) / 360.0).round() * 360.0;
-    // The low-pass filter of `every` extends over the ends.
+    // The low-pass filter of `every` is inaccurate at the ends.
     let inside = 10 * (every - 1)..values.len() - 10 * (every - 1);
     inside
         .map(|k| (degrees(k) - offset).abs())
@@ -113,7 +113,7 @@ fn wrapped_channel_is_rejected_with_key_to_write() {
     assert!(read(&folder(&with("wrap = \"none\""), wrapped, |_| 0.0)).is_ok());
 }
 
-/// Returns the message for a counter with this period and a motion in turns.
+/// Returns the error message for a counter with the given period; `turns` is its motion in turns.
 fn refused_counter(period: f64, mut turns: impl FnMut(usize) -> f64) -> String {
     let counts = DESCRIPTION
         .replace("\"deg\"", "\"1\"")
@@ -210,7 +210,7 @@ fn parts_of_file_keep_turns_from_known_start() {
         (step - angle(200, 0.0) + angle(199, 0.0)).abs() < 1e-3,
         "{step}"
     );
-    // A sensor from 0 to 360 degrees reads 359.9 at rest.
+    // A sensor with the range 0 to 360 degrees reads 359.9 at rest.
     let resting = with("wrap = 360\n[initial]\nstate = \"rest\"");
     let from_zero = folder(&resting, |v| (v - 0.1).rem_euclid(360.0), |_| 0.0);
     let dataset = read(&from_zero).unwrap_or_else(|refusal| panic!("{refusal}"));
@@ -244,7 +244,7 @@ fn gap_with_unknown_turns_is_rejected_only_inside_part() {
         let folder = folder(description, wrapped, |_| 0.0);
         let mut text = "t,u,phi\n".to_owned();
         for k in 0..COUNT {
-            // At rest up to the gap, 90 degrees per sample after it.
+            // The angle is at rest up to the gap, and moves by 90 degrees per sample after it.
             let phi = wrapped(90.0 * k.saturating_sub(215) as f64 + 0.01 * k as f64);
             let phi = if (200..230).contains(&k) {
                 String::new()
