@@ -1,4 +1,4 @@
-//! Checks of the equations of an extended specification.
+//! Validation of the equations of an extended specification.
 
 use eomgen_compiled_model::Error;
 use eomgen_validate::certificate::Verdict;
@@ -8,10 +8,11 @@ use super::result::{Discovery, Validation};
 use crate::model::specification_texts::edited_source;
 
 impl Discovery {
-    /// Certifies the extended specification and keeps the result. `path` is the path of the given specification and
-    /// `order` its requested order.
+    /// Validates the extended specification and stores the result. `path`: path of the given
+    /// specification; `order`: its requested order.
     ///
     /// # Errors
+    ///
     /// An extended specification that cannot be read or derived.
     pub fn certify(&mut self, path: &str, order: Option<usize>) -> Result<(), Error> {
         let extended = edited_source(path, &self.extended);

@@ -1,5 +1,5 @@
-//! Check for a common delay of all channels, which is more often a delay of the input than of each
-//! sensor.
+//! Check for a common delay of all channels. A delay of the input is a more likely cause than equal
+//! delays of all sensors.
 
 use crate::fit::fit_result::Fit;
 use crate::ids::UnknownId;
@@ -8,7 +8,8 @@ use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{NormalPrior, Unknown, UnknownKind};
 use crate::thresholds;
 
-/// Returns a note if all channels have the same delay at or beyond the bound of the fit.
+/// Returns a note if all channels have nearly the same delay, and each delay is an effect or at the
+/// bound of its prior.
 pub(crate) fn note_common_delay(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<String> {
     if fit
         .unknowns()
@@ -35,7 +36,7 @@ pub(crate) fn note_common_delay(problem: &EstimationProblem<'_>, fit: &Fit) -> O
     })
 }
 
-/// Returns the delay of a channel, s, if it was found as an effect or is at the limit of its prior.
+/// Returns the delay of a channel, s, if it was found as an effect or is at the bound of its prior.
 fn lateness(fit: &Fit, (id, unknown): (UnknownId, &Unknown)) -> Option<f64> {
     let value = fit.train.estimate.theta[id];
     let reach = thresholds::BOUND_FRACTION * thresholds::MAX_PRIOR_DEVIATION;

@@ -1,4 +1,4 @@
-//! Results from the fits and the search.
+//! Conversion of fits and search results to the results of a search.
 
 use std::collections::BTreeMap;
 
@@ -40,7 +40,7 @@ pub(crate) fn compute_gap(
     })
 }
 
-/// Evidence for the certainty of effects, besides their own statistics.
+/// Evidence for the certainty of effects in addition to their own statistics.
 #[derive(Clone, Copy)]
 pub(crate) struct Certainty {
     /// True if the remaining gap and the nuisances allow a definite name.
@@ -49,7 +49,7 @@ pub(crate) struct Certainty {
     pub floor: f64,
 }
 
-/// Returns the accepted effects by decreasing closed gap.
+/// Returns the accepted effects, sorted by decreasing closure.
 pub(crate) fn summarise_effects(
     problem: &EstimationProblem<'_>,
     found: &SearchResult,
@@ -60,7 +60,8 @@ pub(crate) fn summarise_effects(
         .zip(&experiments.for_effects)
         .collect();
     order.sort_by(|(a, _), (b, _)| {
-        // Squared gaps add up: the contribution of one effect hardly depends on earlier effects.
+        // Squared gaps are additive, so that the contribution of an effect hardly depends on
+        // earlier effects.
         let closed = |effect: &AcceptedEffect| {
             effect.test_gap.before.powi(2) - effect.test_gap.after.powi(2)
         };
@@ -75,7 +76,7 @@ pub(crate) fn summarise_effects(
         .collect()
 }
 
-/// Returns the rejected effects, testable or not.
+/// Returns the rejected effects, either the testable or the untestable ones.
 pub(crate) fn list_rejected(
     judged: &TestCounter,
     found: &SearchResult,
@@ -84,8 +85,8 @@ pub(crate) fn list_rejected(
 ) -> Vec<RejectedEffect> {
     let such = found.rejected.iter().zip(&experiments.for_rejected);
     let such = such.filter(|(rejected, _)| rejected.is_untestable == not_testable);
-    // An effect that is accepted, or belongs to the class of an accepted effect, is not listed as
-    // rejected; a later round tests it again as a second effect of its kind.
+    // Accepted effects and members of their classes are left out, because a later round tests them
+    // again as a second effect.
     let is_believed = |of: &RejectedCandidate| {
         let accepted = found.accepted.iter();
         let mut believed = accepted
@@ -97,7 +98,7 @@ pub(crate) fn list_rejected(
         at: EffectSite {
             effect: of.candidate.effect.clone(),
             site: of.candidate.site.clone(),
-            // The reason contains it.
+            // The order is part of the reason.
             order: None,
         },
         reason: reason(of),
@@ -109,7 +110,7 @@ pub(crate) fn list_rejected(
     .collect()
 }
 
-/// Returns the test gap of the original model and after each round.
+/// Returns the RMS residual of the test records for the original model and after each round.
 pub(crate) fn list_steps(found: &SearchResult) -> Vec<SearchStep> {
     let mut steps = vec![SearchStep {
         added: Vec::new(),
@@ -125,7 +126,7 @@ pub(crate) fn list_steps(found: &SearchResult) -> Vec<SearchStep> {
     steps
 }
 
-/// Why a candidate was rejected; with the order or the load where it has one.
+/// Returns the reason for the rejection of a candidate, with its order or load.
 fn reason(rejected: &RejectedCandidate) -> String {
     let RejectedCandidate {
         candidate, reason, ..
@@ -137,7 +138,7 @@ fn reason(rejected: &RejectedCandidate) -> String {
     }
 }
 
-/// Returns the closed fraction of the gap; `None` if there was almost no gap.
+/// Returns the closed fraction of the gap; `None` if the gap is negligible.
 pub(crate) fn compute_closure(
     before: &Fit,
     after: &Fit,
@@ -256,7 +257,7 @@ pub(crate) fn list_nuisances(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<
     fit.unknowns().filter_map(of).collect()
 }
 
-/// Returns notes on nuisances that are far from their declared values.
+/// Returns notes about nuisances that deviate significantly from their declared values.
 pub(crate) fn describe_deviations(nuisances: &[Nuisance]) -> Vec<String> {
     let far = nuisances
         .iter()
@@ -279,8 +280,8 @@ pub(crate) fn describe_deviations(nuisances: &[Nuisance]) -> Vec<String> {
     far.map(note).collect()
 }
 
-/// Returns the name of an unknown of the null model, the number of its units in one SI unit, and
-/// the unit.
+/// Returns the name of an unknown of the null model, the value of one SI unit in its unit, and the
+/// unit.
 fn name_unknown(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -305,7 +306,7 @@ fn name_unknown(
     }
 }
 
-/// Returns the parameters of the null model by name.
+/// Returns the parameters of the null model, by name.
 pub(crate) fn list_refitted(
     fit: &Fit,
     accepted: &[AcceptedEffect],
@@ -348,7 +349,7 @@ pub(crate) fn list_sensors(
     })
 }
 
-/// An entry for each channel, under its name.
+/// Returns a map with an entry for each channel.
 fn by_channel<T>(
     problem: &EstimationProblem<'_>,
     of: impl Fn(ChannelId, &Channel) -> T,

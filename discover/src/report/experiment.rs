@@ -47,9 +47,9 @@ pub(crate) fn describe_experiment(next: &NextExperiment, files: &[ExperimentFile
     format!("{played} {told}{}{bounds}", not_told(next))
 }
 
-/// Pairs that an experiment does not separate, as a sentence.
+/// Describes the pairs that an experiment does not separate, in a sentence.
 fn not_told(next: &NextExperiment) -> String {
-    // Pairs appear in both orders, one after the other.
+    // Each pair occurs twice in succession, in both orders.
     let pairs = next.pairs.chunks_exact(2);
     let is_told = |pair: &&[MemberPair]| {
         pair.iter()

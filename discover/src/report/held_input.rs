@@ -7,9 +7,9 @@ use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::UnknownKind;
 use crate::thresholds;
 
-/// Returns a note if all channels lead by about half the interval of inputs that change at most samples, and
-/// each lead is significant. A held value is on average half an interval older than the smooth input that the
-/// machine receives.
+/// Returns a note if all channels lead significantly by about half a sample interval, and an input
+/// changes at most samples. A held value is on average half an interval older than the smooth input
+/// of the machine.
 pub(crate) fn note_held_input(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<String> {
     let record = problem.dataset.train.first()?;
     let interval = typical_step(&record.times);
@@ -43,7 +43,7 @@ fn is_half_interval_lead(delay: f64, sd: f64, interval: f64) -> bool {
         && -delay > thresholds::MIN_LEAD_DEVIATIONS * sd
 }
 
-/// Returns the fraction of the samples that differ from the one before.
+/// Returns the fraction of the samples that differ from the preceding sample.
 fn changing_fraction(column: &[f64]) -> f64 {
     let changes = column.windows(2).filter(|pair| pair[0] != pair[1]);
     changes.count() as f64 / column.len().saturating_sub(1).max(1) as f64

@@ -1,4 +1,5 @@
-//! Noise floor above the size of the recorded motion: the comparison then shows no missing effect.
+//! Check for a noise floor that exceeds the recorded motion, so that the comparison cannot show a
+//! missing effect.
 
 use crate::fit::noise_floor::NoiseFloor;
 use crate::ids::ChannelId;
@@ -7,7 +8,7 @@ use crate::report::quantity::format_quantity;
 use crate::thresholds;
 
 /// Returns a note for each channel whose noise floor exceeds the standard deviation of its training
-/// records. The mean of the record then predicts it better than a correct model.
+/// records. In this case the mean of the record predicts it better than a correct model.
 pub(crate) fn note_high_floor(problem: &EstimationProblem<'_>, floor: &NoiseFloor) -> Vec<String> {
     let channels = ChannelId::first(problem.noise.len()).zip(&problem.dataset.channels);
     let note = |(id, channel): (ChannelId, &eomgen_records::dataset::Channel)| {
@@ -27,8 +28,8 @@ pub(crate) fn note_high_floor(problem: &EstimationProblem<'_>, floor: &NoiseFloo
     channels.filter_map(note).collect()
 }
 
-/// Returns the standard deviation of a channel in the training records about the mean of each
-/// record, SI.
+/// Returns the standard deviation of a channel in the training records, relative to the mean of
+/// each record, SI.
 fn standard_deviation(problem: &EstimationProblem<'_>, channel: ChannelId) -> f64 {
     let (mut squares, mut count) = (0.0, 0.0);
     for record in &problem.dataset.train {

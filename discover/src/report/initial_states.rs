@@ -1,4 +1,4 @@
-//! Check of a stated initial state against the first samples of the records.
+//! Check of a declared initial state against the first samples of the records.
 
 use eomgen_records::dataset::{Dataset, Initial, Quantity};
 use eomgen_records::record::Record;
@@ -10,13 +10,13 @@ use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{UnknownKind, list_sensor_unknowns};
 use crate::report::quantity::format_quantity;
 
-/// Least distance of a first sample from the stated value, in standard deviations of noise and
-/// sensor, that counts as a contradiction. Normal noise exceeds it in one of 500 million samples.
+/// Minimum distance of a first sample from the declared value that is a contradiction, in standard
+/// deviations of noise and sensor errors. Normal noise exceeds it in one of 500 million samples.
 const MIN_CONTRADICTION: f64 = 6.0;
 
-/// Describes the channels whose first sample contradicts the initial state that the dataset states
-/// with `state = "rest"` or `"given"`. Channels of coordinates, rates and first-order states are
-/// compared.
+/// Describes the channels whose first sample contradicts the initial state declared in the dataset
+/// file with `state = "rest"` or `"given"`. Channels of coordinates, rates and first-order states
+/// are compared.
 pub fn describe_contradicted_initial_states(
     problem: &EstimationProblem<'_>,
     model: &EstimationModel,
@@ -64,7 +64,7 @@ fn describe(
     });
     let variance = parts.map(|part| part * part).sum::<f64>() + channel.noise * channel.noise;
     let distance = (measured - expected).abs() / variance.sqrt();
-    // A missing sample gives no distance.
+    // The distance of a missing sample is NaN.
     (distance > MIN_CONTRADICTION).then(|| {
         let [begins, gives] =
             [measured, expected].map(|value| format_quantity(value, 3, &channel.unit));

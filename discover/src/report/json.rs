@@ -13,11 +13,11 @@ use crate::report::result::{
 };
 use crate::report::summary::Summary;
 
-/// The version of both documents.
+/// Schema version of both documents.
 const SCHEMA: u32 = 2;
 
 impl Comparison {
-    /// Returns the verdict name of the documents.
+    /// Returns the name of the verdict in the document.
     pub fn verdict_name(&self) -> &'static str {
         match self.has_gap {
             true => "gap_found",
@@ -73,7 +73,8 @@ impl Discovery {
         document
     }
 
-    /// The test gap step by step, in standard deviations of the noise.
+    /// Returns the RMS residual of the test records after each step, in standard deviations of the
+    /// noise.
     fn steps(&self) -> Value {
         let step = |step: &crate::report::result::SearchStep| json!({"added": step.added, "test_rms_over_noise": step.test_rms});
         let mut steps: Vec<Value> = self.steps.iter().map(step).collect();
@@ -110,7 +111,7 @@ fn write_curve(curve: &Curve) -> Value {
     })
 }
 
-/// Writes the fields common to both documents.
+/// Returns the fields that both documents have.
 fn common(compared: &CommonResult, gap: impl Fn(&ChannelGap) -> Value) -> Value {
     let gaps = compared
         .gap
@@ -130,14 +131,14 @@ fn on_records(both: TrainTest<f64>) -> Value {
     json!({"train": both.train, "test": both.test})
 }
 
-/// Writes estimates by name.
+/// Returns estimates as an object with their names as keys.
 pub(crate) fn estimates_to_json(of: &BTreeMap<String, EstimateWithUnit>) -> Value {
     let entry = |of: &EstimateWithUnit| json!({"value": of.value, "sd": of.sd, "unit": of.unit});
     let entries = of.iter().map(|(name, of)| (name.clone(), entry(of)));
     Value::Object(entries.collect())
 }
 
-/// Writes sensors by the name of their channel.
+/// Returns sensors as an object with the names of their channels as keys.
 pub(crate) fn sensors_to_json(of: &BTreeMap<String, SensorEstimate>) -> Value {
     let entry = |of: &SensorEstimate| json!({"bias": of.bias, "gain": of.gain, "delay": of.delay});
     let entries = of.iter().map(|(name, of)| (name.clone(), entry(of)));
@@ -152,7 +153,7 @@ fn write_site(of: &EffectSite) -> Value {
     entry
 }
 
-/// Writes a rejected effect. `files` are the experiments for effects that the records cannot show.
+/// Returns a rejected effect. `files`: experiments for effects that the records cannot show.
 fn write_rejected(of: &RejectedEffect, files: Option<&[ExperimentFile]>) -> Value {
     let mut entry = write_site(&of.at);
     entry["reason"] = match of.best_reduction {
@@ -199,7 +200,7 @@ fn effect(of: &FoundEffect, files: &[ExperimentFile]) -> Value {
     entry
 }
 
-/// An experiment that was computed, in `next_experiment`.
+/// Returns a proposed experiment, for `next_experiment`.
 fn next_experiment(next: &NextExperiment, files: &[ExperimentFile]) -> Value {
     let member = |of: &ClassMember| json!({"effect": of.effect, "on": of.site});
     let pair = |pair: &MemberPair| {

@@ -1,4 +1,4 @@
-//! Sentences on the difference between model and records: channel, time, speed and frequency.
+//! Sentences about the difference between model and records: channel, time, speed and frequency.
 
 use crate::fit::fit_result::Fit;
 use crate::fit::residual_spectrum::{SpectralLine, SpectralPeak, find_training_peak};
@@ -10,7 +10,7 @@ use crate::residual_force::types::ResidualForce;
 use crate::residual_force::wording::describe_residual_force;
 use crate::thresholds;
 
-/// Returns the sentences, first the equation of the residual force if it was estimated.
+/// Returns the sentences. The first names the equation of the residual force, if it was estimated.
 pub fn describe_location(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -23,7 +23,7 @@ pub fn describe_location(
     }
 }
 
-/// Describes the channel that shows the difference, with time, speed and frequency.
+/// Describes the channel with the largest difference, with time, speed and frequency.
 fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
     let count = problem.noise.len();
     let normalised_rms: Vec<f64> = fit
@@ -78,7 +78,7 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
     text
 }
 
-/// Formats the frequency of a line with decimals down to a tenth of the resolution.
+/// Formats the frequency of a line with a tenth of the resolution as the last decimal.
 fn format_to_resolution(line: SpectralLine) -> String {
     let decimals = (1.0 - line.resolution.log10()).ceil().clamp(0.0, 9.0) as usize;
     format!("{:.decimals$}", line.frequency)
@@ -92,7 +92,7 @@ pub(crate) fn find_worst_window(problem: &EstimationProblem<'_>, fit: &Fit) -> O
     windows.max_by(|a, b| per_sample(*a).total_cmp(&per_sample(*b)))
 }
 
-/// Returns true if the residual's size follows the channel's speed.
+/// Describes whether the residual of a channel depends on its speed.
 fn by_speed(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> Option<String> {
     let count = problem.noise.len();
     let mut pairs: Vec<(f64, f64)> = Vec::new();

@@ -1,11 +1,12 @@
-//! Results of a comparison or search: the whole computation ([`run`]) from the input ([`origin`]),
-//! the [`result`] types filled in `discovery`, the [`location`] of the difference, the extended
-//! specification ([`write_back`]) and its simulation ([`mod@resimulation`]), the remaining gap
-//! (`remaining_gap`) and the `summary` in two sentences, documents (`json`) and the page (`page`) with its
-//! `pictures` and the `overlay` of measurement and simulation, checks of the extended equations (`certification`), formatted numbers (`quantity`),
-//! sizes that suggest a wrong unit (`units`), noise of a given motion (`motion_noise`), a common
-//! delay (`common_delay`), lag (`common_lag`) or lead (`held_input`), a stated initial state that records contradict
-//! (`initial_states`), the interactive model (`playback`), and the next `experiment`.
+//! Results of a comparison or search. Computation: [`run`] from the input ([`origin`]) to the
+//! [`result`], filled in `discovery`; extended specification ([`write_back`]), its simulation
+//! ([`mod@resimulation`]) and validation (`certification`). Texts: [`location`] of the difference,
+//! `remaining_gap`, `summary`, formatted numbers (`quantity`), `experiment`. Documents: `json`, and
+//! the HTML page (`page`) with `pictures`, `overlay` of measured and simulated motion, and the
+//! interactive model (`playback`). Checks that return notes: wrong units (`units`), noise of a
+//! given motion (`motion_noise`), high noise floor (`high_floor`), common delay, lag and lead of
+//! all channels (`common_delay`, `common_lag`, `held_input`), contradicted initial state
+//! (`initial_states`).
 
 mod certification;
 mod common_delay;

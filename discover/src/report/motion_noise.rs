@@ -1,4 +1,4 @@
-//! Noise of the required torques due to noise of a given motion.
+//! Noise of the computed torques due to noise of a given motion.
 
 use eomgen_records::dataset::Quantity;
 use eomgen_records::noise;
@@ -8,7 +8,7 @@ use crate::ids::ChannelId;
 use crate::model::problem::EstimationProblem;
 
 /// Returns a note for each torque whose computed value along the first training record is noisier
-/// than its declared noise. The comparison is then dominated by noise of the motion.
+/// than its declared noise. The noise of the motion then dominates the comparison.
 pub(crate) fn note_motion_noise(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<String> {
     let channels = problem.dataset.channels.iter();
     let channels = ChannelId::first(problem.noise.len()).zip(channels);
@@ -28,8 +28,8 @@ pub(crate) fn note_motion_noise(problem: &EstimationProblem<'_>, fit: &Fit) -> V
     inputs.filter_map(note).collect()
 }
 
-/// Returns the computed values of a channel along the first training record, SI, and NaN for
-/// samples that are not compared.
+/// Returns the computed values of a channel along the first training record, SI. NaN for samples
+/// that are not compared.
 fn compute_channel(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> Vec<f64> {
     let count = problem.noise.len();
     let windows = problem
@@ -41,7 +41,7 @@ fn compute_channel(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelI
     let values = first.flat_map(|(window, residuals)| {
         let pairs = window.measured.iter().zip(residuals);
         let own = pairs.skip(channel.index()).step_by(count);
-        // A sample that is not compared has a residual of 0, which would count as noise-free.
+        // A residual of 0 marks a sample that is not compared; the computed value is unknown.
         own.map(|(measured, residual)| match *residual {
             0.0 => f64::NAN,
             residual => measured + residual * problem.noise[channel.index()],

@@ -1,5 +1,4 @@
-//! Origin of a result: the specification and records with their hashes, the seed, the version and
-//! the date.
+//! Origin of a result: specification and records with their hashes, seed, version and date.
 
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -7,14 +6,14 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use eomgen_model_spec::source::sha256;
 use eomgen_records::dataset::Dataset;
 
-/// A specification to be compared with records.
+/// Specification that is compared with records.
 #[derive(Clone, Copy, Debug)]
 pub struct Specification<'s> {
     /// Path, for messages.
     pub path: &'s str,
     /// Text.
     pub text: &'s str,
-    /// Order of the fields; `None` for their default.
+    /// Order of the fields; `None` for the default order.
     pub order: Option<usize>,
 }
 
@@ -23,15 +22,15 @@ pub struct Specification<'s> {
 pub struct Origin {
     /// Version of the program.
     pub version: &'static str,
-    /// Date in universal time, `2026-11-23`.
+    /// Date in universal time, for example `2026-11-23`.
     pub date: String,
-    /// Seed of the bootstrap.
+    /// Seed of the noise of the replica.
     pub seed: u64,
     /// Specification, dataset file and records.
     pub files: Vec<HashedFile>,
 }
 
-/// A file and its hash.
+/// File with its hash.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HashedFile {
     /// Role: `specification`, `dataset`, `train[0]`, ...
@@ -43,7 +42,7 @@ pub struct HashedFile {
 }
 
 impl Origin {
-    /// Records the origin of a result that is computed now.
+    /// Returns the origin of a result that is computed now.
     pub(crate) fn record_inputs(
         specification: Specification<'_>,
         dataset: &Dataset,
@@ -74,8 +73,8 @@ impl Origin {
 
 const SECONDS_OF_A_DAY: u64 = 86_400;
 
-/// The date so many days after 1970-01-01, in the Gregorian calendar. Counted in eras of 400 years
-/// that begin in March, so that a leap day is the last of its year.
+/// Returns the Gregorian date for a number of days after 1970-01-01. The computation uses eras of
+/// 400 years that begin in March; a leap day is then the last day of its year.
 fn date(days: u64) -> String {
     let days = days + 719_468;
     let (era, day) = (days / 146_097, days % 146_097);

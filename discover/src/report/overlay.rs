@@ -1,4 +1,4 @@
-//! Measured and simulated motion in one figure: for the first held-out record, and for the part of
+//! Figures of measured and simulated motion: one for the first held-out record, one for the part of
 //! the training records with the largest residuals of the original model.
 
 use eomgen_plot::{Panel, Series, SeriesRole, TimeHistory, time_history_at};
@@ -12,7 +12,7 @@ use crate::model::problem::EstimationProblem;
 use crate::report::location::find_worst_window;
 use crate::report::pictures::{name_record, responsive_figure, stage_label};
 
-/// Fraction of a record that the enlarged figure shows.
+/// Maximum length of the enlarged figure, as a fraction of the record.
 const ENLARGED_FRACTION: f64 = 0.1;
 
 /// Minimum number of samples in the enlarged figure.
@@ -32,7 +32,7 @@ pub(crate) fn draw_overlays(
     );
     let whole = seen.drawn(0..seen.times.len(), &caption);
     let train = fits(before, after, |fit| &fit.train);
-    // The window that the sentence on the page names.
+    // The figure shows the window that is named in the text about the location of the difference.
     let worst = find_worst_window(problem, before).unwrap_or(WindowId::new(0));
     let record = problem.train.windows[worst].record;
     let trained = Seen::of(problem, (&problem.train, record), &train);
@@ -50,7 +50,7 @@ pub(crate) fn draw_overlays(
     }
 }
 
-/// The residuals of one set of records that the models leave, by the models' roles.
+/// Returns the residuals of the original and the extended model on one set of records.
 fn fits<'f>(
     before: &'f Fit,
     after: Option<&'f Fit>,
@@ -61,24 +61,24 @@ fn fits<'f>(
     std::iter::once(before).chain(after).collect()
 }
 
-/// The columns of one record, sample by sample.
+/// Measured and simulated columns of one record.
 struct Seen {
     times: Vec<f64>,
     channels: Vec<Channel>,
 }
 
-/// The columns of one channel, with missing samples as NaN.
+/// Columns of one channel; missing samples are NaN.
 struct Channel {
     name: String,
     unit: String,
     noise: f64,
     measured: Vec<f64>,
-    /// By the role of the model.
+    /// Simulated columns with the role of their model.
     simulated: Vec<(SeriesRole, Vec<f64>)>,
 }
 
 impl Seen {
-    /// Returns the columns of a record, with the residuals of each model.
+    /// Returns the columns of a record, simulated with each model.
     fn of(
         problem: &EstimationProblem<'_>,
         (set, record): (&Windows<'_>, usize),
@@ -122,8 +122,8 @@ impl Seen {
         }
     }
 
-    /// The samples of a window; of a long one those around the largest difference of the first model, in
-    /// noises.
+    /// Returns the samples of a window to be drawn. In a long window, they are centred at the
+    /// largest difference of the original model, relative to the noise.
     fn stretch(&self, set: &Windows<'_>, window: &Window) -> std::ops::Range<usize> {
         let samples = self.times.len();
         let begin = set.file_times(window).next().unwrap_or_default();
@@ -152,7 +152,7 @@ impl Seen {
         begin..begin + length
     }
 
-    /// A panel for each channel. The measurement is below the simulations.
+    /// Draws a panel for each channel. The measured curve is below the simulated curves.
     fn drawn(&self, samples: std::ops::Range<usize>, caption: &str) -> Markup {
         let times = &self.times[samples.clone()];
         let panel = |channel: &'_ Channel| {
@@ -199,7 +199,7 @@ impl Seen {
     }
 }
 
-/// One channel of rows.
+/// Returns one channel of samples stored in rows.
 fn column(rows: &[f64], channel: usize, channels: usize) -> Vec<f64> {
     rows.iter()
         .skip(channel)

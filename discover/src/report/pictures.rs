@@ -49,7 +49,7 @@ pub(crate) fn draw_force_section(force: &ResidualForce, after: Option<&ResidualF
     }
 }
 
-/// Returns a figure for wide and narrow windows with its caption; nothing if it cannot be drawn.
+/// Returns a figure for wide and narrow windows with its caption; empty if it cannot be drawn.
 pub(crate) fn responsive_figure(
     caption: &str,
     draw: impl Fn(FigureWidth) -> Result<String, PlotError>,
@@ -74,7 +74,7 @@ pub(crate) fn name_record(record: &Record) -> String {
     )
 }
 
-/// Returns the label of a simulation: with its stage, if there are two.
+/// Returns the label of a simulation, followed by its stage if there are two.
 pub(crate) fn stage_label(name: &str, role: SeriesRole, has_after: bool) -> String {
     match (role, has_after) {
         (SeriesRole::Before, true) => format!("{name} before"),
@@ -200,7 +200,7 @@ pub(crate) fn draw_residuals(
     }
 }
 
-/// Returns the unit of a spectral density of a quantity with this unit.
+/// Returns the unit of the spectral density of a quantity with the given unit.
 fn density_unit(unit: &str) -> String {
     match unit {
         "" => "1/Hz".to_owned(),
@@ -209,7 +209,7 @@ fn density_unit(unit: &str) -> String {
     }
 }
 
-/// The windows of the first test record, with their residuals.
+/// Returns the windows of the first test record with their residuals.
 fn windows_of_first_record<'a>(
     problem: &'a EstimationProblem<'_>,
     fit: &'a Fit,
@@ -219,8 +219,8 @@ fn windows_of_first_record<'a>(
     first.map(|(window, residual)| (window, residual.as_slice()))
 }
 
-/// The spectrum of a channel's residuals in windows of the first test record, in units of `scale`, without
-/// the density at 0 Hz; empty if windows are too short.
+/// Returns the spectrum of the residuals of a channel in the windows of the first test record, in
+/// units of `scale`. It does not contain the density at 0 Hz. Empty if the windows are too short.
 fn density(
     problem: &EstimationProblem<'_>,
     fit: &Fit,

@@ -1,15 +1,15 @@
-//! Formatted quantities: significant digits according to the uncertainty, and a readable multiple
-//! of the unit.
+//! Formatted quantities with significant digits according to the uncertainty, in a readable
+//! multiple of the unit.
 
 use eomgen_plot::scaled_unit;
 
-/// The most digits after the first that are written.
+/// Maximum number of digits after the first one.
 const MOST_DIGITS: i32 = 6;
 
-/// Magnitudes that are written in the unit as it is.
+/// Magnitudes that are formatted in the unit without a prefix.
 const PLAIN: std::ops::Range<f64> = 0.1..1e4;
 
-/// The same for units that take no prefix.
+/// Magnitudes that are formatted without a power of ten, for units without prefixes.
 const PLAIN_WITHOUT_PREFIX: std::ops::Range<f64> = 1e-3..1e5;
 
 /// Formats a value with its standard deviation: `12.03 ± 0.02 N`. The deviation has one digit, or
@@ -26,14 +26,14 @@ pub(crate) fn format_estimate(value: f64, sd: f64, unit: &str) -> String {
     let (value, sd) = (value / scale, sd / scale);
     let last = exponent(sd) - i32::from(first_digit(sd) == 1);
     if last < exponent(value.abs().max(sd)) - MOST_DIGITS {
-        // Known to more digits than anybody reads.
+        // Digits beyond this number are not readable.
         return format_quantity(value * scale, MOST_DIGITS, base);
     }
     let (value, sd) = (to_place(value, last), to_place(sd, last));
     with_unit(&format!("{value} ± {sd}"), &unit, true)
 }
 
-/// Formats a value with this number of digits and a unit: `5.73 mm`.
+/// Formats a value with a given number of digits and a unit: `5.73 mm`.
 pub(crate) fn format_quantity(value: f64, digits: i32, unit: &str) -> String {
     if !value.is_finite() {
         return "not known".to_owned();
@@ -44,7 +44,7 @@ pub(crate) fn format_quantity(value: f64, digits: i32, unit: &str) -> String {
     with_unit(&text, &unit, false)
 }
 
-/// Formats a number with this number of digits: `57300`, `1.02`.
+/// Formats a number with a given number of digits: `57300`, `1.02`.
 pub(crate) fn format_number(value: f64, digits: i32) -> String {
     if !value.is_finite() {
         return "not known".to_owned();
@@ -57,7 +57,7 @@ pub(crate) fn format_tenths(value: f64) -> String {
     to_place(value, -1)
 }
 
-/// Formats a fraction in percent. A fraction below 1 is never shown as 100 %.
+/// Formats a fraction in percent. A fraction below 1 is never rounded up to 100 %.
 pub(crate) fn format_percent(part: f64) -> String {
     match 100.0 * part {
         p if !p.is_finite() => "an unknown part".to_owned(),
@@ -67,7 +67,7 @@ pub(crate) fn format_percent(part: f64) -> String {
     }
 }
 
-/// In which multiple of its unit a magnitude is written.
+/// Returns the factor and the multiple of the unit in which a magnitude is formatted.
 fn multiple(magnitude: f64, unit: &str) -> (f64, String) {
     let (_, own) = scaled_unit(unit, 1.0);
     if magnitude == 0.0 || PLAIN.contains(&magnitude) {
@@ -81,7 +81,7 @@ fn multiple(magnitude: f64, unit: &str) -> (f64, String) {
     (scale, scaled)
 }
 
-/// A number and its unit; where that begins with a power of ten, a product.
+/// Joins a number and its unit; a unit that begins with a power of ten is multiplied.
 fn with_unit(number: &str, unit: &str, is_pair: bool) -> String {
     match (unit.is_empty(), unit.starts_with("10"), is_pair) {
         (true, ..) => number.to_owned(),
@@ -91,10 +91,10 @@ fn with_unit(number: &str, unit: &str, is_pair: bool) -> String {
     }
 }
 
-/// The power of ten of the first digit.
+/// Returns the power of ten of the first digit.
 fn exponent(magnitude: f64) -> i32 {
     let floor = magnitude.log10().floor();
-    // Next to nothing, or more than can be written, counts as 1.
+    // The magnitude 0 and non-finite magnitudes are formatted like 1.
     if floor.is_finite() { floor as i32 } else { 0 }
 }
 
@@ -102,7 +102,7 @@ fn first_digit(magnitude: f64) -> i32 {
     (magnitude / 10f64.powi(exponent(magnitude))) as i32
 }
 
-/// Rounded to a place: 10 to this power.
+/// Rounds a value to a multiple of 10 to the power `place`.
 fn to_place(value: f64, place: i32) -> String {
     let text = if place < 0 {
         format!("{value:.*}", place.unsigned_abs() as usize)
@@ -117,7 +117,7 @@ fn to_place(value: f64, place: i32) -> String {
     }
 }
 
-/// Replaces plain notation of numbers in a sentence by `±` and powers of ten.
+/// Replaces `+-` and exponents of numbers in a sentence by `±` and powers of ten.
 pub(crate) fn format_readable(text: &str) -> String {
     let words = text.split(' ').map(|word| match word {
         "+-" => "±".to_owned(),
@@ -147,7 +147,7 @@ fn number_word(word: &str) -> Option<String> {
     )
 }
 
-/// Ten to a power.
+/// Formats a power of ten.
 fn scaled_power(power: i32) -> String {
     let raised = |c: char| match c {
         '-' => '⁻',

@@ -1,4 +1,4 @@
-//! Remaining gap in noise floors, and limit above which the name of an effect is provisional.
+//! Remaining gap in noise floors, and the limit above which the name of an effect is provisional.
 
 use std::collections::BTreeMap;
 
@@ -15,18 +15,18 @@ pub(crate) enum ModelStage {
     Extended,
 }
 
-/// Gap of the channel with the largest gap on the held-out records, in noise floors.
+/// Gap of the channel with the largest gap on the held-out records.
 pub(crate) struct RemainingGap {
-    /// Multiple of the noise floor.
+    /// Gap on the held-out records, in noise floors.
     pub(crate) floors: f64,
-    /// The same of the channel of which most is left on the training records.
+    /// Largest gap of a channel on the training records, in noise floors.
     training: f64,
     channel: String,
     is_only: bool,
 }
 
 impl RemainingGap {
-    /// Finds the largest remaining gap of the channels.
+    /// Finds the channel with the largest remaining gap.
     pub(crate) fn from_channels(gap: &BTreeMap<String, ChannelGap>, stage: ModelStage) -> Self {
         let of = |gap: &ChannelGap| match (stage, gap.after) {
             (ModelStage::Extended, Some(after)) => after,
@@ -46,7 +46,7 @@ impl RemainingGap {
         }
     }
 
-    /// Returns true if the gap, on either set of records, is so large that another effect may be
+    /// Returns true if the gap on either set of records is so large that another effect may be
     /// missing.
     pub(crate) fn is_large(&self) -> bool {
         let most = self.floors.max(self.training);
@@ -69,7 +69,7 @@ impl RemainingGap {
         })
     }
 
-    /// Returns text such as `1.2 noise floors in tip`.
+    /// Returns the gap in words, for example `1.2 noise floors in tip`.
     pub(crate) fn describe(&self) -> String {
         let number = match self.floors {
             floors if floors.is_nan() => return "an unknown number of noise floors".to_owned(),
@@ -89,7 +89,7 @@ impl RemainingGap {
         }
     }
 
-    /// Returns an explanation that follows the text of `describe`.
+    /// Returns an explanation to be appended to the text of `describe`.
     pub(crate) fn explain_level(&self) -> &'static str {
         match self.floors < thresholds::MAX_FLOORS_OF_CORRECT_MODEL {
             true => ", the level of a correct model",

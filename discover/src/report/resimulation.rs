@@ -1,5 +1,5 @@
-//! Simulation of the extended specification on the records. It tests the written text instead of
-//! the fit.
+//! Simulation of the extended specification on the records. It tests the written text in addition
+//! to the fit.
 
 use crate::error::DiscoverError;
 use crate::fit::fit_result::Fit;
@@ -10,17 +10,17 @@ use crate::fit::shooting::Shooting;
 use crate::model::problem::EstimationProblem;
 use eomgen_records::windows::Windows;
 
-/// RMS residuals of a specification over all channels, in standard deviations.
+/// RMS residuals of a specification over all channels, in standard deviations of the noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resimulation {
-    /// For the training records.
+    /// RMS residual of the training records.
     pub train: f64,
-    /// For the test records.
+    /// RMS residual of the test records.
     pub test: f64,
 }
 
-/// Simulates a specification with its own numbers and sensors on the windows of a fit, from the
-/// initial states of that fit.
+/// Simulates a specification with its parameters and sensors on the windows of a fit, starting from
+/// the initial states of the fit.
 ///
 /// # Errors
 ///

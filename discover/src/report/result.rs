@@ -13,36 +13,36 @@ use crate::report::resimulation::Resimulation;
 use crate::search::acceptance::TestStatistics;
 use crate::thresholds;
 
-/// A value for each set of records.
+/// Values for the training and the test records.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrainTest<T> {
-    /// For the training records.
+    /// Value for the training records.
     pub train: T,
-    /// For the held-out records.
+    /// Value for the held-out records.
     pub test: T,
 }
 
-/// An estimate with its unit.
+/// Estimate with its unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EstimateWithUnit {
     /// Value.
     pub value: f64,
     /// Standard deviation.
     pub sd: f64,
-    /// Unit of both.
+    /// Unit of value and standard deviation.
     pub unit: String,
 }
 
 /// RMS residuals of a channel, in its SI unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelGap {
-    /// Unit.
+    /// SI unit.
     pub unit: String,
     /// Noise floor.
     pub floor: f64,
-    /// RMS of the original model.
+    /// RMS residual of the original model.
     pub before: TrainTest<f64>,
-    /// RMS of the model with the found effects; `None` in a comparison.
+    /// RMS residual of the model with the found effects; `None` in a comparison.
     pub after: Option<TrainTest<f64>>,
 }
 
@@ -57,10 +57,10 @@ pub struct SensorEstimate {
     pub delay: f64,
 }
 
-/// Results of both a comparison and a search.
+/// Results of a comparison that a search also has.
 #[derive(Clone, Debug)]
 pub struct CommonResult {
-    /// Title of the dataset, or of the model if that has none.
+    /// Title of the dataset, or of the model if the dataset has none.
     pub title: String,
     /// Gap of each channel, by its name.
     pub gap: BTreeMap<String, ChannelGap>,
@@ -68,7 +68,7 @@ pub struct CommonResult {
     pub refitted: BTreeMap<String, EstimateWithUnit>,
     /// Sensor of each channel, by the name of the channel.
     pub sensors: BTreeMap<String, SensorEstimate>,
-    /// Sentences on the location of the difference.
+    /// Sentences about the location of the difference.
     pub location: String,
     /// Notes.
     pub notes: Vec<String>,
@@ -80,7 +80,7 @@ pub struct CommonResult {
     pub(crate) pictures: ResultFigures,
 }
 
-/// A nuisance: declared and estimated value.
+/// Nuisance with its declared and estimated value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nuisance {
     /// Name of the parameter, input or channel.
@@ -106,7 +106,7 @@ impl Nuisance {
             >= thresholds::BOUND_FRACTION * thresholds::MAX_PRIOR_DEVIATION
     }
 
-    /// Returns the name for a sentence.
+    /// Returns the name for use in a sentence.
     pub(crate) fn full_name(&self) -> String {
         match self.fault {
             Some(fault) => format!("the {fault} of {}", self.name),
@@ -126,7 +126,7 @@ pub(crate) struct ResultFigures {
     pub residuals: Markup,
     /// Next experiments with their predictions.
     pub experiments: Markup,
-    /// Equation of the residual force, and the profiles of the force.
+    /// Name of the equation of the residual force, and the profiles of the force.
     pub force: Option<(String, Markup)>,
 }
 
@@ -142,9 +142,9 @@ pub struct Comparison {
 /// Result of a search.
 #[derive(Clone, Debug)]
 pub struct Discovery {
-    /// The verdict.
+    /// Verdict.
     pub verdict: Verdict,
-    /// Accepted effects, by decreasing closed gap.
+    /// Accepted effects, sorted by decreasing closure.
     pub effects: Vec<FoundEffect>,
     /// Tested and rejected effects.
     pub rejected: Vec<RejectedEffect>,
@@ -152,23 +152,23 @@ pub struct Discovery {
     pub untestable: Vec<RejectedEffect>,
     /// Proposed experiments.
     pub experiments: Vec<ExperimentFile>,
-    /// Closed fraction of the gap; `None` if there was almost no gap.
+    /// Closed fraction of the gap; `None` if the gap is negligible.
     pub closure: TrainTest<Option<f64>>,
-    /// Test gap after each step.
+    /// Residual of the test records after each step.
     pub steps: Vec<SearchStep>,
     /// Results that a comparison also has.
     pub compared: CommonResult,
-    /// The original specification.
+    /// Text of the original specification.
     pub original: String,
-    /// The specification with the found effects.
+    /// Text of the specification with the found effects.
     pub extended: String,
-    /// Residuals of the extended specification in a simulation of the records.
+    /// Residuals of the extended specification, simulated on the records.
     pub resimulation: Resimulation,
     /// Result of the validation of the equations, if it was requested.
     pub validation: Option<Validation>,
-    /// Free function that explains the residual of the original model best, if one is adequate.
+    /// Free function that explains the residual of the original model best, if it is adequate.
     pub curve: Option<Curve>,
-    /// State of an unfinished search at its time limit; `None` if the search is complete.
+    /// State of the search at its time limit; `None` if the search is complete.
     pub unfinished: Option<String>,
 }
 
@@ -194,7 +194,7 @@ impl Verdict {
     }
 }
 
-/// An effect and its site.
+/// Effect and its site.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EffectSite {
     /// Name of the effect.
@@ -213,9 +213,9 @@ pub enum EffectStatus {
     /// The effect explains the records best, but a large gap remains or a nuisance is at its bound.
     /// Another effect may be the cause.
     Provisional,
-    /// The effect is one of an equivalence class.
+    /// The effect is a member of a class.
     Class,
-    /// The effect is an expression outside the catalogue.
+    /// The effect is an empirical expression.
     Empirical,
 }
 
@@ -234,74 +234,74 @@ impl EffectStatus {
 /// Angle and order of a periodic effect.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShaftOrder {
-    /// The angle.
+    /// Angle.
     pub angle: String,
-    /// Order, per turn.
+    /// Order, in periods per turn.
     pub order: u32,
 }
 
-/// An accepted effect.
+/// Accepted effect.
 #[derive(Clone, Debug)]
 pub struct FoundEffect {
     /// Effect and site.
     pub at: EffectSite,
     /// Description of the effect.
     pub description: String,
-    /// Certainty of its name.
+    /// Certainty of the name of the effect.
     pub status: EffectStatus,
-    /// Effects that the records cannot distinguish from it.
+    /// Effects that are inseparable from this effect.
     pub equivalents: Vec<EffectSite>,
-    /// Parameters by name.
+    /// Parameters of the effect, by name.
     pub parameters: BTreeMap<String, EstimateWithUnit>,
-    /// Main line of the change of the specification.
+    /// Added line that represents the change of the specification.
     pub term: String,
-    /// Statistics of its test.
+    /// Statistics of the acceptance test.
     pub statistics: TestStatistics,
-    /// P-value corrected for all hypotheses tested on the test records.
+    /// P-value adjusted for all hypotheses tested on the test records.
     pub adjusted_p_value: Option<f64>,
     /// Spring or mesh whose load scales the effect.
     pub load: Option<String>,
-    /// Experiment that separates it from its equivalents, if any.
+    /// Experiment that separates the effect from its equivalents, if any.
     pub experiment: Option<String>,
-    /// Proposed input for that experiment.
+    /// Proposed input for the experiment.
     pub next_experiment: Option<NextExperiment>,
 }
 
-/// A rejected effect.
+/// Rejected effect.
 #[derive(Clone, Debug)]
 pub struct RejectedEffect {
     /// Effect and site.
     pub at: EffectSite,
-    /// Reason of the rejection.
+    /// Reason for the rejection.
     pub reason: String,
-    /// Fraction of the squared residual by which the best effect of the same round would reduce it, if the reason
-    /// is a predicted reduction.
+    /// Fraction of the squared residual by which the best effect of the same round would reduce it,
+    /// if the reason is a predicted reduction.
     pub best_reduction: Option<f64>,
     /// Experiment that shows the effect.
     pub experiment: String,
-    /// Proposed input for that experiment, if it was computed.
+    /// Proposed input for the experiment, if it was computed.
     pub next_experiment: Option<NextExperiment>,
-    /// P-value of the test records, and the same corrected for all tested hypotheses; `None` if the
-    /// effect was not fitted.
+    /// P-value of the test records, and the p-value adjusted for all tested hypotheses. `None` if
+    /// the effect was not fitted.
     pub p_values: Option<(f64, f64)>,
 }
 
-/// A step of the search.
+/// Step of the search.
 #[derive(Clone, Debug)]
 pub struct SearchStep {
-    /// Added effects; empty in the first step.
+    /// Effects added in this step; empty in the first step.
     pub added: Vec<String>,
     /// RMS residual of the test records, in standard deviations of the noise.
     pub test_rms: f64,
 }
 
-/// Result of the checks of the extended equations.
+/// Result of the validation of the extended equations.
 #[derive(Clone, Debug)]
 pub struct Validation {
     /// True if all checks passed.
     pub has_passed: bool,
-    /// Executed checks.
+    /// Names of the executed checks.
     pub checks: Vec<String>,
-    /// Failed checks.
+    /// Names of the failed checks.
     pub failed: Vec<String>,
 }

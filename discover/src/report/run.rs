@@ -1,4 +1,4 @@
-//! Comparison and search, from a specification and records to a result.
+//! Comparison and search, from specification and records to the result.
 
 use eomgen_records::dataset::Dataset;
 use maud::Markup;
@@ -55,7 +55,7 @@ use crate::thresholds;
 /// Receiver of progress lines.
 pub type Progress<'p> = dyn Fn(&str) + Sync + 'p;
 
-/// A fit, the floor there, and the residual force.
+/// Fit of the null model, its noise floor and residual force.
 struct Null {
     fit: Fit,
     floor: NoiseFloor,
@@ -64,11 +64,11 @@ struct Null {
     notes: Vec<String>,
 }
 
-/// Compares a specification with records. `seed`: seed of the bootstrap of the noise floor.
+/// Compares a specification with records. `seed`: seed of the noise of the replica.
 ///
 /// # Errors
 ///
-/// Wrong labels of the records, or a model that cannot be simulated on them.
+/// Wrong columns of the records, or a model that cannot be simulated on them.
 pub fn compare(
     specification: Specification<'_>,
     dataset: &Dataset,
@@ -127,12 +127,12 @@ pub fn compare(
     })
 }
 
-/// Searches for effects that explain the difference between a specification and records: effects of
-/// the catalogue and, if none explains it, an unnamed expression.
+/// Searches for effects that explain the difference between a specification and records. If no
+/// effect of the catalogue explains it, an empirical expression is tried.
 ///
 /// # Errors
 ///
-/// Wrong labels of the records, a model that cannot be simulated on them, or an effect that makes
+/// Wrong columns of the records, a model that cannot be simulated on them, or an effect that makes
 /// the specification invalid.
 pub fn discover(
     specification: Specification<'_>,
@@ -145,11 +145,11 @@ pub fn discover(
     discover_until(specification, dataset, catalogue, seed, progress, &stop)
 }
 
-/// Searches as [`discover`], until a stop is requested.
+/// Searches like [`discover`], but ends if a stop is requested.
 ///
 /// # Errors
 ///
-/// As [`discover`]; [`DiscoverError::Stopped`].
+/// Errors of [`discover`]; [`DiscoverError::Stopped`].
 pub fn discover_until(
     specification: Specification<'_>,
     mut dataset: Dataset,
@@ -170,7 +170,7 @@ pub fn discover_until(
     let mut problem = EstimationProblem::new(&dataset, order, path, text);
     problem.stop = stop.clone();
     let null = null(&problem, text, seed, progress);
-    // A failure after a stop on request is no property of the records.
+    // Simulations also fail after a stop request. In this case no other error is reported.
     stop.check_not_stopped()?;
     let Null {
         fit,
@@ -208,7 +208,7 @@ pub fn discover_until(
         effects: catalogue,
         progress,
     };
-    // An experiment takes as long as some fits: not after a limit.
+    // Experiments take as long as some fits and are skipped after the time limit.
     let experiments = match &found.unfinished {
         None => propose_experiments(context, &found),
         Some(_) => Experiments::empty(found.accepted.len(), found.rejected.len()),
@@ -254,9 +254,9 @@ pub fn discover_until(
         progress(&format!("note: {note}"));
         notes.push(note);
     }
-    // Single fits take as long as the joint fit: skip them after a time limit.
+    // Single fits take as long as the joint fit and are skipped after the time limit.
     if found.unfinished.is_none() {
-        // A change without a name explains the records instead.
+        // Without accepted effects, an unconfirmed hypothesis is part of the model for this check.
         let unconfirmed = found.unconfirmed.as_ref();
         let unconfirmed = unconfirmed.filter(|_| found.extended_fit.is_none());
         if let Some(of) = unconfirmed {
@@ -310,7 +310,7 @@ pub fn discover_until(
     })
 }
 
-/// Returns the title of a dataset, or of the model of a fit if it has none.
+/// Returns the title of a dataset, or the name of the model if the dataset has no title.
 fn title(dataset: &Dataset, fit: &Fit) -> String {
     match dataset.title.as_str() {
         "" => fit.model.specification().title.clone(),
@@ -318,8 +318,8 @@ fn title(dataset: &Dataset, fit: &Fit) -> String {
     }
 }
 
-/// Describes a hypothesis that training records support and held-out records do not. Later
-/// statements of the report include it in the model.
+/// Describes a hypothesis that training records support but held-out records do not. The following
+/// notes refer to the model with this hypothesis.
 fn note_of_unconfirmed(of: &UnconfirmedHypothesis, null: &Fit, floor: f64) -> String {
     let UnconfirmedHypothesis {
         label,
@@ -339,7 +339,7 @@ fn note_of_unconfirmed(of: &UnconfirmedHypothesis, null: &Fit, floor: f64) -> St
     )
 }
 
-/// An unknown of a fit with its standard deviation, in its parameter's unit.
+/// Formats an unknown of a fit with its standard deviation, in the unit of its parameter.
 fn size(fit: &Fit, id: UnknownId, floor: f64) -> String {
     let unknown = &fit.unknowns[id];
     let (estimate, sd) = (fit.train.estimate.theta[id], fit.sd_with_misfit(id, floor));
@@ -353,7 +353,8 @@ fn size(fit: &Fit, id: UnknownId, floor: f64) -> String {
     )
 }
 
-/// Finds records that contradict the stated initial state or each other, and reports the progress.
+/// Finds records that contradict the declared initial state or each other. Reports each note as
+/// progress.
 fn contradicting(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -368,7 +369,7 @@ fn contradicting(
     found
 }
 
-/// The null model's fit, the floor and the residual force there.
+/// Fits the null model, and computes its noise floor and residual force.
 fn null(
     problem: &EstimationProblem<'_>,
     text: &str,

@@ -1,5 +1,5 @@
-//! Summary of a result for the page, the document and the terminal: first the result and its
-//! certainty, then the evidence.
+//! Summary of a result as text, for page, document and terminal. The first sentence contains the
+//! result and its certainty, the following sentences the evidence.
 
 use crate::catalogue::effect::effect_in_words;
 use crate::report::quantity::{format_estimate, format_percent};
@@ -8,16 +8,16 @@ use crate::report::result::{
     Comparison, Discovery, EffectSite, EffectStatus, FoundEffect, Nuisance, TrainTest, Verdict,
 };
 
-/// The first sentence and the following ones.
+/// Summary of a comparison or search.
 pub(crate) struct Summary {
-    /// First sentence.
+    /// Sentence with the result.
     pub(crate) headline: String,
-    /// Following sentences.
+    /// Sentences with the evidence.
     pub(crate) details: String,
 }
 
 impl Summary {
-    /// Returns both parts.
+    /// Returns the whole summary.
     pub(crate) fn to_text(&self) -> String {
         format!("{} {}", self.headline, self.details)
     }
@@ -81,8 +81,7 @@ impl Summary {
     }
 }
 
-/// Lists the refitted parameters and sensors that are at the limit of their range, or returns
-/// `None`.
+/// Describes the refitted parameters and sensors at the bound of the fit; `None` if there are none.
 fn at_bounds(nuisances: &[Nuisance]) -> Option<String> {
     let at_bound = nuisances.iter().filter(|of| of.is_at_bound());
     let names: Vec<String> = at_bound.map(Nuisance::full_name).collect();
@@ -94,7 +93,8 @@ fn at_bounds(nuisances: &[Nuisance]) -> Option<String> {
     Some(format!("with {which} at the bound of the fit"))
 }
 
-/// The first sentence of a model that explains the records: how it ends where nothing is at its bounds.
+/// Returns the headline for a model that explains the records. `end`: end of the sentence if no
+/// nuisance is at its bound.
 fn summarise_no_gap(nuisances: &[Nuisance], end: &str) -> String {
     let end = match at_bounds(nuisances) {
         None => end.to_owned(),
@@ -103,7 +103,8 @@ fn summarise_no_gap(nuisances: &[Nuisance], end: &str) -> String {
     format!("The model explains the records{end}")
 }
 
-/// Of a search that found something: where that is not sure, this is said first.
+/// Summarises a search with accepted effects. If the names of the effects are not certain, the
+/// headline reports this.
 fn summarise_effects(
     discovery: &Discovery,
     before: &RemainingGap,
@@ -141,7 +142,7 @@ fn summarise_effects(
     }
 }
 
-/// Describes the fraction of the gap that is closed on held-out records.
+/// Describes the closure on held-out records.
 fn describe_closure(closure: TrainTest<Option<f64>>) -> String {
     match closure.test {
         Some(part) if part > 0.0 => format!(
@@ -153,7 +154,7 @@ fn describe_closure(closure: TrainTest<Option<f64>>) -> String {
     }
 }
 
-/// Effects in a sentence.
+/// Joins the effects for use in a sentence.
 fn list_effects(effects: &[FoundEffect]) -> String {
     let named: Vec<String> = effects.iter().map(name_effect).collect();
     match &named[..] {
@@ -162,7 +163,7 @@ fn list_effects(effects: &[FoundEffect]) -> String {
     }
 }
 
-/// Describes an effect with its size and the effects that the records cannot distinguish from it.
+/// Describes an effect with its size and the effects that are inseparable from it.
 fn name_effect(effect: &FoundEffect) -> String {
     let sizes = effect.parameters.iter();
     let sizes =
@@ -182,7 +183,7 @@ fn name_effect(effect: &FoundEffect) -> String {
     text
 }
 
-/// Returns name, site and order of an effect as words.
+/// Returns name, site and order of an effect in words.
 pub(crate) fn describe_with_order(at: &EffectSite) -> String {
     match &at.order {
         Some(order) => format!(
@@ -195,7 +196,7 @@ pub(crate) fn describe_with_order(at: &EffectSite) -> String {
     }
 }
 
-/// Returns name and site of an effect as words.
+/// Returns name and site of an effect in words.
 pub(crate) fn describe_effect(at: &EffectSite) -> String {
     format!("{} on {}", effect_in_words(&at.effect), at.site)
 }

@@ -7,7 +7,7 @@ use crate::model::unknowns::UnknownKind;
 use crate::search::search_result::SearchResult;
 use eomgen_model_spec::model::ParameterValue;
 
-/// Returns a note for each estimate that is wrong by a factor between two units.
+/// Returns a note for each estimate that deviates by the factor between two units.
 pub(crate) fn note_wrong_units(
     problem: &EstimationProblem<'_>,
     found: &SearchResult,
@@ -37,7 +37,8 @@ pub(crate) fn note_wrong_units(
         .collect()
 }
 
-/// The value of a parameter in the specification as it was, SI; none if it is not there, or an expression.
+/// Returns the value of a parameter in the original specification, SI; `None` if it is missing or
+/// an expression.
 fn declared_value(null: &Fit, name: &str) -> Option<f64> {
     let mut parameters = null.model.specification().parameters.iter();
     match parameters.find(|parameter| parameter.name == name)?.value {

@@ -1,5 +1,5 @@
-//! Extended specification: effects added, refitted numbers set, sensors described, and all comments
-//! kept.
+//! Extended specification: effects are added, refitted values and sensors are written, and comments
+//! are kept.
 
 use crate::ids::{ChannelId, UnknownId};
 use eomgen_model_spec::edit::{self, Edit, SetParameter, SetSensor};
@@ -14,8 +14,8 @@ use crate::report::quantity::format_number;
 use crate::search::search_result::AcceptedEffect;
 use crate::thresholds;
 
-/// Returns the text with the effects and numbers of a fit. `floor`: noise floor in standard deviations of the
-/// noise.
+/// Returns the specification with the effects and values of a fit. `floor`: noise floor in standard
+/// deviations of the noise.
 ///
 /// # Errors
 ///
@@ -72,7 +72,7 @@ pub fn write_extended(
     Ok(edit::apply(&edited_source(&problem.path, &text), &edits)?)
 }
 
-/// Describes the source of the numbers.
+/// Describes the source of the fitted values.
 fn provenance(problem: &EstimationProblem<'_>) -> String {
     let title = &problem.dataset.title;
     let files = problem
@@ -89,8 +89,8 @@ fn provenance(problem: &EstimationProblem<'_>) -> String {
     }
 }
 
-/// Returns true if an unknown's estimate differs from where it began, at all or by more than its
-/// uncertainty makes of it.
+/// Returns true if the estimate of an unknown differs from its initial value: by any amount if
+/// `at_all`, otherwise by more than a fraction of its standard deviation.
 fn has_moved(fit: &Fit, unknown: UnknownId, at_all: bool) -> bool {
     let least = if at_all {
         0.0
@@ -100,7 +100,8 @@ fn has_moved(fit: &Fit, unknown: UnknownId, at_all: bool) -> bool {
     (fit.train.estimate.theta[unknown] - fit.unknowns[unknown].start).abs() > least
 }
 
-/// The sensors that differ from true ones, at all or by more than their uncertainty.
+/// Returns edits for the sensors whose estimates differ from their initial values, see
+/// [`has_moved`].
 fn sensors(problem: &EstimationProblem<'_>, fit: &Fit, at_all: bool) -> Vec<Edit> {
     let shooting = fit.training_shooting(problem);
     let sensors = shooting.sensor_values(&fit.train.estimate.theta);
@@ -116,7 +117,8 @@ fn sensors(problem: &EstimationProblem<'_>, fit: &Fit, at_all: bool) -> Vec<Edit
             own && has_moved(fit, id, at_all)
         })
     };
-    // The delay of the input is written with each sensor, or with none.
+    // The delay of the input is contained in the delays of all sensors: if one sensor is written,
+    // all are written.
     let is_late = find_delayed_input(&problem.dataset.inputs).is_some();
     let any = ChannelId::first(problem.dataset.channels.len()).any(moved);
     let all = &problem.dataset.channels;

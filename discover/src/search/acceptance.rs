@@ -1,4 +1,4 @@
-//! Acceptance test: the required improvement of a fit by a further effect. All limits are in
+//! Acceptance test: improvement of a fit that a further effect must achieve. All limits are in
 //! [`crate::thresholds`].
 
 use crate::fit::fit_result::Fit;
@@ -13,9 +13,9 @@ pub struct TestStatistics {
     pub held_out_reduction: f64,
     /// Reduction of the squares of the test records, in standard errors over blocks of time.
     pub reduction_in_standard_errors: f64,
-    /// Half the reduction of the whitened squares of the training records.
+    /// Half the reduction of the whitened sum of squares of the training records.
     pub information_gain: f64,
-    /// Size of the effect in standard deviations; the smallest of several effects.
+    /// Size of the effect in standard deviations; for several effects, the smallest.
     pub t_value: f64,
     /// Influence of the effect on the channel that shows it best, in standard deviations of the
     /// noise.
@@ -24,7 +24,7 @@ pub struct TestStatistics {
     pub p_value: Option<f64>,
 }
 
-/// An unknown of an effect.
+/// Unknown of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectUnknown {
     /// Index among the unknowns of the fit.
@@ -33,7 +33,7 @@ pub struct EffectUnknown {
     pub effect: EffectId,
     /// Value without the effect, SI.
     pub base: f64,
-    /// True if it shapes the effect without scaling it.
+    /// True for a shape parameter, which does not scale the effect.
     pub is_shape: bool,
     /// Standard deviation of its removed prior, SI.
     pub dropped_prior_sd: Option<f64>,
@@ -43,21 +43,22 @@ pub struct EffectUnknown {
 ///
 /// # Errors
 ///
-/// The reason why they are rejected.
+/// The reason for the rejection.
 pub fn test_acceptance(
     before: &Fit,
     after: &Fit,
     own: &[EffectUnknown],
 ) -> Result<TestStatistics, Rejection> {
     let statistics = test_explanation(before, after, own)?;
-    // Certainly beyond its prior, not only within its uncertainty.
+    // The value must be outside the range of the prior even after subtraction of its uncertainty.
     if let Some(rejection) = within_prior(after, own, thresholds::MIN_REDUCTION_STANDARD_ERRORS) {
         return Err(rejection);
     }
     if statistics.t_value < thresholds::MIN_SIGNIFICANCE {
         return Err(Rejection::Significance(statistics.t_value));
     }
-    // The null model covers values within a prior; the part beyond the prior may be small.
+    // The influence is not tested for an effect that removes a prior: its part outside the prior's
+    // range may be small.
     let has_prior = own.iter().all(|own| own.dropped_prior_sd.is_some());
     if !has_prior && statistics.size_over_noise < thresholds::MIN_EFFECT_OVER_NOISE {
         return Err(Rejection::Influence(statistics.size_over_noise));
@@ -65,12 +66,12 @@ pub fn test_acceptance(
     Ok(statistics)
 }
 
-/// Tests if additional effects explain the records better, even if their sizes are uncertain
-/// because a declared nuisance has the same response.
+/// Tests if additional effects explain the records better. Their sizes may be uncertain because a
+/// declared nuisance has the same response.
 ///
 /// # Errors
 ///
-/// The reason why they do not.
+/// The failed criterion.
 pub fn test_explanation(
     before: &Fit,
     after: &Fit,
@@ -129,8 +130,8 @@ fn size(before: &Fit, after: &Fit) -> f64 {
     sizes.fold(0.0, f64::max)
 }
 
-/// The size of an effect in standard deviations; of several the smallest. The two parts of a
-/// wave count together.
+/// Returns the size of an effect in standard deviations; for several effects, the smallest. Sine
+/// and cosine of a wave count as one effect.
 fn least_significance(fit: &Fit, own: &[EffectUnknown]) -> f64 {
     let effects = own.iter().map(|own| own.effect.index() + 1).max();
     EffectId::first(effects.unwrap_or(0))
@@ -148,8 +149,9 @@ pub fn compute_t_value(fit: &Fit, own: &[EffectUnknown], effect: EffectId) -> f6
     ratios.map(|t| t * t).sum::<f64>().sqrt()
 }
 
-/// Returns true if the records do not distinguish the shape of an effect from 0. The effect is then
-/// one without that parameter: a spring that softens beyond a deflection of 0 is a softer spring.
+/// Returns true if a shape parameter does not differ significantly from 0. The effect is then
+/// equivalent to an effect without this parameter: a spring that softens beyond a deflection of 0
+/// is a softer spring.
 pub fn has_vanishing_shape(fit: &Fit, own: &[EffectUnknown]) -> bool {
     let mut shapes = own.iter().filter(|own| own.is_shape);
     shapes.any(|own| {
@@ -158,7 +160,7 @@ pub fn has_vanishing_shape(fit: &Fit, own: &[EffectUnknown]) -> bool {
     })
 }
 
-/// A parameter that a bound holds.
+/// Returns a rejection if a parameter is at its bound.
 fn at_bound(fit: &Fit, own: &[EffectUnknown]) -> Option<Rejection> {
     let held = own
         .iter()
@@ -170,8 +172,8 @@ fn at_bound(fit: &Fit, own: &[EffectUnknown]) -> Option<Rejection> {
     })
 }
 
-/// An unknown that gave up its prior and is within it still, or may be: so many standard errors
-/// nearer than estimated.
+/// Returns a rejection if an unknown whose prior was removed is still within the range of the
+/// prior. The distance from the prior mean is reduced by `errors` standard errors.
 fn within_prior(fit: &Fit, own: &[EffectUnknown], errors: f64) -> Option<Rejection> {
     own.iter().find_map(|own| {
         let prior = own.dropped_prior_sd?;

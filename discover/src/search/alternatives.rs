@@ -1,6 +1,6 @@
 //! Alternatives to the result of a round. Effects on different shafts of a gear have similar
-//! responses, and the order of their fits may depend on the start values. Similar effects are
-//! fitted again from the end of the selected fit.
+//! responses, and the order of their fits may depend on the initial values. Therefore similar
+//! effects are fitted again, starting from the estimates of the selected fit.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ use crate::search::pool::CandidatePool;
 use crate::search::screening::{LinearPrediction, screen_candidates};
 use crate::thresholds;
 
-/// Fits the alternatives to a hypothesis from the end of its fit and keeps the results with lower
+/// Fits the alternatives to a hypothesis, starting from its estimates, and keeps results with lower
 /// residuals.
 pub fn test_alternatives(
     pool: &CandidatePool<'_>,
@@ -38,7 +38,7 @@ pub fn test_alternatives(
     }
 }
 
-/// Finds the best alternatives to a fitted hypothesis, starting from its result. Empty if the
+/// Finds the best alternatives to a fitted hypothesis, starting from its estimates. Empty if the
 /// hypothesis is not one effect with separate terms.
 fn alternatives(
     pool: &CandidatePool<'_>,
@@ -53,8 +53,8 @@ fn alternatives(
         return None;
     }
     let rivals = rivals(pool, fitted_hypotheses, answer, response);
-    // If the residual exceeds that of a correct model, test the same effect at all other places: a
-    // prediction along the motion of a wrong place may be far off.
+    // If the residual exceeds that of a correct model, the same effect is tested at all other
+    // sites, because predictions along the motion of an incorrect model may be wrong.
     let at_floor = fitted.fit.is_at_floor(pool.context.floor);
     let most = match at_floor {
         true => thresholds::MAX_RIVAL_COST_RATIO,
@@ -63,8 +63,9 @@ fn alternatives(
     begin_from_answer(pool, fitted, response, &rivals, most)
 }
 
-/// Begins fits of rivals of a fitted effect, `response`, from its result: those with the lowest
-/// predicted residuals, below `most` times that of the fitted effect.
+/// Runs preliminary fits of rivals of a fitted effect, `response`, starting from its estimates.
+/// Rivals have the lowest predicted residuals, below `most` times the predicted residual of the
+/// fitted effect.
 pub(super) fn begin_from_answer(
     pool: &CandidatePool<'_>,
     fitted: &FittedHypothesis,
@@ -103,8 +104,9 @@ pub(super) fn begin_from_answer(
     Some(preliminaries.collect())
 }
 
-/// Those of the rivals that there are in a fitted hypothesis' model, as candidates for that: names
-/// that the fitted hypothesis took are not free there, and shapes go with the fitted hypothesis'.
+/// Returns those rivals that exist in the model of a fitted hypothesis, as candidates of this
+/// model. Their parameters have names that are not in use there, and their shapes are scaled like
+/// the fitted shape.
 fn in_model(
     pool: &CandidatePool<'_>,
     fitted: &FittedHypothesis,
@@ -132,7 +134,7 @@ fn in_model(
     rivals.iter().filter_map(again).unzip()
 }
 
-/// The rivals' orders, at each angle.
+/// Returns the orders of the rivals, for each angle.
 fn orders(
     pool: &CandidatePool<'_>,
     rivals: &[ResponseId],
@@ -153,8 +155,8 @@ struct Predicted {
     prediction: LinearPrediction,
 }
 
-/// Returns the candidates with a predicted residual below a multiple of that of a fitted
-/// hypothesis, which is linearised without its own terms.
+/// Returns the candidates with a predicted residual below a multiple of the residual of a fitted
+/// hypothesis. The fit is linearised without the terms of this hypothesis.
 fn predictions(
     pool: &CandidatePool<'_>,
     fitted: &FittedHypothesis,
@@ -182,8 +184,8 @@ fn predictions(
     )
 }
 
-/// Returns the ratio of a fitted hypothesis' shape to its initial value. The falling speed of
-/// friction scales with the usual speed of its place.
+/// Returns the ratio of the fitted shape of a hypothesis to its initial value. For example, the
+/// Stribeck speed scales with the usual speed at its site.
 fn shape_ratio(pool: &CandidatePool<'_>, fitted: &FittedHypothesis) -> Option<f64> {
     let shape = fitted.effect_unknowns.iter().find(|own| own.is_shape)?;
     let began = pool.screening.responses[fitted.responses[0]]
@@ -193,8 +195,8 @@ fn shape_ratio(pool: &CandidatePool<'_>, fitted: &FittedHypothesis) -> Option<f6
     Some(fitted.fit.train.estimate.theta[shape.unknown] / began.unknown.start)
 }
 
-/// Returns the same effect at other places and similar candidates, except those with equally small
-/// residuals already.
+/// Returns the same effect at other sites and similar candidates. Candidates whose fits already
+/// have an equally small residual are left out.
 fn rivals(
     pool: &CandidatePool<'_>,
     fitted_hypotheses: &[FittedHypothesis],

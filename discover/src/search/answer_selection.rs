@@ -7,7 +7,7 @@ use crate::search::round::SearchRound;
 use crate::search::selection::{SelectedHypothesis, select_best_fit, select_hypothesis};
 use crate::search::tested_pool::TestedPool;
 
-/// Returns the named hypothesis of all tested ones; `None` if none is accepted.
+/// Selects the named hypothesis among all tested hypotheses; `None` if none is accepted.
 pub fn select_answer(
     round: &SearchRound<'_>,
     mut tested: Vec<TestedPool>,

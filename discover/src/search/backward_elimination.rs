@@ -1,4 +1,4 @@
-//! Backward elimination: an effect may become unnecessary after a later one is accepted.
+//! Backward elimination: removal of effects that later effects make unnecessary.
 
 use crate::catalogue::candidate::Candidate;
 use crate::error::DiscoverError;
@@ -10,8 +10,8 @@ use crate::model::problem::EstimationProblem;
 use crate::search::search_result::{AcceptedEffect, RejectedCandidate, SearchResult};
 use crate::thresholds;
 
-/// Removes effects that are not needed, the least important first. `progress` receives a line for
-/// each.
+/// Removes unnecessary effects, the least important first. `progress` receives a line for each
+/// removal.
 pub fn eliminate_backwards(
     problem: &EstimationProblem<'_>,
     found: &mut SearchResult,
@@ -51,19 +51,19 @@ pub fn eliminate_backwards(
     }
 }
 
-/// Returns true if a fit without an effect is as good as one with it, by the criteria for accepting
-/// an effect.
+/// Returns true if a fit without an effect is as good as a fit with it, by the acceptance criteria.
 fn is_as_good(with: &Fit, without: &Fit) -> bool {
     let worse =
         |with: f64, without: f64| with < (1.0 - thresholds::MIN_HELD_OUT_REDUCTION) * without;
     !worse(with.train.rms, without.train.rms) && !worse(with.test.rms, without.test.rms)
 }
 
-/// Fits the model with all accepted effects but one, from the end of the previous fit.
+/// Fits the model with all accepted effects except one, starting from the estimates of the previous
+/// fit.
 ///
 /// # Errors
 ///
-/// As [`full_fit::fit_specification`].
+/// Errors of [`full_fit::fit_specification`].
 pub(crate) fn fit_without_effect(
     problem: &EstimationProblem<'_>,
     found: &SearchResult,
@@ -102,7 +102,7 @@ pub(crate) fn fit_without_effect(
     full_fit::complete_fit(problem, preliminary)
 }
 
-/// Takes an effect off the list; the unknowns of those behind it move up.
+/// Removes an effect from the list and renumbers the unknowns of the following effects.
 fn renumber(accepted: &mut Vec<AcceptedEffect>, effect_id: EffectId) -> Candidate {
     let gone = accepted.remove(effect_id.index());
     if gone.candidate.dropped_prior.is_some() {

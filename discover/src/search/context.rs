@@ -5,7 +5,7 @@ use crate::fit::fit_result::Fit;
 use crate::model::problem::EstimationProblem;
 use crate::thresholds;
 
-/// Context of a round of the search.
+/// Problem, fit and settings of a round of the search.
 #[derive(Clone, Copy)]
 pub struct RoundContext<'r> {
     /// Problem of the dataset.
@@ -14,7 +14,7 @@ pub struct RoundContext<'r> {
     pub fit: &'r Fit,
     /// Noise floor, in standard deviations.
     pub floor: f64,
-    /// Catalogue.
+    /// Effects of the catalogue and of the user.
     pub effects: &'r [Effect],
     /// Receiver of progress lines.
     pub progress: &'r (dyn Fn(&str) + Sync),

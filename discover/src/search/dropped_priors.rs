@@ -1,4 +1,5 @@
-//! Candidates for errors of declared parameters, inputs and sensors beyond their priors.
+//! Candidates for errors of declared parameters, inputs and sensors that are larger than their
+//! priors permit.
 
 use crate::catalogue::candidate::{self, Candidate};
 use crate::catalogue::input_faults;

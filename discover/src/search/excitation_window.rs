@@ -12,17 +12,17 @@ use crate::thresholds;
 /// Part of the motions used for screening.
 #[derive(Clone, Copy, PartialEq)]
 pub enum ExcitationWindow {
-    /// Beginnings of windows, in which the motion is nearly linear in the unknowns.
+    /// Initial segments of windows, in which the motion is nearly linear in the unknowns.
     Beginnings,
     /// Whole windows, which show slow effects better.
     Whole,
-    /// Whole windows of the model without play: linear for motions of the teeth much larger than
-    /// their play.
+    /// Whole windows of the model with all play closed. This model is linear for errors of the
+    /// teeth that are much larger than their play.
     BacklashRemoved,
 }
 
 impl ExcitationWindow {
-    /// Returns the used fraction of each window.
+    /// Returns the fraction of each window that is used.
     pub fn window_fraction(self) -> f64 {
         match self {
             Self::Beginnings => thresholds::PRELIMINARY_FRACTION,
@@ -31,7 +31,7 @@ impl ExcitationWindow {
     }
 }
 
-/// Fits the model without play; `None` if it has no play.
+/// Fits the model with all play closed; `None` if it has no play.
 pub fn fit_without_play(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Fit> {
     let edits: Vec<Edit> = find_play_parameters(fit.model.specification())
         .into_iter()

@@ -1,5 +1,5 @@
-//! Hypotheses: candidates that are fitted together, their unknowns, the specification with them,
-//! and the start of a fit.
+//! Hypotheses: candidates that are fitted together, their unknowns, the specification with these
+//! candidates, and initial values of the fit.
 
 use crate::error::DiscoverError;
 use crate::fit::fit_result::Fit;
@@ -12,18 +12,18 @@ use crate::search::acceptance::EffectUnknown;
 use crate::search::pool::CandidatePool;
 use crate::thresholds;
 
-/// Candidates that are fitted together, and a parameter whose term they replace.
+/// Candidates that are fitted together, optionally in place of the term of a parameter.
 #[derive(Clone)]
 pub struct Hypothesis {
     /// Responses of the candidates.
     pub responses: Vec<ResponseId>,
     /// Parameter whose term is replaced.
     pub replaced_parameter: Option<UnknownId>,
-    /// Predicted sizes of the candidates, in order.
+    /// Predicted sizes of the candidates, in the order of `responses`.
     pub predicted_sizes: Vec<f64>,
 }
 
-/// Unknowns of a fit with additional ones, and their initial values, SI.
+/// Unknowns of a fit and of the additional candidates, and their initial values, SI.
 struct Extended {
     unknowns: Vec<Unknown>,
     theta: Vec<f64>,
@@ -88,7 +88,7 @@ pub fn fit_preliminary(
     problem.stop.check_not_stopped()?;
     let Extended { unknowns, theta } = unknowns_with(pool, hypothesis, pool.size_fractions[0]);
     let texts = texts(pool, hypothesis, &unknowns, &theta)?;
-    // A small vibration in additional coordinates is already far from the fit.
+    // With additional coordinates, even a small vibration is far from the previous fit.
     let adds_states = hypothesis.responses.iter().any(|response| {
         let parameters = &pool.candidate(*response).parameters;
         parameters.iter().any(|parameter| parameter.is_inverse)
@@ -109,13 +109,13 @@ pub fn fit_preliminary(
     }
     let mut preliminary = preliminary_fit::fit_beginnings(problem, texts, unknowns, &begins)?;
     if pool.uses_whole_windows {
-        // Beside others that are promised and not fitted yet.
+        // Preliminary fits are compared by predictions over whole windows.
         preliminary.cost = pool.screening.predict(&hypothesis.responses).cost;
     }
     Ok(preliminary)
 }
 
-/// Runs a preliminary fit with the candidates and with shapes at this multiple of their typical
+/// Runs a preliminary fit with the candidates. Shapes have the given multiple of their typical
 /// sizes.
 pub fn fit_with_shape_factor(
     pool: &CandidatePool<'_>,
@@ -136,8 +136,8 @@ pub fn fit_with_shape_factor(
     preliminary_fit::fit_beginnings(pool.context.problem, texts, unknowns, &[theta])
 }
 
-/// Starts a hypothesis of one candidate from the motions of a fit with another. `shape_ratio`:
-/// multiple of the typical size of a shape.
+/// Fits a hypothesis of one candidate, starting from the initial states of a fit with another
+/// candidate. `shape_ratio`: multiple of the typical size of a shape.
 pub fn fit_from_warm_start(
     pool: &CandidatePool<'_>,
     hypothesis: &Hypothesis,
@@ -160,8 +160,8 @@ pub fn fit_from_warm_start(
     preliminary_fit::start_from_fit(pool.context.problem, texts, unknowns, &[theta], warm_start)
 }
 
-/// Starts a hypothesis of one candidate from the end of the fit of a pair. `own`: its unknowns in
-/// that fit, SI.
+/// Fits a hypothesis of one candidate. The initial values are the estimates of a fit of two
+/// candidates. `own`: values of its unknowns in this fit, SI.
 pub fn fit_half_from_pair(
     pool: &CandidatePool<'_>,
     hypothesis: &Hypothesis,
@@ -180,7 +180,8 @@ pub fn fit_half_from_pair(
     preliminary_fit::start_from_fit(pool.context.problem, texts, unknowns, &[theta], warm_start)
 }
 
-/// The specification's texts with a hypothesis' candidates, at these values of the unknowns.
+/// Returns the texts of the specification with the candidates of a hypothesis, for given values of
+/// the unknowns.
 fn texts(
     pool: &CandidatePool<'_>,
     hypothesis: &Hypothesis,
@@ -206,8 +207,8 @@ fn texts(
     Ok(texts)
 }
 
-/// The unknowns with a hypothesis' candidates and their values, so much of the promised sizes from
-/// absent.
+/// Returns the unknowns with the candidates of a hypothesis, and initial values. The candidates
+/// have the fraction `part` of their predicted sizes.
 fn unknowns_with(pool: &CandidatePool<'_>, hypothesis: &Hypothesis, part: f64) -> Extended {
     let fit = pool.context.fit;
     let mut unknowns = fit.unknowns.clone();

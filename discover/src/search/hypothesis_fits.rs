@@ -1,4 +1,4 @@
-//! Parallel fits of hypotheses: preliminary fits to the beginnings of windows, and full fits.
+//! Parallel fits of hypotheses: preliminary fits to the initial segments of windows, and full fits.
 
 use std::fmt;
 
@@ -15,7 +15,7 @@ use crate::search::pool::CandidatePool;
 use crate::search::rejection::Rejection;
 use crate::search::split_sample::SplitSampleTest;
 
-/// A hypothesis with its full fit.
+/// Hypothesis with its full fit.
 pub struct FittedHypothesis {
     /// Responses of its candidates.
     pub responses: Vec<ResponseId>,
@@ -25,14 +25,14 @@ pub struct FittedHypothesis {
     pub fit: Fit,
     /// Result of the acceptance test.
     pub verdict: Result<TestStatistics, Rejection>,
-    /// True if the candidates explain the records, even if their sizes are uncertain. They are then
-    /// equivalent to an accepted effect.
+    /// True if the candidates explain the records, even if their sizes are uncertain. Such
+    /// candidates may be equivalent to an accepted effect.
     pub explains_records: bool,
     /// P-value of the test records.
     pub p_value: Option<f64>,
 }
 
-/// Fits hypotheses to the beginnings of windows in parallel; the best first.
+/// Fits hypotheses to the initial segments of windows in parallel. The best fit is first.
 pub fn run_preliminary_fits(
     pool: &CandidatePool<'_>,
     hypotheses: Vec<Hypothesis>,
@@ -42,7 +42,7 @@ pub fn run_preliminary_fits(
         true => "squared residual",
         false => "initial-segment residual",
     };
-    // Said as each ends: some take long.
+    // Each result is reported when its fit ends, because some fits take long.
     let fitted = |hypothesis: Hypothesis| {
         let preliminary = hypothesis::fit_preliminary(pool, &hypothesis);
         let left = match &preliminary {
@@ -82,7 +82,7 @@ pub fn run_full_fits(
     preliminaries.into_par_iter().filter_map(fitted).collect()
 }
 
-/// Describes the remaining fraction of a residual. Above 1 the fit is worse than none.
+/// Describes the remaining fraction of a residual. If it exceeds 1, the fit did not converge.
 fn describe_remaining(fraction: f64, of: &str) -> String {
     match fraction <= 1.0 {
         true => format!("{:.1} % of the {of} remains", 100.0 * fraction),
@@ -90,14 +90,14 @@ fn describe_remaining(fraction: f64, of: &str) -> String {
     }
 }
 
-/// Describes a failed fit in one line, without the place in the candidate's specification.
+/// Describes a failed fit in one line, without the location in the candidate's specification.
 fn describe_failure(error: &DiscoverError) -> String {
     let message = error.to_string();
     let line = message.lines().next().unwrap_or_default();
     format!("not fitted: {}", line.trim_start_matches("error: "))
 }
 
-/// A hypothesis judged by its fit in full.
+/// Tests the full fit of a hypothesis.
 fn test_fit(
     pool: &CandidatePool<'_>,
     hypothesis: &Hypothesis,

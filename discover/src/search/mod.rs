@@ -1,12 +1,13 @@
-//! Search for missing effects: screening, full fits of the best candidates, acceptance or
-//! rejection, repeated until the noise floor is reached or no effect is accepted.
+//! Search for missing effects. Candidates are screened, the best are fitted in full and accepted or
+//! rejected. This repeats until the noise floor is reached or no effect is accepted.
 //!
 //! The files in the order of their dependence: [`response`] by [`mod@variational_response`] or
 //! [`mod@perturbed_response`] (selected in [`mod@responses`]), [`screening`], [`acceptance`],
 //! [`split_sample`]; `motion_of_fit`, [`context`], [`pool`], [`hypothesis`], [`hypothesis_fits`];
-//! `shape_restarts`, `single_candidates`, `pair_halves`, `pairs`; [`tested_pool`], [`parameter_offsets`],
-//! [`selection`], `alternatives`, `neighbouring_orders`; `excitation_window`, `dropped_priors`, `round`, `answer_selection`,
-//! `unfinished_round`, [`unconfirmed_hypothesis`]; [`search_result`], `rejected_candidates`, [`backward_elimination`];
+//! `shape_restarts`, `single_candidates`, `pair_halves`, `pairs`; [`tested_pool`],
+//! [`parameter_offsets`], [`selection`], `alternatives`, `neighbouring_orders`;
+//! `excitation_window`, `dropped_priors`, `round`, `answer_selection`, `unfinished_round`,
+//! [`unconfirmed_hypothesis`]; [`search_result`], `rejected_candidates`, [`backward_elimination`];
 //! `scanned_laws`.
 
 pub mod acceptance;
@@ -61,9 +62,9 @@ use crate::search::unconfirmed_hypothesis::find_unconfirmed;
 use crate::search::unfinished_round::describe_unfinished;
 use crate::thresholds;
 
-/// Searches for the missing effects of a model: effect after effect and, if a gap remains, among the
-/// laws that only a scan shows. `floor`: noise floor, in standard deviations. `progress`: receiver of
-/// progress lines.
+/// Searches for the missing effects of a model: in rounds, each of which adds effects, and, if a
+/// gap remains, by a scan of laws. `floor`: noise floor, in standard deviations. `progress`:
+/// receiver of progress lines.
 ///
 /// # Errors
 ///
@@ -120,8 +121,8 @@ impl Search<'_> {
         }
     }
 
-    /// Accepts effects in turn: each explains most of the residual that the earlier ones leave.
-    /// Returns true if laws were scanned.
+    /// Accepts effects one after the other; each explains most of the residual that remains after
+    /// the earlier effects. Returns true if laws were scanned.
     fn select_forward(&self, found: &mut SearchResult) -> Result<bool, DiscoverError> {
         let Self {
             problem,
@@ -147,7 +148,7 @@ impl Search<'_> {
                 is_first_round,
             };
             let singles = round.test_single_candidates();
-            // There are many pairs, so a single law that explains the records is tested first.
+            // Pairs are numerous, so laws are scanned first: a single law may explain the records.
             if is_first_round && singles.lacks_effect() && !problem.stop.is_requested() {
                 is_scanned = true;
                 note_rejected(&mut found.rejected, &singles.tested);
@@ -185,8 +186,8 @@ impl Search<'_> {
         Ok(is_scanned)
     }
 
-    /// Scans laws with a shape or a memory. One that reaches the noise floor, also in held-out records,
-    /// and leaves clearly less than the answer of the search, replaces it.
+    /// Scans laws with a shape or a memory. A law replaces the accepted effects if it reaches the
+    /// noise floor, also on held-out records, and its residual is clearly smaller than theirs.
     fn scan_laws(&self, found: &mut SearchResult) {
         let context = self.context(&found.null_fit);
         let scan = scan_records(context, found.best_fit());
@@ -235,7 +236,7 @@ impl Search<'_> {
     }
 }
 
-/// Takes what is named over, with the candidates that are indistinguishable from it.
+/// Adds the selected effects to the result, with the candidates that are inseparable from them.
 fn accept(found: &mut SearchResult, selected: SelectedHypothesis) {
     let (before, best) = (found.best_fit(), selected.hypothesis);
     let gap = TestGap {

@@ -1,4 +1,4 @@
-//! Usual motion at the sites of a model in a fit.
+//! Usual motion at the sites of a model, computed from a fit.
 
 use std::collections::BTreeSet;
 

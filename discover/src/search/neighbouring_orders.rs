@@ -1,6 +1,7 @@
-//! Neighbouring orders of a named wave over an angle. The spectrum of a residual resolves an order to
-//! one over the turns of the record, and the motion of a model without the wave shifts its lines.
-//! Neighbouring orders are fitted until the best one has worse neighbours.
+//! Neighbouring orders of a named wave over an angle. The spectrum of a residual resolves orders to
+//! one divided by the number of turns in the record. In addition, its lines are shifted along the
+//! motion of a model without the wave. Neighbouring orders are therefore fitted until the best
+//! order has worse neighbours.
 
 use crate::catalogue::candidate::{Candidate, list_candidates};
 use crate::catalogue::sites::find_sites;
@@ -16,9 +17,9 @@ use crate::search::selection::select_best_fit;
 use crate::search::tested_pool::TestedPool;
 use crate::thresholds;
 
-/// Fits the neighbouring orders of the best hypothesis, if that is a wave over an angle, and those of
-/// each order that leaves nearly as little: no more than a correct model if the best one does. Orders
-/// of teeth follow from their numbers and stay.
+/// If the best hypothesis is a wave over an angle, fits the neighbouring orders of it and of all
+/// orders with nearly as small a residual. If the best order reaches the residual of a correct
+/// model, so must these orders. Orders from numbers of teeth are known and have no neighbours.
 pub fn follow_orders(context: RoundContext<'_>, mut tested: TestedPool) -> TestedPool {
     let mut tried: Vec<u32> = Vec::new();
     while tried.len() < thresholds::MAX_FOLLOWED_ORDERS {
@@ -46,8 +47,8 @@ pub fn follow_orders(context: RoundContext<'_>, mut tested: TestedPool) -> Teste
     tested
 }
 
-/// Returns the best hypothesis, if it is a wave over an angle, and the neighbours of the orders
-/// that leave nearly as little, without those that are fitted or tried.
+/// If the best hypothesis is a wave over an angle, returns it and the neighbours of the orders with
+/// nearly as small a residual. Orders that are already fitted or tried are left out.
 fn find_missing_orders(
     context: RoundContext<'_>,
     tested: &TestedPool,
@@ -96,7 +97,7 @@ fn fitted_candidates(tested: &TestedPool) -> Vec<Candidate> {
     ids.map(|id| tested.candidates[id].clone()).collect()
 }
 
-/// Returns a wave at these orders, as far as the motion covers a period of each.
+/// Returns a wave with these orders. Orders without a full period in the motion are left out.
 fn list_orders(context: RoundContext<'_>, wave: &Candidate, orders: &[u32]) -> Vec<Candidate> {
     let model = context.fit.model.specification();
     let sites = find_sites(model);
@@ -121,7 +122,7 @@ fn list_orders(context: RoundContext<'_>, wave: &Candidate, orders: &[u32]) -> V
 }
 
 /// Returns the responses of each fitted hypothesis in another screening of their candidates; `None`
-/// if one of them has no response there.
+/// if a candidate has no response there.
 fn renumber(
     tested: &TestedPool,
     candidates: &[Candidate],
@@ -136,7 +137,7 @@ fn renumber(
     tested.fitted_hypotheses.iter().map(of).collect()
 }
 
-/// Fits a wave at these orders from the end of the best fit.
+/// Fits a wave with these orders, starting from the estimates of the best fit.
 fn fit_orders(context: RoundContext<'_>, tested: &mut TestedPool, label: &str, orders: &[u32]) {
     let pool = CandidatePool::new(context, &tested.candidates, &tested.screening, true);
     let responses = ResponseId::first(pool.screening.responses.len());

@@ -1,6 +1,6 @@
-//! Single effects of pairs: if a pair explains the records and one of its effects is negligible
-//! there, the other is fitted on its own from the end of the fit of the pair, because its earlier
-//! fit may have ended in another minimum.
+//! Single effects of pairs. If a pair explains the records and one of its effects is negligible,
+//! the other effect is fitted separately. This fit starts from the estimates of the pair, because
+//! an earlier fit of the effect may have ended in another minimum.
 
 use crate::fit::preliminary_fit::PreliminaryFit;
 use crate::ids::{EffectId, ResponseId};
@@ -10,8 +10,8 @@ use crate::search::hypothesis_fits::{FittedHypothesis, run_full_fits};
 use crate::search::pool::CandidatePool;
 use crate::thresholds;
 
-/// Fits the remaining effect of pairs with a negligible one, each effect once. Pairs with large
-/// residuals, or that need both effects, are skipped.
+/// Fits the remaining effect of pairs with one negligible effect; each effect is fitted only once.
+/// Pairs with large residuals or with two necessary effects are skipped.
 pub fn fit_halves(pool: &CandidatePool<'_>, pairs: &[FittedHypothesis]) -> Vec<FittedHypothesis> {
     let mut known: Vec<ResponseId> = Vec::new();
     let mut preliminaries = Vec::new();
@@ -31,7 +31,7 @@ pub fn fit_halves(pool: &CandidatePool<'_>, pairs: &[FittedHypothesis]) -> Vec<F
     run_full_fits(pool, preliminaries)
 }
 
-/// Returns the only necessary half of a pair, if the other one is superfluous.
+/// Returns the only necessary effect of a pair; `None` if both or none are necessary.
 fn necessary_half(pool: &CandidatePool<'_>, pair: &FittedHypothesis) -> Option<EffectId> {
     let little = thresholds::MAX_FLOOR_RATIO_TO_STOP * pool.context.floor;
     let has_terms = |response: &ResponseId| {
@@ -57,7 +57,7 @@ fn necessary_half(pool: &CandidatePool<'_>, pair: &FittedHypothesis) -> Option<E
     }
 }
 
-/// A half of a pair, begun where the pair ended.
+/// Runs a preliminary fit of one effect of a pair, starting from the estimates of the pair.
 fn begun(
     pool: &CandidatePool<'_>,
     pair: &FittedHypothesis,

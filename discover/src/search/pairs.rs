@@ -1,5 +1,5 @@
-//! Pairs of candidates: pairs with a much better prediction than single candidates, and
-//! replacements of one effect of a pair.
+//! Pairs of candidates with a much better prediction than single candidates, and replacements of
+//! one effect of a pair.
 
 use crate::ids::{FittedId, ResponseId, UnknownId};
 use crate::model::unknowns::UnknownKind;
@@ -15,7 +15,7 @@ use crate::thresholds;
 /// Fits pairs of candidates, and pairs that replace a term of the model. `singles`: fitted single
 /// candidates.
 pub fn fit_pairs(pool: &CandidatePool<'_>, singles: &[FittedHypothesis]) -> Vec<FittedHypothesis> {
-    // A sensor at the limit of its range compensates another error.
+    // A sensor at the bound of its range compensates for another error and is not paired.
     let is_at_limit = |fitted: &&FittedHypothesis| {
         let of = |own: &EffectUnknown| {
             own.dropped_prior_sd.is_some() && fitted.fit.is_at_bound(own.unknown)
@@ -48,10 +48,10 @@ pub fn fit_pairs(pool: &CandidatePool<'_>, singles: &[FittedHypothesis]) -> Vec<
     fitted_hypotheses
 }
 
-/// Returns the pairs with a predicted residual clearly below that of the best single candidate,
-/// and, for each term of the model that may be deleted, the pair that replaces it best. Of the
-/// candidates that repeat with an angle only the best are paired, and only with others: they are so
-/// many that some fit by chance.
+/// Returns the pairs with a predicted residual clearly below that of the best single candidate. For
+/// each term of the model that may be deleted, also returns the pair that replaces it best.
+/// Periodic candidates are so numerous that some fit by chance: only the best are paired, and only
+/// with other candidates.
 fn best_pairs(
     pool: &CandidatePool<'_>,
     ranking: &[ResponseId],
@@ -62,8 +62,7 @@ fn best_pairs(
         .first()
         .map_or(0.0, |r| screening.responses[*r].cost_decrease);
     let single = screening.predict(&[]).cost - best;
-    // A candidate of no use by itself may be half of a pair: two kinds of friction may replace a
-    // third one.
+    // A candidate may be useful only in a pair: two kinds of friction may replace a third one.
     let repeats = |r: &ResponseId| pool.candidate(*r).angle_order.is_some();
     let repeating: Vec<ResponseId> = (ranking.iter().copied().filter(repeats))
         .take(thresholds::MAX_FULL_FITS_PER_ROUND)
@@ -87,8 +86,8 @@ fn best_pairs(
             for b in others.filter(|b| !never(*a, **b)) {
                 let responses = vec![*a, *b];
                 let LinearPrediction { cost, sizes } = screening.predict(&responses);
-                // The replacement of a term is far from the linearisation: its prediction is not
-                // used.
+                // If a term is replaced, the linear prediction is not used, because the change is
+                // too large.
                 let promising =
                     deleted.is_some() || cost < thresholds::MAX_PAIR_COST_RATIO * single;
                 if promising
@@ -131,9 +130,10 @@ fn best_pairs(
     hypotheses
 }
 
-/// Fits pairs that share one effect with a pair and whose other effect is similar to its other. If
-/// the pair has a larger gap than a correct model, the same effect at other sites is fitted too.
-/// The most similar are fitted first, at most [`thresholds::FITS_IN_PARALLEL`] and only new ones.
+/// Fits pairs that share one effect with a given pair and whose other effect is similar to the
+/// other effect of this pair. If the gap of the pair exceeds that of a correct model, its effect at
+/// other sites is fitted too. At most [`thresholds::FITS_IN_PARALLEL`] new pairs are fitted, the
+/// most similar first.
 pub fn fit_other_halves(
     pool: &CandidatePool<'_>,
     fitted_hypotheses: &[FittedHypothesis],
@@ -181,9 +181,9 @@ pub fn fit_other_halves(
     fitted_hypotheses
 }
 
-/// Fits pairs in which another candidate of the pool takes the place of one half of a pair: those whose
-/// predicted residual is nearly as low, the best first, at most [`thresholds::MAX_FULL_FITS_PER_ROUND`] for
-/// each half. They are fitted in full if their preliminary fit is nearly as good.
+/// Fits pairs in which another candidate of the pool replaces one effect of a pair. Their predicted
+/// residual must be nearly as low. At most [`thresholds::MAX_FULL_FITS_PER_ROUND`] pairs are tried
+/// for each replaced effect, the best first; pairs with a good preliminary fit are fitted in full.
 pub fn fit_replacements(pool: &CandidatePool<'_>, pair: &[ResponseId]) -> Vec<FittedHypothesis> {
     let hypothesis = |responses: Vec<ResponseId>| {
         let LinearPrediction { cost, sizes } = pool.screening.predict(&responses);

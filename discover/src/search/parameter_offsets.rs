@@ -1,6 +1,6 @@
-//! Candidates for shifted parameters without a declared uncertainty. They are tried if no other
-//! effect is accepted, and compared with accepted effects that have a similar response, as are
-//! waves over an angle.
+//! Candidates for shifts of undeclared parameters. They are tried if no other effect is accepted.
+//! Together with waves over an angle, they are also compared with accepted effects of similar
+//! response.
 
 use eomgen_compiled_model::TypicalSizes;
 
@@ -20,16 +20,16 @@ use crate::search::single_candidates::fit_similar;
 use crate::search::tested_pool::TestedPool;
 use crate::thresholds;
 
-/// Parameters and waves with a response similar to that of the named effect.
+/// Undeclared parameters and waves whose responses are similar to that of the named effect.
 pub struct SimilarOffsets {
-    /// Screened candidates, the named effect among them, and the fits of the similar candidates.
+    /// Screened candidates, including the named effect, and the fits of the similar candidates.
     pub tested_pool: TestedPool,
     /// Responses of the named effects.
     pub selected_responses: Vec<ResponseId>,
 }
 
-/// Returns the candidates for shifted parameters that are not unknowns, for errors of inputs, and
-/// for effects equivalent to a shifted stiffness.
+/// Returns the candidates for shifts of undeclared parameters, for errors of inputs, and for
+/// effects that are equivalent to a shifted stiffness.
 pub fn list_offsets(context: RoundContext<'_>) -> Vec<Candidate> {
     let (fit, path) = (context.fit, &context.problem.path);
     let is_known = |name: &str| {
@@ -61,11 +61,11 @@ pub fn list_offsets(context: RoundContext<'_>) -> Vec<Candidate> {
         .collect()
 }
 
-/// Fits parameters and waves over the angle of the named effect that have a similar response in its
-/// place and keeps those that explain the records. If the named effect is a shifted parameter,
-/// similar sensors and declared parameters are fitted too: a sensor gain and a model parameter may
-/// be equivalent. `None` if no candidate is similar. The fit of the context is the one before the
-/// effect was named.
+/// Fits parameters, and waves over the angle of the named effect, in place of this effect if their
+/// responses are similar. Keeps those that explain the records. If the named effect is a shifted
+/// parameter, similar sensors and declared parameters are fitted too: a sensor gain and a model
+/// parameter may be equivalent. `None` if no candidate is similar. The context contains the fit
+/// without the named effect.
 pub fn fit_similar_offsets(
     context: RoundContext<'_>,
     selected: &Candidate,
@@ -117,9 +117,9 @@ pub fn fit_similar_offsets(
     })
 }
 
-/// Fits pairs in which a parameter, an error of an input or a wave takes the place of one half of a
-/// named pair, and keeps those that explain the records. `None` if no candidate is similar. The fit
-/// of the context is the one before the pair was named.
+/// Fits pairs in which a parameter, an error of an input or a wave replaces one effect of a named
+/// pair, and keeps those that explain the records. `None` if no candidate is similar. The context
+/// contains the fit without the named pair.
 pub fn fit_similar_pairs(
     context: RoundContext<'_>,
     halves: &[Candidate],
@@ -163,9 +163,9 @@ pub fn fit_similar_pairs(
     })
 }
 
-/// Returns the candidates that repeat with the angle of an accepted effect that does not: an
-/// unbalanced weight and a torque that repeats once per turn are one term. A round tests them only
-/// if all others predict little.
+/// Returns the periodic candidates over the angle of an accepted effect that is not periodic: an
+/// unbalanced weight and a torque with one period per turn are the same term. In a round, periodic
+/// candidates are tested only if the predictions of all others are poor.
 fn waves(context: RoundContext<'_>, selected: &Candidate) -> Vec<Candidate> {
     if selected.angle_order.is_some() {
         return Vec::new();

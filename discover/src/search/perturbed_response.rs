@@ -1,5 +1,5 @@
-//! Responses of candidates by simulation of their models, each at a size that changes the outputs
-//! by a fraction of the misfit. No candidate needs special code.
+//! Responses of candidates by simulation of their models. The size of each candidate is chosen so
+//! that the outputs change by a fraction of the misfit. The method applies to every candidate.
 
 use crate::ids::WindowId;
 use nalgebra::{DMatrix, DVector};
@@ -19,8 +19,8 @@ use crate::model::unknowns::Unknown;
 use crate::search::response::CandidateResponse;
 use crate::thresholds;
 
-/// Computes the responses of all candidates. Candidates of one effect and site that differ only in
-/// the order share one size search.
+/// Computes the responses of all candidates. Candidates that differ only in the order share one
+/// size search.
 pub fn simulate_responses(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,
@@ -55,7 +55,7 @@ pub fn simulate_responses(
     found.into_iter().flatten().collect()
 }
 
-/// Returns the response of a candidate in each window, a column for each scaling parameter.
+/// Returns the response of a candidate in each window, one column per scaling parameter.
 fn response(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,
@@ -113,8 +113,8 @@ fn response(
             theta[nuisances + number] = candidate_unknowns[number].base + size;
             theta
         };
-        // The size is found on the first, the middle and the last of the windows, or on all if these
-        // do not show the effect.
+        // The size is determined on the first, the middle and the last window, or on all windows if
+        // these do not show the effect.
         let few = vec![0, windows.len() / 2, windows.len() - 1];
         let all = (0..windows.len()).collect();
         let is_known = number < sizes.len() || candidate_unknowns[number].base != 0.0;
@@ -155,7 +155,7 @@ fn response(
     })
 }
 
-/// Changes of the residuals in some windows; none if a motion cannot be followed.
+/// Returns the changes of the residuals in some windows; `None` if a motion cannot be simulated.
 fn changes<'b>(
     shooting: &Shooting<'_>,
     fit: &Fit,
@@ -177,8 +177,9 @@ fn changes<'b>(
     Some(changes)
 }
 
-/// The size of a parameter that moves the outputs as wanted; none if none does. `start`: a first size, and
-/// whether it depends on the model rather than on units. Only such a size may be the answer at once.
+/// Returns the size of a parameter for which the outputs change by the required amount; `None` if
+/// there is no such size. `start`: first trial size, and true if it was derived from the model. In
+/// this case it may be returned without a correction, because it does not depend on units.
 fn trial_size(
     (start, is_known): (f64, bool),
     level: f64,

@@ -19,14 +19,14 @@ pub struct CandidatePool<'r> {
     pub uses_whole_windows: bool,
     /// Maximum number of preliminary fits.
     pub max_preliminary_fits: usize,
-    /// Fractions of the predicted sizes from which fits begin; the best is used.
+    /// Fractions of the predicted sizes from which fits start; the best start is used.
     pub size_fractions: &'r [f64],
     /// Maximum number of evaluations of the rates in a fit, if there is a limit.
     pub most_evaluations: Option<u64>,
 }
 
 impl<'r> CandidatePool<'r> {
-    /// Creates a pool with the default start values.
+    /// Creates a pool with default settings.
     pub fn new(
         context: RoundContext<'r>,
         candidates: &'r [Candidate],
@@ -44,7 +44,7 @@ impl<'r> CandidatePool<'r> {
         }
     }
 
-    /// Returns the candidates with a sufficient prediction, the best first.
+    /// Returns the candidates with a sufficient predicted improvement. The best is first.
     pub fn rank_responses(&self) -> Vec<ResponseId> {
         let screening = self.screening;
         let alone = screening.predict(&[]).cost;
@@ -56,8 +56,8 @@ impl<'r> CandidatePool<'r> {
         };
         let enough = |r: &ResponseId| {
             let response = &screening.responses[*r];
-            // A gain of a nuisance without its prior, which the others did not achieve within
-            // theirs.
+            // Improvement of a nuisance without its prior that the other nuisances do not achieve
+            // within their priors.
             let is_own = response.dropped_prior.is_some()
                 || response.unexplained_fraction > thresholds::MIN_UNEXPLAINED_FRACTION
                 || response.cost_decrease > thresholds::MIN_EXPLAINED_FRACTION * alone;
@@ -76,14 +76,14 @@ impl<'r> CandidatePool<'r> {
         &self.candidates[self.screening.responses[response].candidate]
     }
 
-    /// Returns the names of the candidates of these responses.
+    /// Returns the names of the candidates, joined for a message.
     pub fn label(&self, responses: &[ResponseId]) -> String {
         let labels = responses.iter().map(|r| self.candidate(*r).label());
         labels.collect::<Vec<_>>().join(" and ")
     }
 
-    /// Returns true if two candidates give a parameter the same name: one effect at two sites. The
-    /// next round may add the other.
+    /// Returns true if two candidates add a parameter of the same name, because they are one effect
+    /// at two sites. The next round may add the second candidate.
     pub fn has_common_parameter_name(&self, a: ResponseId, b: ResponseId) -> bool {
         let (a, b) = (self.candidate(a), self.candidate(b));
         let has = |name: &str| b.parameters.iter().any(|other| other.name == name);

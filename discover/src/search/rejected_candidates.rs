@@ -1,4 +1,4 @@
-//! Rejected candidates of a round, with reason and figure.
+//! Rejected candidates of a round with the reasons.
 
 use crate::catalogue::candidate::Candidate;
 use crate::ids::ResponseId;
@@ -8,18 +8,19 @@ use crate::search::search_result::RejectedCandidate;
 use crate::search::tested_pool::TestedPool;
 use crate::thresholds;
 
-/// Reason of a rejection. A reason from a fit replaces one from screening.
+/// Reason for a rejection. A reason from a fit replaces a reason from screening.
 struct Reason {
     text: String,
-    /// Predicted reduction by the best candidate of the round, if the reason is a prediction.
+    /// Predicted reduction for the best candidate of the round, if the reason is a predicted
+    /// reduction.
     best_reduction: Option<f64>,
     not_testable: bool,
     is_of_fit: bool,
     p_value: Option<f64>,
 }
 
-/// Notes the rejected candidates of a round, which replace their entries from earlier rounds.
-/// Within a round, a result of a fit is kept.
+/// Adds the rejected candidates of a round to the list. They replace entries from earlier rounds.
+/// Within a round, the result of a fit takes precedence.
 pub fn note_rejected(rejected: &mut Vec<RejectedCandidate>, round: &[TestedPool]) {
     let mut fitted: Vec<String> = Vec::new();
     for tested in round {
@@ -43,7 +44,8 @@ pub fn note_rejected(rejected: &mut Vec<RejectedCandidate>, round: &[TestedPool]
     }
 }
 
-/// Notes candidates without a fit. A result of a fit is kept, and that the records cannot show one.
+/// Adds candidates without a fit. They do not replace results of fits or entries of untestable
+/// candidates.
 pub fn note_unfitted(rejected: &mut Vec<RejectedCandidate>, unfitted: Vec<RejectedCandidate>) {
     for new in unfitted {
         let label = new.candidate.label();
@@ -58,7 +60,8 @@ pub fn note_unfitted(rejected: &mut Vec<RejectedCandidate>, unfitted: Vec<Reject
     }
 }
 
-/// Why each candidate of a pool was not taken; what is taken in the end is in it, too.
+/// Returns the reason for the rejection of each candidate of a pool, including candidates that are
+/// accepted later.
 fn reasons(tested: &TestedPool) -> Vec<(&Candidate, Reason)> {
     let screening = &tested.screening;
     let not_excited = screening.unexcited.iter();

@@ -7,22 +7,22 @@ use crate::thresholds;
 /// Failed criterion of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rejection {
-    /// A declared unknown at the end of its admissible range.
+    /// A declared unknown is at the end of its admissible range.
     AtLimit(String),
-    /// A parameter at a bound at which the effect vanishes.
+    /// A parameter is at the bound at which the effect vanishes.
     WrongSign(String),
-    /// An unknown that may be within its prior.
+    /// An unknown may be within the range of its prior.
     WithinPrior {
         /// Name of the unknown.
         name: String,
         /// Distance from the prior mean, in standard deviations of the prior.
         deviation: f64,
-        /// Standard deviation of that distance.
+        /// Standard deviation of this distance.
         sd: f64,
     },
     /// The relative reduction of the test gap is too small.
     HeldOut(f64),
-    /// A stop or the time limit came before the comparison with the test records.
+    /// The search was stopped before the comparison with the test records.
     Interrupted,
     /// The reduction in standard errors is too small.
     StandardErrors(f64),
@@ -37,9 +37,9 @@ pub enum Rejection {
     Significance(f64),
     /// The influence relative to the noise is too small.
     Influence(f64),
-    /// A large residual remains next to another effect.
+    /// In a pair, a large residual remains.
     LargeRemainder,
-    /// The closed fractions of the gap are too small.
+    /// The effect closes too small a fraction of the gap.
     Closure {
         /// Fraction closed on the training records.
         train: f64,

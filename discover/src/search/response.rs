@@ -1,4 +1,4 @@
-//! Response of a candidate: its influence on the outputs of the windows, to first order.
+//! First-order response of the outputs of the windows to a candidate.
 
 use nalgebra::DMatrix;
 
@@ -7,7 +7,7 @@ use crate::catalogue::candidate_unknown::CandidateUnknown;
 /// Response of a candidate.
 #[derive(Clone, Debug)]
 pub struct CandidateResponse {
-    /// Parameters of the candidate.
+    /// Parameters of the candidate as unknowns.
     pub candidate_unknowns: Vec<CandidateUnknown>,
     /// For each window one column per scaling parameter, in standard deviations of the noise per SI
     /// unit.

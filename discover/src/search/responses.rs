@@ -1,5 +1,6 @@
-//! Responses of candidates to first order: by tangent vectors if the exponential integrator is used
-//! and the candidate adds no state, otherwise by simulation of the candidate's own model.
+//! First-order responses of candidates. They are computed with tangent vectors if the exponential
+//! integrator is used and the candidate adds no state, otherwise by simulation of the candidate's
+//! model.
 
 use crate::catalogue::candidate::Candidate;
 use crate::error::DiscoverError;
@@ -12,9 +13,9 @@ use crate::search::response::CandidateResponse;
 use crate::search::variational_response::integrate_responses;
 use crate::thresholds;
 
-/// Computes the responses of all candidates. A candidate whose initial shape the motion does not
-/// show, such as a stop beyond the travel, is tried at other shapes of the scanned range. Its
-/// response then has another initial shape.
+/// Computes the responses of all candidates. If the motion does not show the initial shape of a
+/// candidate, such as a stop beyond the travel, other shapes of the scanned range are tried. The
+/// response then contains the shape with which it was computed.
 pub fn compute_responses(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,
@@ -38,8 +39,8 @@ pub fn compute_responses(
     found
 }
 
-/// Returns factors of the initial shape over the scanned range, half a decade apart, the nearest to
-/// 1 first.
+/// Returns factors on the initial shape, half a decade apart over the scanned range. The factors
+/// nearest to 1 are first.
 fn other_shapes() -> Vec<f64> {
     let (low, high) = thresholds::SHAPE_SCAN_DECADES;
     let mut halves: Vec<i32> = ((2.0 * low) as i32..=(2.0 * high) as i32).collect();
@@ -51,7 +52,8 @@ fn other_shapes() -> Vec<f64> {
     factors.collect()
 }
 
-/// Returns a candidate with its shape parameters multiplied by a factor; `None` if it has none.
+/// Returns a candidate with its shape parameters multiplied by a factor; `None` if it has no shape
+/// parameter.
 fn scale_shape(candidate: &Candidate, factor: f64) -> Option<Candidate> {
     let mut scaled = candidate.clone();
     let shapes = scaled.parameters.iter_mut();
@@ -60,7 +62,7 @@ fn scale_shape(candidate: &Candidate, factor: f64) -> Option<Candidate> {
     (count > 0).then_some(scaled)
 }
 
-/// Computes the responses of candidates at their initial shapes.
+/// Computes the responses of candidates with their initial shapes.
 fn compute_at_shapes(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,

@@ -1,6 +1,6 @@
-//! One round of the search: one excitation window after the other until the accepted effects leave
-//! a small residual, pairs if the residual is large, and shifted parameters without a declared
-//! uncertainty.
+//! Round of the search. Excitation windows are used in turn until the accepted effects leave a
+//! small residual. Pairs are tested if the residual is large; undeclared parameters are tested as
+//! well.
 
 use crate::catalogue::candidate::{Candidate, list_candidates};
 use crate::catalogue::effect::Effect;
@@ -22,7 +22,7 @@ use crate::search::single_candidates::fit_singles;
 use crate::search::tested_pool::TestedPool;
 use crate::thresholds;
 
-/// Context of a round.
+/// Round of the search.
 pub struct SearchRound<'l> {
     /// Context of the round.
     pub context: RoundContext<'l>,
@@ -30,18 +30,18 @@ pub struct SearchRound<'l> {
     pub is_first_round: bool,
 }
 
-/// Tests of a round before pairs.
+/// Results of a round before the test of pairs.
 pub struct RoundTests {
-    /// Tested pools: one for each excitation window, and the parameters that are not declared uncertain.
+    /// Tested pools: one for each excitation window, and one for undeclared parameters.
     pub tested: Vec<TestedPool>,
     seen: Vec<ExcitationWindow>,
     has_offsets: bool,
-    /// True if an accepted hypothesis leaves too little for pairs.
+    /// True if the residual of an accepted hypothesis is so small that pairs are not tested.
     is_explained: bool,
 }
 
 impl RoundTests {
-    /// Returns true if pairs follow and no single candidate is accepted.
+    /// Returns true if pairs are still to be tested and no single candidate is accepted.
     pub fn lacks_effect(&self) -> bool {
         !self.is_explained && !is_any(&self.tested, &|fitted| fitted.verdict.is_ok())
     }
@@ -55,12 +55,13 @@ impl SearchRound<'_> {
         let mut has_offsets = false;
         for window in self.windows() {
             if *window == ExcitationWindow::BacklashRemoved {
-                // In a model without play every candidate outside of teeth is predicted worse: test
-                // play only if no other candidate explains the gap.
+                // In a model without play, candidates outside the teeth are predicted too poorly.
+                // Therefore this window is used only if no other candidate is accepted.
                 if is_any(&tested, &|fitted| fitted.verdict.is_ok()) {
                     continue;
                 }
-                // Teeth are fitted slowly: a parameter that explains all saves that.
+                // Fits with closed play are slow and are skipped if an undeclared parameter
+                // explains the records.
                 if self.is_first_round && !self.context.is_near_floor() {
                     tested.push(self.offsets());
                     has_offsets = true;
@@ -75,8 +76,8 @@ impl SearchRound<'_> {
             let number = seen.len();
             tested.insert(number, found);
             seen.push(*window);
-            // Near the floor another excitation window is cheap, and a nearly equal candidate may
-            // be the answer.
+            // Near the noise floor a further excitation window is cheap, and a nearly equal
+            // candidate may be the correct one.
             let is_done = match self.context.is_near_floor() {
                 true => is_any(&tested, &|fitted| self.is_enough(fitted)),
                 false => is_any(&tested, &|fitted| self.is_close(fitted)),
@@ -85,8 +86,9 @@ impl SearchRound<'_> {
                 break;
             }
         }
-        // One unknown before two: a number that is off is a rival of the first effect while much is
-        // left, and of whatever takes more unknowns, a pair or an effect with a shape.
+        // Undeclared parameters are tested before effects with several unknowns: while the residual
+        // is large, a wrong parameter value competes with the first effect, with pairs and with
+        // effects that have a shape.
         let is_simple =
             |best: &FittedHypothesis| best.effect_unknowns.len() == 1 && self.is_near_floor(best);
         if self.is_first_round && !has_offsets && !best_accepted(&tested).is_some_and(is_simple) {
@@ -135,8 +137,7 @@ impl SearchRound<'_> {
             self.context.is_near_floor(),
             self.is_first_round,
         ) {
-            // An effect that is small compared with accepted ones shows over whole windows or not
-            // at all.
+            // After a large accepted effect, a small effect is visible only over whole windows.
             (false, _, _) | (true, true, false) => &[ExcitationWindow::Whole],
             (true, true, true) => &[
                 ExcitationWindow::Whole,
@@ -151,25 +152,26 @@ impl SearchRound<'_> {
         }
     }
 
-    /// Returns true if a fitted hypothesis is accepted and leaves little.
+    /// Returns true if a hypothesis is accepted and explains most of the gap.
     fn is_close(&self, fitted: &FittedHypothesis) -> bool {
         fitted.verdict.is_ok() && self.context.explains_most_of_gap(&fitted.fit)
     }
 
-    /// Returns true if a fitted hypothesis is accepted and leaves little more than a right model would.
+    /// Returns true if a hypothesis is accepted and its residual is slightly larger than that of a
+    /// correct model.
     fn is_near_floor(&self, fitted: &FittedHypothesis) -> bool {
         let little = thresholds::MAX_FLOOR_RATIO_TO_STOP * self.context.floor;
         fitted.verdict.is_ok() && fitted.fit.is_below(little)
     }
 
-    /// Returns true if a fitted hypothesis is accepted and leaves no more than a right model would.
+    /// Returns true if a hypothesis is accepted and its residual is that of a correct model.
     fn is_enough(&self, fitted: &FittedHypothesis) -> bool {
         fitted.verdict.is_ok() && fitted.fit.is_at_floor(self.context.floor)
     }
 
     /// Screens candidates in an excitation window and fits them one by one. Periodic candidates are
     /// screened only if the others have a poor prediction or result. `None` if the model has no
-    /// play to remove or a stop was requested.
+    /// play to close or a stop was requested.
     pub(crate) fn test_in_window(&self, window: ExcitationWindow) -> Option<TestedPool> {
         self.context.problem.stop.check_not_stopped().ok()?;
         let closed = match window {
@@ -207,7 +209,7 @@ impl SearchRound<'_> {
             "screening {} periodic candidates",
             repeating.len()
         ));
-        // Behind the others, so that what was fitted keeps its place.
+        // Periodic candidates are appended, so that the indices of fitted candidates do not change.
         let singles = candidates.len();
         candidates.extend(repeating);
         let rescreened = screen_candidates(
@@ -217,7 +219,8 @@ impl SearchRound<'_> {
             window.window_fraction(),
         );
         if self.context.problem.stop.check_not_stopped().is_err() {
-            // Responses that the stop interrupted are missing, so that those of the fits have other places.
+            // The interrupted screening lacks responses, so that its indices differ from those in
+            // the fits.
             candidates.truncate(singles);
             return Some(TestedPool {
                 candidates,
@@ -237,7 +240,7 @@ impl SearchRound<'_> {
         })
     }
 
-    /// Fits of candidates in an excitation window.
+    /// Creates the pool of candidates of an excitation window.
     fn pool_in<'r>(
         &'r self,
         window: ExcitationWindow,
@@ -251,7 +254,7 @@ impl SearchRound<'_> {
             window == ExcitationWindow::Whole,
         );
         match window {
-            // Without play a straight line is right.
+            // Without play, the linear prediction is accurate, so few initial sizes suffice.
             ExcitationWindow::BacklashRemoved => CandidatePool {
                 max_preliminary_fits: 2 * thresholds::FITS_IN_PARALLEL,
                 size_fractions: &thresholds::INITIAL_SIZE_FRACTIONS[..2],
@@ -261,7 +264,7 @@ impl SearchRound<'_> {
         }
     }
 
-    /// Adds pairs, excitation window after excitation window until some are accepted.
+    /// Adds pairs for one excitation window after the other until some are accepted.
     fn add_pairs(&self, seen: &[ExcitationWindow], tested: &mut [TestedPool]) {
         for (window, tested) in seen.iter().zip(tested) {
             let pool = self.pool_in(*window, &tested.candidates, &tested.screening);
@@ -277,7 +280,7 @@ impl SearchRound<'_> {
         }
     }
 
-    /// Returns the parameters that are not declared uncertain.
+    /// Screens and fits undeclared parameters and errors of inputs.
     fn offsets(&self) -> TestedPool {
         let offsets = list_offsets(self.context);
         (self.context.progress)(&format!(
@@ -302,9 +305,10 @@ impl SearchRound<'_> {
         }
     }
 
-    /// The candidates of an excitation window, and those that repeat with an angle, which are many.
-    /// Teeth that move with an angle do so by much more than they deflect, and often than their
-    /// play: they are screened where all play is closed, and nothing else is there.
+    /// Returns the candidates of an excitation window, and separately the periodic candidates,
+    /// which are numerous. Periodic errors of teeth are much larger than their deflection, and
+    /// often larger than their play. They are therefore screened in the model with closed play,
+    /// which is used for nothing else.
     fn candidates(&self, fit: &Fit, window: ExcitationWindow) -> (Vec<Candidate>, Vec<Candidate>) {
         let (problem, has_play) = (
             self.context.problem,
@@ -316,7 +320,7 @@ impl SearchRound<'_> {
             orders: find_ripple_orders(problem, fit),
             ..compute_usual_motion(problem, fit, &sites)
         };
-        // Nothing is simulated if the motion is given.
+        // With given motion nothing is simulated, so states cannot be added.
         let is_given = problem.dataset.gives_motion();
         let may_be = |effect: &&Effect| {
             !(effect.scales_stiffness()
@@ -333,7 +337,7 @@ impl SearchRound<'_> {
             .partition(|c| c.angle_order.is_none() || !has_play)
     }
 
-    /// Returns true if one of the screened promises most of the gap.
+    /// Returns true if a screened candidate has a predicted improvement of most of the gap.
     fn promises_enough(&self, screening: &Screening) -> bool {
         let best = screening
             .responses
@@ -345,9 +349,10 @@ impl SearchRound<'_> {
     }
 }
 
-/// Removes accepted offsets of parameters that are not declared uncertain, which are the last pool,
-/// if another accepted single unknown is nearly as good or more unknowns are clearly better. The
-/// remaining offsets remove accepted hypotheses of more unknowns that are not clearly better.
+/// Removes accepted undeclared parameters, which are the last pool, if another accepted single
+/// unknown is nearly as good, or if several unknowns are clearly better. Then removes accepted
+/// hypotheses with several unknowns that are not clearly better than the remaining undeclared
+/// parameters.
 fn keep_clear(tested: &mut [TestedPool]) {
     let Some((offsets, tested)) = tested.split_last_mut() else {
         return;
@@ -380,7 +385,7 @@ fn best_accepted(tested: &[TestedPool]) -> Option<&FittedHypothesis> {
     accepted.min_by(|a, b| a.fit.rms().total_cmp(&b.fit.rms()))
 }
 
-/// Returns true if any fitted hypothesis is such.
+/// Returns true if a condition applies to any fitted hypothesis.
 fn is_any(tested: &[TestedPool], is: &dyn Fn(&FittedHypothesis) -> bool) -> bool {
     tested
         .iter()

@@ -1,5 +1,5 @@
-//! Laws with a shape or a memory that the search does not find, from a scan along the motion that the
-//! records show.
+//! Scan of laws with a shape or a memory along the reference motion of the records. The first-order
+//! search does not find such laws.
 
 use crate::catalogue::candidate::{Candidate, list_candidates};
 use crate::catalogue::sites::find_sites;
@@ -19,17 +19,17 @@ use crate::search::search_result::RejectedCandidate;
 use crate::search::tested_pool::TestedPool;
 use crate::thresholds;
 
-/// What a scan shows.
+/// Result of a scan.
 pub struct ScanResult {
-    /// Free function that explains the residual best, if one is adequate.
+    /// Free function that explains the residual best, if it is adequate.
     pub curve: Option<Curve>,
-    /// The best laws with their fits; `None` if none promises a smaller residual.
+    /// The best laws with their fits; `None` if no law has a sufficiently small residual.
     pub tested: Option<TestedPool>,
     /// Laws without a fit.
     pub unfitted: Vec<RejectedCandidate>,
 }
 
-/// Scans free functions and laws along the motion that the records show, and fits the best laws.
+/// Scans free functions and laws along the reference motion of the records, and fits the best laws.
 /// `answer`: fit with the accepted effects. `None` if the records cannot be followed.
 pub fn scan_records(context: RoundContext<'_>, answer: &Fit) -> Option<ScanResult> {
     (context.progress)("a gap remains: scanning laws along the motion that the records show");
@@ -51,8 +51,8 @@ pub fn scan_records(context: RoundContext<'_>, answer: &Fit) -> Option<ScanResul
         best.rms,
         scan.rms_without
     ));
-    // A law that leaves as much as the accepted effects does not replace them. One that leaves much
-    // of the gap, or much more than a free function, is not what is missing.
+    // A law must have a clearly smaller residual than the accepted effects, close most of the gap,
+    // and have a residual similar to that of the free function.
     let by_answer = scene.evaluate_fit(answer).unwrap_or(scan.rms_without);
     let by_curve = curve
         .as_ref()
@@ -94,7 +94,7 @@ pub fn scan_records(context: RoundContext<'_>, answer: &Fit) -> Option<ScanResul
     })
 }
 
-/// Fits laws of a scan from their scanned shapes and sizes.
+/// Fits scanned laws, starting from their scanned shapes and sizes.
 fn fit_scanned_laws(context: RoundContext<'_>, laws: Vec<ScannedLaw>) -> TestedPool {
     let candidates: Vec<Candidate> = laws.iter().map(|law| law.candidate.clone()).collect();
     let window = match context.starts_with_whole_windows() {
@@ -136,7 +136,7 @@ fn limit_evaluations(context: RoundContext<'_>) -> u64 {
     thresholds::MAX_FIT_EVALUATIONS_PER_SAMPLE * samples as u64
 }
 
-/// Returns the screened laws whose fit failed.
+/// Returns the scanned laws whose fit failed.
 fn list_failed(context: RoundContext<'_>, tested: &TestedPool) -> Vec<RejectedCandidate> {
     let responses = ResponseId::first(tested.screening.responses.len());
     let failed = responses.filter(|response| {
@@ -172,13 +172,14 @@ fn list_laws(context: RoundContext<'_>) -> Vec<Candidate> {
     list_candidates(model, effects, &sites, &motion)
 }
 
-/// Returns the free function with the smallest held-out residual, if it is adequate: it explains most
-/// of the gap, and held-out records keep hardly more than training records.
+/// Returns the free function with the smallest held-out residual, if it is adequate. It must
+/// explain most of the gap, and the held-out residual must hardly exceed the training residual.
 fn find_adequate_curve(context: RoundContext<'_>, scene: &Scene<'_>) -> Option<Curve> {
     let mut curves = fit_curves(scene);
     let least = curves.iter().map(|curve| curve.test_rms);
     let least = least.fold(f64::INFINITY, f64::min);
-    // A force on the only coordinate and the input that acts on it are the same.
+    // Curves with equal residuals remain: a force on the only coordinate and the input that drives
+    // it are equivalent.
     curves.retain(|curve| curve.test_rms <= (1.0 + thresholds::MAX_CLASS_DIFFERENCE) * least);
     let own = curves.iter().position(|curve| curve.is_own_variable);
     let best = curves.into_iter().nth(own.unwrap_or(0))?;

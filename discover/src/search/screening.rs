@@ -1,6 +1,6 @@
 //! Screening: first-order responses of the candidates with free initial states and nuisances. They
-//! predict the explained part of the misfit for candidates and sets of candidates, and their
-//! similarity. Selected candidates are fitted in full elsewhere.
+//! predict which part of the misfit candidates or sets of candidates explain, and how similar
+//! candidates are. Selected candidates are fitted in full elsewhere.
 
 use crate::ids::{CandidateId, ResponseId, UnknownId};
 use crate::interval::Interval;
@@ -21,22 +21,22 @@ use crate::search::response::CandidateResponse;
 use crate::search::responses::compute_responses;
 use crate::thresholds;
 
-/// A screened candidate.
+/// Screened candidate with its response.
 #[derive(Clone, Debug)]
 pub struct ScreenedResponse {
     /// Index of the candidate.
     pub candidate: CandidateId,
     /// Unknowns of the candidate.
     pub candidate_unknowns: Vec<CandidateUnknown>,
-    /// Range of its columns.
+    /// Columns of the candidate in the products.
     columns: std::ops::Range<usize>,
-    /// Nuisance that loses its prior, if that is the effect.
+    /// Nuisance whose prior is removed, if this is the effect.
     pub dropped_prior: Option<UnknownId>,
     /// Fraction of the response that initial states and nuisances cannot reproduce.
     pub unexplained_fraction: f64,
-    /// Decrease of the sum of squares by this candidate, in squared standard deviations.
+    /// Decrease of the sum of squares due to this candidate, in squared standard deviations.
     pub cost_decrease: f64,
-    /// Sizes at that decrease.
+    /// Predicted sizes of the parameters.
     pub sizes: Vec<f64>,
 }
 
@@ -45,7 +45,8 @@ pub struct ScreenedResponse {
 pub struct LinearPrediction {
     /// Remaining sum of squares, in squared standard deviations, with the priors.
     pub cost: f64,
-    /// Difference of each parameter from its value without the effect, in order, SI.
+    /// Difference of each parameter from its value without the effect, in the order of the
+    /// responses, SI.
     pub sizes: Vec<f64>,
 }
 
@@ -67,19 +68,19 @@ pub struct UnexcitedCandidate {
 /// Responses of all candidates.
 #[derive(Clone)]
 pub struct Screening {
-    /// Products of all columns: nuisances, candidates, the residual last.
+    /// Products of all columns: nuisances, candidates, residual.
     products: DMatrix<f64>,
     nuisances: usize,
     /// Contribution of the prior of each nuisance to the products.
     priors: Vec<PriorTerm>,
     bounds: Vec<Interval>,
-    /// The bounds of each nuisance once its prior is dropped.
+    /// Bounds of each nuisance without its prior.
     limits: Vec<Interval>,
     /// Candidates with a response, in their order.
     pub responses: Vec<ScreenedResponse>,
     /// Candidates without a visible response.
     pub unexcited: Vec<UnexcitedCandidate>,
-    /// Number of measured numbers.
+    /// Number of measured values.
     pub number_count: f64,
 }
 
@@ -174,7 +175,7 @@ pub fn screen_candidates(
     screening
 }
 
-/// Products of all columns with the initial states eliminated.
+/// Returns the products of all columns with the initial states eliminated.
 fn products(
     fit: &Fit,
     base: &ProjectedWindows,
@@ -203,7 +204,7 @@ fn products(
 }
 
 impl Screening {
-    /// Predicts the cost with each candidate by itself.
+    /// Predicts the cost with each single candidate.
     fn predict_singles(&mut self) {
         let alone = self.predict(&[]).cost;
         for id in ResponseId::first(self.responses.len()) {
@@ -219,7 +220,7 @@ impl Screening {
         }
     }
 
-    /// The products once nuisances have no priors that are these responses themselves.
+    /// Returns the products without the priors that the given candidates remove.
     fn without_priors(&self, responses: &[ResponseId]) -> PriorsDropped<'_> {
         let nuisances: Vec<UnknownId> = (responses.iter())
             .filter_map(|response| self.responses[*response].dropped_prior)
@@ -277,8 +278,8 @@ impl Screening {
         LinearPrediction { cost, sizes }
     }
 
-    /// Returns the screening with a parameter of the model set to a value and its term deleted;
-    /// `None` if the value is not admissible.
+    /// Returns the screening with a model parameter fixed at a value and its term deleted; `None`
+    /// if the value is not admissible.
     pub fn with_nuisance_fixed_at(&self, nuisance: UnknownId, value: f64) -> Option<Self> {
         let Interval { low, high } = self.bounds[nuisance];
         if value == 0.0 || !(low..=high).contains(&-value) {
@@ -312,7 +313,7 @@ impl Screening {
         self
     }
 
-    /// The part of a response's square that the nuisances cannot do as well.
+    /// Returns the fraction of the squared response that nuisances cannot reproduce.
     fn unexplained_fraction(&self, response: ResponseId) -> f64 {
         let dropped = self.without_priors(&[response]);
         let direction = self.direction(&dropped.products, response);
@@ -325,8 +326,8 @@ impl Screening {
         }
     }
 
-    /// Returns true if the responses cancel at these sizes after elimination of the nuisances: each
-    /// is much larger than their sum.
+    /// Returns true if the responses cancel: for these sizes, after elimination of the nuisances,
+    /// each is much larger than their sum.
     pub fn is_cancelling(&self, responses: &[ResponseId], sizes: &[f64]) -> bool {
         let dropped = self.without_priors(responses);
         let count = dropped.products.ncols();
@@ -350,7 +351,7 @@ impl Screening {
         least > thresholds::MIN_CANCELLATION_RATIO.powi(2) * square(&sum)
     }
 
-    /// Returns the range of a response's columns, or of the nuisance whose prior it drops.
+    /// Returns the columns of a response, or the column of the nuisance whose prior it removes.
     fn columns(&self, response: ResponseId) -> std::ops::Range<usize> {
         let response = &self.responses[response];
         match response.dropped_prior {
@@ -359,7 +360,7 @@ impl Screening {
         }
     }
 
-    /// A response at its best size as a combination of columns.
+    /// Returns the response with its predicted sizes as a combination of columns.
     fn direction(&self, products: &DMatrix<f64>, id: ResponseId) -> DVector<f64> {
         let response = &self.responses[id];
         let mut direction = DVector::zeros(products.ncols());
@@ -374,8 +375,8 @@ impl Screening {
         direction
     }
 
-    /// The product of two directions once the nuisances, but those without their priors, are taken
-    /// out.
+    /// Returns the product of two directions after elimination of the nuisances. Nuisances whose
+    /// priors are removed are not eliminated.
     fn without_nuisances(
         &self,
         dropped: &PriorsDropped<'_>,
@@ -404,17 +405,17 @@ impl Screening {
         }
     }
 
-    /// Returns the similarity of two responses, 0 to 1, after elimination of the nuisances: how
-    /// well one reproduces the other. A candidate with several parameters can reproduce one with
-    /// few, even if its own best size differs.
+    /// Returns the similarity of two responses, 0 to 1, after elimination of the nuisances: the
+    /// degree to which one reproduces the other. A candidate with several parameters can reproduce
+    /// a candidate with fewer parameters, even if its own predicted response differs.
     pub fn compute_similarity(&self, a: ResponseId, b: ResponseId) -> f64 {
         let dropped = self.without_priors(&[a, b]);
         let by_b = self.done_by(&dropped, a, b);
         by_b.max(self.done_by(&dropped, b, a))
     }
 
-    /// The cosine between what a response does at its best size and the nearest of all that
-    /// another can do.
+    /// Returns the cosine of the angle between the predicted response of a candidate and the
+    /// nearest response that another candidate can produce.
     fn done_by(&self, dropped: &PriorsDropped<'_>, response: ResponseId, other: ResponseId) -> f64 {
         let products = &*dropped.products;
         let wanted = self.direction(products, response);
@@ -453,13 +454,13 @@ fn product(products: &DMatrix<f64>, a: &DVector<f64>, b: &DVector<f64>) -> f64 {
     a.dot(&(products * b))
 }
 
-/// A system |a x - b| to be made smallest.
+/// Least-squares problem min |a x - b|.
 struct LeastSquares {
     a: DMatrix<f64>,
     b: DVector<f64>,
 }
 
-/// The least squares of some columns against the residual, to be lowered to its negative.
+/// Returns the least-squares problem of some columns and the negative residual.
 fn least_squares_of(products: &DMatrix<f64>, columns: &[usize]) -> LeastSquares {
     let (count, last) = (columns.len(), products.ncols() - 1);
     let scale: Vec<f64> = columns
@@ -496,7 +497,8 @@ mod tests {
     use super::{ScreenedResponse, Screening};
     use crate::ids::{CandidateId, ResponseId};
 
-    /// Responses with these columns, the last of which is the residual, and their best sizes.
+    /// Creates a screening from columns, of which the last is the residual, with the column range
+    /// and predicted sizes of each response.
     fn screening(columns: &DMatrix<f64>, of: &[(std::ops::Range<usize>, &[f64])]) -> Screening {
         let response =
             |(candidate, (columns, values)): (usize, &(std::ops::Range<usize>, &[f64]))| {
@@ -528,8 +530,8 @@ mod tests {
 
     #[test]
     fn similarity_of_one_to_many_parameters_is_their_projection() {
-        // Two parameters with responses x and y, at their best size x only; one with 3 x + 4 y, one
-        // with z.
+        // Responses: one with two parameters x and y and predicted response x; one with 3 x + 4 y;
+        // one with z.
         let columns = DMatrix::from_row_slice(
             3,
             5,
@@ -552,7 +554,7 @@ mod tests {
 
     #[test]
     fn responses_that_take_each_other_back_cancel() {
-        // Nearly the same twice, and something else.
+        // Two nearly equal responses and a different one.
         let columns = DMatrix::from_row_slice(2, 4, &[1.0, 1.0, 0.0, 1.0, 0.0, 0.1, 1.0, 1.0]);
         let of: [(std::ops::Range<usize>, &[f64]); 3] =
             [(0..1, &[1.0]), (1..2, &[1.0]), (2..3, &[1.0])];
@@ -570,7 +572,7 @@ mod tests {
     fn single_responses_look_alike_by_the_angle_between_them() {
         let columns = DMatrix::from_row_slice(2, 3, &[1.0, 3.0, 1.0, 0.0, 4.0, 1.0]);
         let of: [(std::ops::Range<usize>, &[f64]); 2] = [(0..1, &[-2.0]), (1..2, &[5.0])];
-        // The cosine of the angle in a triangle of sides 3, 4 and 5.
+        // Expected value: the cosine in a triangle with sides 3, 4 and 5.
         assert!(
             (screening(&columns, &of).compute_similarity(response(0), response(1)) - 0.6).abs()
                 < 1e-6

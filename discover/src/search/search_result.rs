@@ -7,18 +7,18 @@ use crate::ids::UnknownId;
 use crate::search::acceptance::TestStatistics;
 use crate::search::unconfirmed_hypothesis::UnconfirmedHypothesis;
 
-/// An accepted effect.
+/// Accepted effect.
 #[derive(Clone, Debug)]
 pub struct AcceptedEffect {
-    /// The effect at its site.
+    /// Effect at its site.
     pub candidate: Candidate,
-    /// Its unknowns in the last fit.
+    /// Unknowns of the effect in the last fit.
     pub unknowns: Vec<UnknownId>,
-    /// Candidates that are indistinguishable from it.
+    /// Candidates that are inseparable from the effect.
     pub equivalents: Vec<Candidate>,
-    /// Test statistics when it was added.
+    /// Test statistics at the time of acceptance.
     pub statistics: TestStatistics,
-    /// Gap of the test records before and after.
+    /// Residual of the test records without and with the effect.
     pub test_gap: TestGap,
 }
 
@@ -31,15 +31,15 @@ pub struct TestGap {
     pub after: f64,
 }
 
-/// A rejected candidate.
+/// Rejected candidate.
 #[derive(Clone, Debug)]
 pub struct RejectedCandidate {
-    /// The effect at its site.
+    /// Effect at its site.
     pub candidate: Candidate,
-    /// Reason of the rejection.
+    /// Reason for the rejection.
     pub reason: String,
-    /// Fraction of the squared residual by which the best candidate of the same round would reduce it, for
-    /// comparison with a predicted reduction in the reason.
+    /// Fraction of the squared residual by which the best candidate of the same round would reduce
+    /// it. It is reported with a predicted reduction in the reason.
     pub best_reduction: Option<f64>,
     /// True if the records cannot show the effect.
     pub is_untestable: bool,
@@ -51,7 +51,7 @@ pub struct RejectedCandidate {
 pub struct SearchResult {
     /// Fit of the model with its declared unknowns only.
     pub null_fit: Fit,
-    /// Fit of the model with all accepted effects; `None` without accepted effects.
+    /// Fit with all accepted effects; `None` without accepted effects.
     pub extended_fit: Option<Fit>,
     /// Accepted effects in order of acceptance.
     pub accepted: Vec<AcceptedEffect>,
@@ -59,10 +59,9 @@ pub struct SearchResult {
     pub rejected: Vec<RejectedCandidate>,
     /// Hypothesis that explains the training records but not the held-out records.
     pub unconfirmed: Option<UnconfirmedHypothesis>,
-    /// Free function that explains the null model's residual best; `None` if none is
-    /// adequate.
+    /// Free function that explains the residual of the null model best, if it is adequate.
     pub curve: Option<Curve>,
-    /// State of a round that reached the time limit, as a sentence.
+    /// State of the round that reached the time limit, as a sentence.
     pub unfinished: Option<String>,
 }
 

@@ -1,5 +1,5 @@
 //! Selection of the named effect of a round: the accepted hypothesis with the lowest residual, and
-//! the candidates that the records cannot distinguish from it.
+//! the candidates that are inseparable from it.
 
 use crate::ids::{EffectId, FittedId, ResponseId};
 use std::cmp::Ordering;
@@ -18,37 +18,37 @@ use crate::search::screening::Screening;
 use crate::search::tested_pool::TestedPool;
 use crate::thresholds;
 
-/// The named hypothesis.
+/// Named hypothesis.
 pub struct SelectedHypothesis {
-    /// Its candidates, in the order of its responses.
+    /// Candidates of the hypothesis, in the order of its responses.
     pub candidates: Vec<Candidate>,
     /// The fitted hypothesis.
     pub hypothesis: FittedHypothesis,
-    /// Candidates that are indistinguishable from each of them.
+    /// Candidates that are inseparable from each candidate of the hypothesis.
     pub equivalents: Vec<Vec<Candidate>>,
-    /// Effect of a pair that was accepted on its own.
+    /// Effect of a pair that was accepted separately.
     pub accepted_half: Option<AcceptedHalf>,
 }
 
-/// Effect of a pair that was accepted on its own, as an intermediate step.
+/// Effect of a pair that was accepted separately, as an intermediate step.
 #[derive(Clone, Copy, Debug)]
 pub struct AcceptedHalf {
     /// Index of the effect.
     pub effect: EffectId,
-    /// RMS residual of the test records with that effect, in standard deviations.
+    /// RMS residual of the test records with this effect, in standard deviations.
     pub test_rms: f64,
 }
 
-/// Half of a hypothesis that the records cannot distinguish from a half of another one.
+/// Effect of a hypothesis that is inseparable from an effect of another hypothesis.
 struct IndistinguishableHalf {
     effect: EffectId,
-    /// The other's response.
+    /// Response of the other effect.
     response: ResponseId,
 }
 
-/// Selects the named hypothesis among the fitted ones of a round; `None` if none is accepted. A
-/// shifted parameter without a declared uncertainty is less plausible and is named only if its
-/// residual is clearly lower than that of similar candidates.
+/// Selects the named hypothesis among the fitted hypotheses of a round; `None` if none is accepted.
+/// A shifted undeclared parameter is less plausible. It is named only if its residual is clearly
+/// lower than that of similar candidates.
 pub fn select_hypothesis(
     context: RoundContext<'_>,
     tested: TestedPool,
@@ -81,7 +81,7 @@ pub fn select_hypothesis(
     }
     let mut equivalents = selected.equivalents;
     for fitted in &others {
-        // The others of a pair replace one of its halves, at its place.
+        // An alternative to a pair replaces one of its effects, at the same index.
         let halves = own.iter().zip(&fitted.responses);
         let replaced = halves.zip(&mut equivalents).find(|((a, b), _)| a != b);
         let Some(((own, response), equivalents)) = replaced else {
@@ -98,9 +98,9 @@ pub fn select_hypothesis(
     })
 }
 
-/// Returns the fitted hypotheses of a round. If a pair is best, further pairs with a candidate
-/// similar to one of its halves are fitted. This repeats with each better pair while its residual
-/// exceeds that of a correct model.
+/// Returns the fitted hypotheses of a round. If a pair is best, further pairs with a candidate that
+/// is similar to one of its effects are fitted. This repeats with each better pair while its
+/// residual exceeds that of a correct model.
 fn with_other_halves(context: RoundContext<'_>, tested: TestedPool) -> TestedPool {
     let TestedPool {
         candidates,
@@ -132,10 +132,9 @@ fn with_other_halves(context: RoundContext<'_>, tested: TestedPool) -> TestedPoo
     }
 }
 
-/// Returns the best accepted hypothesis, with the others that are indistinguishable from it.
-/// Hypotheses that the records cannot distinguish are ordered: first those that contradict no
-/// declared prior of a sensor, then by the number of unknowns, then by the deviation of a declared
-/// parameter.
+/// Returns the best accepted hypothesis, with the candidates that are inseparable from it. Among
+/// inseparable hypotheses, the order is: no contradiction to a declared sensor prior, fewer
+/// unknowns, smaller deviation of a declared parameter.
 fn select_best(context: RoundContext<'_>, tested: TestedPool) -> Option<SelectedHypothesis> {
     let TestedPool {
         candidates,
@@ -144,7 +143,7 @@ fn select_best(context: RoundContext<'_>, tested: TestedPool) -> Option<Selected
     } = tested;
     let least = select_best_fit(&fitted_hypotheses)?;
     let candidate = |response: ResponseId| &candidates[screening.responses[response].candidate];
-    // A number that is off adds nothing to the model.
+    // A wrong parameter value adds no term to the model.
     let scales = |fitted: &FittedHypothesis| {
         let mut of = fitted.responses.iter();
         of.any(|response| candidate(*response).scaled_stiffness.is_some())
@@ -200,7 +199,7 @@ fn select_best(context: RoundContext<'_>, tested: TestedPool) -> Option<Selected
     })
 }
 
-/// Returns true if a hypothesis moves a sensor beyond a prior that the dataset states for it.
+/// Returns true if the hypothesis changes a sensor by more than a prior in the dataset permits.
 fn contradicts_sensor(context: RoundContext<'_>, fitted: &FittedHypothesis) -> bool {
     let channels = &context.problem.dataset.channels;
     let own = fitted
@@ -218,8 +217,8 @@ fn contradicts_sensor(context: RoundContext<'_>, fitted: &FittedHypothesis) -> b
         })
 }
 
-/// Returns the deviation from declared values, in standard deviations of their priors, or `None` if
-/// an unknown has no declared value.
+/// Returns the deviation from declared values, in standard deviations of their priors; `None` if an
+/// unknown has no declared value.
 fn declared_deviation(fitted: &FittedHypothesis) -> Option<f64> {
     let theta = &fitted.fit.train.estimate.theta;
     let of =
@@ -251,8 +250,8 @@ pub fn select_best_fit(fitted_hypotheses: &[FittedHypothesis]) -> Option<FittedI
 }
 
 /// Returns true if a fit is clearly better than another: on both sets of records, or certainly on
-/// the test records and at least equal on the training records, in which additional unknowns favour
-/// the other fit.
+/// the test records and at least equal on the training records. Training residuals favour the fit
+/// with more unknowns.
 fn is_clearly_better(one: &Fit, other: &Fit) -> bool {
     let statistics = compute_test_statistics(other, one, &[]);
     let is_certain = statistics.held_out_reduction > thresholds::MIN_HELD_OUT_REDUCTION
@@ -260,8 +259,9 @@ fn is_clearly_better(one: &Fit, other: &Fit) -> bool {
     one.is_clearly_below(other) || (is_certain && one.train.rms < other.train.rms)
 }
 
-/// Returns the half of a hypothesis that the records cannot distinguish from another's, if it is as
-/// large and the rest is equal: its number, and the other's response.
+/// Returns the index of the effect of a hypothesis that is inseparable from an effect of another
+/// hypothesis, and the response of this other effect. Both hypotheses must have equally many
+/// effects, and their other effects must be equal.
 fn indistinguishable_half(
     fitted: &FittedHypothesis,
     other: &FittedHypothesis,
@@ -289,7 +289,7 @@ fn indistinguishable_half(
     )
 }
 
-/// Returns the similarity of two responses, 0 to 1; 1 for two names of one change.
+/// Returns the similarity of two responses, 0 to 1. It is 1 for two names of one effect.
 fn similarity(
     candidates: &[Candidate],
     screening: &Screening,
@@ -306,10 +306,10 @@ fn similarity(
     }
 }
 
-/// Returns true if records cannot distinguish two fitted hypotheses: the responses are similar or the
-/// fits leave the same, and the other fit is no worse on the test records. Except for two names of one
-/// change, it is also no worse on the training records. The other fit may be better, but not so clearly
-/// that it is selected instead.
+/// Returns true if two fitted hypotheses are inseparable: their responses or residuals are similar,
+/// and the other fit is no worse on the test records. Unless they are two names of one effect, the
+/// other fit must also be no worse on the training records. It may be better, but not so clearly
+/// that it would be selected instead.
 fn is_indistinguishable(one: &FittedHypothesis, other: &FittedHypothesis, similarity: f64) -> bool {
     let leave_same = one.effect_unknowns.len() == other.effect_unknowns.len()
         && leaves_same_residuals(&one.fit.train, &other.fit.train)
@@ -320,7 +320,7 @@ fn is_indistinguishable(one: &FittedHypothesis, other: &FittedHypothesis, simila
         -statistics.held_out_reduction,
         -statistics.reduction_in_standard_errors,
     );
-    // Fits that leave the same to the last digit have no error to be judged by.
+    // For identical residuals, the standard error is 0 and the ratio is NaN.
     let as_good = errors.is_nan()
         || errors < thresholds::MIN_REDUCTION_STANDARD_ERRORS
         || part < thresholds::MAX_CLASS_DIFFERENCE;
@@ -332,9 +332,11 @@ fn is_indistinguishable(one: &FittedHypothesis, other: &FittedHypothesis, simila
     is_rival && (is_same || (as_good && !is_told))
 }
 
-/// Returns true if the squared residuals of two fits differ by less than [`thresholds::MAX_CLASS_DIFFERENCE`], block by
-/// block. The first-order responses of one change can differ along the motion of a wrong model: a gain of a sensor and
-/// one of an input are the same for a linear model only once they are fitted.
+/// Returns true if the squared residuals of two fits differ by less than
+/// [`thresholds::MAX_CLASS_DIFFERENCE`], summed over blocks. This test complements the similarity
+/// of responses, which can differ for equivalent effects along the motion of an incorrect model.
+/// For example, the gains of a sensor and of an input are equivalent in a linear model, but their
+/// responses agree only after the fit.
 fn leaves_same_residuals(one: &Residuals, other: &Residuals) -> bool {
     let blocks = || one.block_squares.iter().zip(&other.block_squares);
     let difference: f64 = blocks().map(|(a, b)| (a - b).abs()).sum();
@@ -343,8 +345,8 @@ fn leaves_same_residuals(one: &Residuals, other: &Residuals) -> bool {
         && difference < thresholds::MAX_CLASS_DIFFERENCE * whole
 }
 
-/// Returns the half of a pair that was accepted by itself, with its test gap, as an intermediate
-/// step.
+/// Returns the effect of a pair that was accepted separately, with its test residual, as an
+/// intermediate step.
 fn half_way(best: &FittedHypothesis, others: &[FittedHypothesis]) -> Option<AcceptedHalf> {
     if best.responses.len() < 2 {
         return None;

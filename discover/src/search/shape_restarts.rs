@@ -1,13 +1,13 @@
-//! Restarts of shape parameters, such as the Stribeck speed, from other sizes, because a fit from
-//! the typical size may end in a local minimum.
+//! Repeated fits with other initial values of shape parameters, such as the Stribeck speed. A fit
+//! from the typical value may end in a local minimum.
 
 use crate::search::hypothesis::{Hypothesis, fit_with_shape_factor};
 use crate::search::hypothesis_fits::{FittedHypothesis, run_full_fits};
 use crate::search::pool::CandidatePool;
 use crate::thresholds;
 
-/// Fits promising hypotheses with a shape parameter again from other shapes if they do not reach
-/// the noise floor. Accepted results and lower residuals are kept.
+/// Fits hypotheses with a shape parameter again from other shapes, if they explain much but do not
+/// reach the noise floor. Accepted results and lower residuals are kept.
 pub fn restart_shapes(pool: &CandidatePool<'_>, fitted_hypotheses: &mut [FittedHypothesis]) {
     let is_there = |fitted: &FittedHypothesis| {
         fitted.verdict.is_ok() && fitted.fit.is_at_floor(pool.context.floor)
@@ -44,7 +44,8 @@ pub fn restart_shapes(pool: &CandidatePool<'_>, fitted_hypotheses: &mut [FittedH
     }
 }
 
-/// Returns true if a fitted hypothesis is accepted where another is not, or else leaves less.
+/// Returns true if only the first of two fitted hypotheses is accepted; otherwise, if its residual
+/// is smaller.
 fn is_better(one: &FittedHypothesis, other: &FittedHypothesis) -> bool {
     match (one.verdict.is_ok(), other.verdict.is_ok()) {
         (true, false) => true,

@@ -1,4 +1,5 @@
-//! Hypotheses of one candidate: those with the best prediction, and those similar to another.
+//! Fits of hypotheses with one candidate: candidates with the best prediction, and candidates
+//! similar to another one.
 
 use crate::fit::preliminary_fit::PreliminaryFit;
 use crate::ids::{CandidateId, ResponseId};
@@ -8,7 +9,7 @@ use crate::search::pool::CandidatePool;
 use crate::search::shape_restarts::restart_shapes;
 use crate::thresholds;
 
-/// Fits the best single candidates from index `from` on, and those similar to them.
+/// Fits the best single candidates from index `from` on, and candidates similar to them.
 pub fn fit_singles(pool: &CandidatePool<'_>, from: CandidateId) -> Vec<FittedHypothesis> {
     let mut ranking = pool.rank_responses();
     ranking.retain(|response| pool.screening.responses[*response].candidate >= from);
@@ -28,8 +29,8 @@ pub fn fit_singles(pool: &CandidatePool<'_>, from: CandidateId) -> Vec<FittedHyp
     let mut fitted_hypotheses: Vec<FittedHypothesis> = Vec::new();
     let (mut fits, mut best) = (0, f64::INFINITY);
     while !preliminaries.is_empty() && fits < thresholds::MAX_FULL_FITS_PER_ROUND {
-        // After a candidate is accepted, only similar or nearly equal candidates may be another
-        // answer. Before, the next one in the ranking is tested.
+        // Until a candidate is accepted, the candidates are tested in the order of the ranking.
+        // Afterwards, only similar or nearly equal candidates are tested.
         let accepted = fitted_hypotheses
             .iter()
             .find(|fitted| fitted.verdict.is_ok());
@@ -59,8 +60,9 @@ pub fn fit_singles(pool: &CandidatePool<'_>, from: CandidateId) -> Vec<FittedHyp
     fitted_hypotheses
 }
 
-/// Fits candidates similar to one of them with a sufficient prediction, the most similar first; at
-/// most [`thresholds::MAX_FULL_FITS_PER_ROUND`]. Less similar ones are fitted if their preliminary fit is as good.
+/// Fits candidates with a sufficient predicted improvement that are similar to a given one. At most
+/// [`thresholds::MAX_FULL_FITS_PER_ROUND`] are fitted, the most similar first. Less similar
+/// candidates are fitted only if their preliminary fit is as good.
 pub fn fit_similar(pool: &CandidatePool<'_>, response: ResponseId) -> Vec<FittedHypothesis> {
     let similarity = |other: &ResponseId| pool.screening.compute_similarity(response, *other);
     let is_rival = |other: &ResponseId| similarity(other) > thresholds::MIN_SIMILARITY_OF_RIVALS;
@@ -87,9 +89,8 @@ pub fn fit_similar(pool: &CandidatePool<'_>, response: ResponseId) -> Vec<Fitted
     run_full_fits(pool, preliminaries)
 }
 
-/// Selects the candidates for a preliminary fit. Candidates that repeat with an angle are so many
-/// that some fit by chance, so half as many of them are selected, and the two best orders of one
-/// effect at one place.
+/// Selects the candidates for a preliminary fit. Periodic candidates are so numerous that some fit
+/// by chance: half as many are selected, and at most two orders of one effect at one site.
 fn choose_hypotheses(pool: &CandidatePool<'_>, ranking: &[ResponseId]) -> Vec<Hypothesis> {
     let (mut plain, mut repeating) = (Vec::new(), Vec::new());
     for response in ranking {

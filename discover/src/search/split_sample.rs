@@ -1,9 +1,9 @@
 //! P-value of an effect on held-out records: an exact test on a split sample (Cox, Biometrika 62,
-//! 1975). The response of the effect is determined from the training records only, so that it is
-//! independent of the noise of the test records under the null hypothesis. Initial states and
+//! 1975). The response of the effect is determined from the training records only. Under the null
+//! hypothesis it is therefore independent of the noise of the test records. Initial states and
 //! unknowns are projected out. The projection of the residuals on the response then has a Student t
 //! distribution, if the noise is white and normal and the model is linear in the projected
-//! unknowns. Correlated residuals reduce the number of samples.
+//! unknowns. Correlated residuals reduce the effective number of samples.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -16,18 +16,17 @@ use crate::ids::WindowId;
 use crate::model::problem::EstimationProblem;
 use crate::search::acceptance::EffectUnknown;
 
-/// Held-out residuals of a fit and their derivatives by its unknowns.
+/// Held-out residuals of a fit and their derivatives with respect to its unknowns.
 pub struct SplitSampleTest<'f> {
     fit: &'f Fit,
-    /// Normalised response of the residuals to each unknown: one row for each residual of all
-    /// windows.
+    /// Normalised response of the residuals to each unknown: one row per residual over all windows.
     nuisances: DMatrix<f64>,
-    /// The numbers that are compared, less those that initial states and unknowns take up, and one.
+    /// Degrees of freedom: number of compared values, minus initial states and unknowns, minus 1.
     freedom: f64,
 }
 
 impl<'f> SplitSampleTest<'f> {
-    /// Prepares the test for a fit without the tested effects; `None` if a simulation fails.
+    /// Creates the test for a fit without the tested effects; `None` if a simulation fails.
     pub fn from_fit(problem: &EstimationProblem<'_>, fit: &'f Fit) -> Option<Self> {
         let shooting = Shooting {
             windows: &problem.test,
@@ -51,7 +50,7 @@ impl<'f> SplitSampleTest<'f> {
             }
             first += linear.residual.len();
         }
-        // Columns are normalised, so that none is lost to rounding.
+        // Normalised columns avoid the loss of small columns to rounding.
         for mut column in nuisances.column_iter_mut() {
             let norm = column.norm();
             if norm > 0.0 {
@@ -69,9 +68,9 @@ impl<'f> SplitSampleTest<'f> {
     }
 
     /// Returns the probability that noise produces at least this projection of the residuals on the
-    /// response of an effect. Unknowns that lost their priors for the effect are not projected out,
-    /// because without it they are within their bounds. `None` if the response vanishes or a
-    /// simulation fails.
+    /// response of an effect. Unknowns whose priors the effect removes are not projected out,
+    /// because without the effect they are within their bounds. `None` if the response vanishes or
+    /// a simulation fails.
     pub fn compute_p_value(&self, with: &Fit, own: &[EffectUnknown]) -> Option<f64> {
         let column = |fit: &Fit| {
             DVector::from_iterator(
@@ -93,7 +92,7 @@ impl<'f> SplitSampleTest<'f> {
         let along = residual.dot(&own) / size;
         let rest = (residual.norm_squared() - along * along).max(0.0);
         let correlation = with.test.correlation_samples;
-        // Correlation over several samples reduces the number of independent samples.
+        // A correlation over several samples reduces the number of independent samples.
         let t = along / (rest / self.freedom * correlation).sqrt();
         let freedom = self.freedom / correlation;
         let p_value = || student_tail(t, freedom).max(f64::MIN_POSITIVE);
@@ -101,7 +100,7 @@ impl<'f> SplitSampleTest<'f> {
     }
 }
 
-/// The probability that Student's t with so many degrees of freedom is larger, by a normal one as large
+/// Returns the probability that a Student t variable exceeds `t`, by a normal approximation
 /// (Wallace, Ann. Math. Stat. 30, 1959: within 1 % from ten degrees of freedom on).
 fn student_tail(t: f64, freedom: f64) -> f64 {
     let factor = (8.0 * freedom + 1.0) / (8.0 * freedom + 3.0);
@@ -112,8 +111,8 @@ fn student_tail(t: f64, freedom: f64) -> f64 {
     }
 }
 
-/// The probability that a standard normal number is larger than `z`, which is not negative: a series
-/// near 0, Laplace's continued fraction beyond.
+/// Returns the probability that a standard normal variable exceeds `z`, which must not be negative.
+/// Uses a series near 0 and Laplace's continued fraction for larger values.
 fn normal_tail(z: f64) -> f64 {
     let density = (-0.5 * z * z).exp() / (2.0 * std::f64::consts::PI).sqrt();
     if z < 3.0 {

@@ -11,7 +11,7 @@ pub struct TestedPool {
     pub candidates: Vec<Candidate>,
     /// Screening results.
     pub screening: Screening,
-    /// The fitted hypotheses.
+    /// Fully fitted hypotheses.
     pub fitted_hypotheses: Vec<FittedHypothesis>,
 }
 

@@ -1,4 +1,4 @@
-//! Hypotheses that the training records support and the held-out records do not.
+//! Hypotheses that the training records support but the held-out records do not.
 
 use crate::fit::fit_result::Fit;
 use crate::ids::UnknownId;
@@ -7,18 +7,18 @@ use crate::search::rejection::Rejection;
 use crate::search::tested_pool::TestedPool;
 use crate::thresholds;
 
-/// A hypothesis that explains the training records but not the held-out records.
+/// Hypothesis that explains the training records but not the held-out records.
 pub struct UnconfirmedHypothesis {
     /// Description of the hypothesis.
     pub label: String,
-    /// Its unknowns in the fit.
+    /// Unknowns of the hypothesis in the fit.
     pub effect_unknowns: Vec<UnknownId>,
     /// Fit with the hypothesis.
     pub fit: Fit,
 }
 
-/// Returns, for a round without an accepted effect, the hypothesis with the lowest training
-/// residual, if only the held-out records reject it. `before`: fit without it.
+/// Returns the hypothesis with the lowest training residual of a round without an accepted effect,
+/// if only the held-out records reject it. `before`: fit without the hypothesis.
 pub fn find_unconfirmed(tested: &mut [TestedPool], before: &Fit) -> Option<UnconfirmedHypothesis> {
     let accepted = |pool: &TestedPool| {
         let mut fitted = pool.fitted_hypotheses.iter();
@@ -50,8 +50,8 @@ pub fn find_unconfirmed(tested: &mut [TestedPool], before: &Fit) -> Option<Uncon
     })
 }
 
-/// Returns true if only the held-out records rejected a hypothesis, and it halves the residual of
-/// the training records.
+/// Returns true if a hypothesis was rejected only because of the held-out records, and it halves
+/// the residual of the training records.
 fn is_unconfirmed(fitted: &FittedHypothesis, before: &Fit) -> bool {
     let by_held_out = matches!(
         fitted.verdict,

@@ -4,11 +4,11 @@ use crate::search::hypothesis_fits::FittedHypothesis;
 use crate::search::rejection::Rejection;
 use crate::search::tested_pool::TestedPool;
 
-/// A hypothesis with a complete fit to the training records.
+/// Hypothesis with a complete fit to the training records.
 struct FittedEffects {
     label: String,
     train_rms: f64,
-    /// Residual of the test records; `None` if the limit came first.
+    /// RMS residual of the test records; `None` if the limit was reached before.
     test_rms: Option<f64>,
     is_accepted: bool,
 }
@@ -30,8 +30,9 @@ impl FittedEffects {
     }
 }
 
-/// Returns a sentence on the accepted hypothesis with the lowest residual so far, or otherwise the
-/// fitted one. `has_effects` is true if earlier rounds found effects.
+/// Returns a sentence about the accepted hypothesis with the lowest residual so far. If none is
+/// accepted, the sentence describes the fitted hypothesis with the lowest residual. `has_effects`:
+/// true if earlier rounds found effects.
 pub fn describe_unfinished(tested: &[TestedPool], has_effects: bool) -> String {
     let fitted = tested.iter().flat_map(|pool| {
         let fitted = pool.fitted_hypotheses.iter();
@@ -45,7 +46,7 @@ fn describe_best(
     promising: Option<String>,
     has_effects: bool,
 ) -> String {
-    // Effects that were compared with the test records come first.
+    // Accepted hypotheses are first, then those that were compared with the test records.
     let order = |own: &FittedEffects| {
         let rms = own.test_rms.unwrap_or(own.train_rms);
         (!own.is_accepted, own.test_rms.is_none(), rms)

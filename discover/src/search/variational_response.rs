@@ -1,6 +1,6 @@
-//! Responses of candidates by tangent vectors: the difference between the accelerations of the
-//! candidate's model and of the fitted model along the fitted motion drives a tangent vector.
-//! Hundreds of candidates are screened in one integration.
+//! Responses of candidates with tangent vectors. The accelerations of the candidate's model minus
+//! those of the fitted model, along the fitted motion, drive a tangent vector. Hundreds of
+//! candidates are screened in one integration.
 
 use std::ops::Deref;
 use std::sync::LazyLock;
@@ -23,17 +23,17 @@ use crate::model::problem::EstimationProblem;
 use crate::search::response::CandidateResponse;
 use crate::thresholds;
 
-/// Points of a motion with their accelerations, at which sizes are tested.
+/// Points of a motion with their accelerations, for the choice of sizes.
 struct Points {
     times: Vec<f64>,
     states: Vec<Vec<f64>>,
     inputs: Vec<Vec<f64>>,
     rates: Vec<Vec<f64>>,
-    /// The sum of squares of each acceleration and of the rate of each state of first order.
+    /// Sum of squares of each acceleration and of the rate of each first-order state.
     squares: Vec<f64>,
 }
 
-/// Extent of the points of a motion.
+/// Selection of the points of a motion.
 #[derive(Clone, Copy)]
 enum Extent {
     /// Some samples of three windows.
@@ -42,31 +42,31 @@ enum Extent {
     All,
 }
 
-/// Points at which sizes are tested. An effect that few of them do not show may still act in a part
-/// of the motion, such as a stop at one end of the travel.
+/// Points for the choice of sizes. All points are needed for an effect that acts only in a small
+/// part of the motion, such as a stop at one end of the travel.
 struct TestedPoints<'p> {
     few: Points,
     all: &'p (dyn Deref<Target = Option<Points>> + Sync),
 }
 
-/// A candidate's model with sizes at which it differs a little.
+/// Model of a candidate, with parameter values for which it differs slightly from the fitted model.
 struct Ready {
     candidate: CandidateId,
     candidate_unknowns: Vec<CandidateUnknown>,
     model: EstimationModel,
-    /// For each parameter that scales it.
+    /// Parameter values for each scaling parameter.
     moved: Vec<MovedValues>,
 }
 
-/// Values of a model's parameters, one of which is moved.
+/// Parameter values of a model with one changed parameter.
 struct MovedValues {
-    /// All of them, SI.
+    /// All values, SI.
     values: Vec<f64>,
-    /// By how much.
+    /// Change of the parameter, SI.
     size: f64,
 }
 
-/// Returns the response of each candidate or the reason why it is not visible; `None` if the
+/// Returns the response of each candidate or the reason why it has no influence; `None` if the
 /// candidate's own model must be simulated.
 pub fn integrate_responses(
     at: &LinearisedFit,
@@ -111,7 +111,8 @@ pub fn integrate_responses(
     found
 }
 
-/// A candidate's columns with the sizes that would move the outputs by a part of the misfit.
+/// Sets the scale of each parameter to the size that changes the outputs by a fraction of the
+/// misfit. Returns the response of the candidate.
 fn scale_to_level(
     candidate_unknowns: &mut [CandidateUnknown],
     blocks: Vec<DMatrix<f64>>,
@@ -135,7 +136,7 @@ fn scale_to_level(
     })
 }
 
-/// Returns points of the fitted motion, or `None` if the model provides no neighbouring motions.
+/// Returns points of the fitted motion; `None` if the model has no tangent vectors.
 fn points(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,
@@ -190,7 +191,8 @@ fn points(
     (!points.times.is_empty()).then_some(points)
 }
 
-/// A candidate with its sizes, if it has the fit's states and shows the same of them.
+/// Derives the model of a candidate with small sizes, if it has the states and measured outputs of
+/// the fit.
 fn ready(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -264,8 +266,8 @@ fn ready(
     }))
 }
 
-/// The size of a parameter that changes accelerations, or rates of states of first order, by a small part;
-/// none if none does.
+/// Returns the size of a parameter that changes accelerations, or rates of first-order states, by a
+/// small fraction; `None` if there is no such size.
 fn find_small_size(
     model: &EstimationModel,
     at: &dyn Fn(f64) -> Vec<f64>,
@@ -297,7 +299,7 @@ fn find_small_size(
     found
 }
 
-/// The largest part by which any acceleration or rate of a state of first order differs, root mean square.
+/// Returns the largest relative RMS change of an acceleration or rate of a first-order state.
 fn acceleration_rms(evaluator: &mut Evaluator, points: &Points) -> f64 {
     let program = evaluator.program();
     let (first, states) = (program.degrees_of_freedom(), program.states());
@@ -323,7 +325,7 @@ fn acceleration_rms(evaluator: &mut Evaluator, points: &Points) -> f64 {
     parts.fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
 }
 
-/// For each window a column per parameter; no columns where the fit has no motion.
+/// Returns for each window a column per parameter; no columns for a window whose simulation failed.
 fn drive_responses(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,

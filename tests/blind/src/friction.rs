@@ -1,33 +1,33 @@
-//! Hidden forces on an axis. Dry friction is a bristle model (LuGre) or a steep hyperbolic tangent,
-//! instead of the sign function.
+//! Hidden forces on an axis. Unlike the catalogue, dry friction is a bristle model (LuGre) or a
+//! steep hyperbolic tangent instead of the sign function.
 
 /// Law of dry friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FrictionLaw {
-    /// Bristles that bend before they slide with the full friction. Their damping follows from the
-    /// inertia of the axis (force unit s^2 per axis unit).
+    /// Bristles that deflect before they slide. Their damping follows from the inertia of the axis
+    /// (force unit s^2 per axis unit).
     Bristles {
-        /// Deflection at which they slide, in axis units.
+        /// Deflection at which the bristles slide, in axis units.
         reach: f64,
         /// Inertia of the axis.
         inertia: f64,
     },
     /// Hyperbolic tangent of the speed.
     Steep {
-        /// Speed at which three quarters are reached, axis units per second.
+        /// Speed at which the friction is tanh(1) = 0.76 of its full value, axis units per second.
         speed: f64,
     },
 }
 
-/// Forces on an axis, in its units of force and of angle or length. All are zero if nothing is
-/// hidden.
+/// Forces on an axis, in its units of force and of angle or length. All forces are zero without a
+/// hidden effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisForces {
     /// Law of dry friction.
     pub dry: FrictionLaw,
     /// Sliding friction.
     pub coulomb: f64,
-    /// Excess of static over sliding friction, and the Stribeck speed.
+    /// Static friction minus sliding friction, and the Stribeck speed.
     pub stribeck: (f64, f64),
     /// Viscous friction, per speed.
     pub viscous: f64,
@@ -37,7 +37,7 @@ pub struct AxisForces {
     pub drag: f64,
     /// Constant force.
     pub offset: f64,
-    /// Stiffness to zero displacement.
+    /// Stiffness of a spring to zero displacement.
     pub restraint: f64,
     /// Unbalanced weight: cosine and sine of its potential, see [`AxisForces::force`].
     pub gravity: (f64, f64),
@@ -50,18 +50,18 @@ pub struct AxisForces {
 /// Force outside the catalogue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum UncataloguedForce {
-    /// No such force.
+    /// No additional force.
     None,
     /// Friction that increases with the square of the displacement: -size x^2 x'.
     Worn(f64),
-    /// External force: size sin(2 pi f t), with f in Hz.
+    /// External force: size sin(2 pi f t). Elements: size, and f in Hz.
     Hum(f64, f64),
-    /// Drive that weakens with the displacement: -size x u.
+    /// Drive that weakens with the displacement x: -size x u, with the input u.
     Weakening(f64),
 }
 
 impl AxisForces {
-    /// Returns forces with nothing hidden.
+    /// Returns forces without a hidden effect.
     pub fn none(dry: FrictionLaw) -> Self {
         Self {
             dry,
@@ -78,8 +78,8 @@ impl AxisForces {
         }
     }
 
-    /// Returns the force along the axis at displacement `x`, rate `v` and bristle deflection `z`,
-    /// and the rate of `z`.
+    /// Returns the force along the axis, and the rate of the bristle deflection. Arguments:
+    /// displacement `x`, rate `v`, bristle deflection `z`.
     pub fn force(&self, t: f64, x: f64, v: f64, z: f64, input: f64) -> (f64, f64) {
         let (dry, bending) = self.dry_friction(v, z);
         let per_turn = self.ripple.0 * x;
@@ -114,7 +114,8 @@ impl AxisForces {
             FrictionLaw::Bristles { reach, inertia } => {
                 let stiffness = (self.coulomb + near_rest) / reach;
                 let bending = v - stiffness * v.abs() * z / level;
-                // Damping ratio of one half, vanishing as the bristles slide.
+                // The damping ratio is one half at rest and decreases to zero as the bristles
+                // slide.
                 let damping = (stiffness * inertia).sqrt();
                 let pace = v / (reach * (stiffness / inertia).sqrt());
                 let damped = damping * bending * (-pace * pace).exp();
@@ -124,7 +125,8 @@ impl AxisForces {
     }
 }
 
-/// Returns a sum of a cosine and a sine. Most axes have none, and sines are expensive.
+/// Returns a sum of a cosine and a sine. It returns early if both amplitudes are zero, because
+/// sines are expensive.
 fn sinusoid((cosine, sine): (f64, f64), angle: f64) -> f64 {
     if cosine == 0.0 && sine == 0.0 {
         return 0.0;

@@ -1,5 +1,5 @@
-//! Effects that can be hidden, by the names of `discovery.json`, and their action on a machine or
-//! its sensors.
+//! Effects that can be hidden, with the names of `discovery.json`, and their implementation in
+//! machines and sensors.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use crate::friction::UncataloguedForce;
 use crate::machines::two_bodies::Form;
 use crate::machines::{Machine, Setup};
 
-/// Effect.
+/// Kind of hidden effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[allow(missing_docs)]
@@ -33,7 +33,7 @@ pub enum Effect {
     SensorBias,
     ParameterShift,
     Backlash,
-    /// Stop on one side, selected by the sign.
+    /// Stop on one side; the sign selects the side.
     EndStop,
     /// Equal stops on both sides.
     EndStops,
@@ -47,25 +47,26 @@ pub enum Effect {
     WeakeningDrive,
 }
 
-/// Effect with place and size.
+/// Hidden effect with site and size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hidden {
-    /// Effect.
+    /// Kind of the effect.
     pub effect: Effect,
-    /// Place: an axis, mesh, channel or parameter, or `arm`.
+    /// Site: an axis, mesh, channel or parameter, or `arm`.
     pub on: String,
-    /// Periods per revolution of an effect periodic in an angle; frequency in Hz of a hum;
+    /// Depends on the effect: periods per revolution, frequency in Hz of an external force, or
     /// deflection at which a stop is reached.
     pub order: f64,
-    /// Sign, if both are possible: -1 or 1.
+    /// Sign of the effect, -1 or 1, if both are possible.
     pub sign: f64,
     /// Phase between cosine and sine, rad.
     pub phase: f64,
-    /// Size in the unit of the effect's first parameter; rad per N m for a joint.
+    /// Size, in the unit of the first parameter of the effect; for a joint, its compliance in rad
+    /// per N m.
     pub amount: f64,
 }
 
-/// Errors of the sensors, per channel.
+/// Errors of the sensors of all channels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sensors {
     /// Gain minus 1.
@@ -86,10 +87,10 @@ impl Sensors {
         }
     }
 
-    /// Effects of the sensor errors of a channel, in order.
+    /// Sensor effects of a channel, in the order of its unknowns.
     pub const UNKNOWNS: [Effect; 3] = [Effect::SensorGain, Effect::SensorBias, Effect::SensorDelay];
 
-    /// Returns sensors with these errors of gain, bias and delay per channel, in standard
+    /// Returns sensors with given errors of gain, bias and delay for each channel, in standard
     /// deviations of their priors.
     pub fn within_priors(setup: &Setup, deviations: &[f64]) -> Self {
         let mut sensors = Self::ideal(setup.channels.len());
@@ -103,7 +104,7 @@ impl Sensors {
     }
 }
 
-/// Standard deviations of the sensors' priors: gain, bias relative to the noise, delay in samples.
+/// Standard deviations of the sensor priors: gain, bias relative to the noise, delay in samples.
 const GAIN_PRIOR: f64 = 0.01;
 const BIAS_PRIOR: f64 = 10.0;
 const DELAY_PRIOR: f64 = 0.5;
@@ -202,7 +203,7 @@ impl Hidden {
         }
     }
 
-    /// Returns the true values of the effect's parameters, SI, sorted by parameter name.
+    /// Returns the true values of the parameters of the effect, SI, sorted by parameter name.
     pub fn parameters(&self, machine: &Machine) -> Vec<f64> {
         let amount = self.amount * self.sign;
         let (sine, cosine) = self.phase.sin_cos();
@@ -216,7 +217,8 @@ impl Hidden {
             Effect::SensorGain | Effect::InputGain => vec![1.0 + amount],
             Effect::EndStop | Effect::EndStops => vec![self.amount, self.order],
             Effect::ParameterShift => Vec::new(),
-            // The law differs from the catalogue's, so its parameters cannot be compared.
+            // The hidden law differs from the law of the catalogue, so their parameters cannot be
+            // compared.
             Effect::StiffnessNonlinearity if self.on != "arm" => Vec::new(),
             _ => vec![amount],
         }
@@ -230,7 +232,7 @@ impl Hidden {
         )
     }
 
-    /// Returns one standard deviation of the prior if the null model includes the effect at small
+    /// Returns the standard deviation of the prior if the null model contains the effect at small
     /// sizes, as for sensor errors and declared parameters.
     pub fn prior(&self, setup: &Setup) -> Option<f64> {
         let channel = || setup.channels.iter().find(|c| c.name == self.on);

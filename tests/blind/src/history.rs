@@ -1,19 +1,19 @@
-//! Success rates of runs as lines of a table in the repository, by day and command.
+//! Success rates of runs, stored as lines of a table in the repository, with date and command.
 
 use crate::score::Score;
 
 /// Identification of a run.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// Day of the commit.
+    /// Date of the commit.
     pub date: String,
-    /// Commit.
+    /// Hash of the commit.
     pub commit: String,
     /// Command line of `blind`.
     pub command: String,
 }
 
-/// Returns the header of the table.
+/// Returns the header line of the table.
 pub fn heading() -> String {
     let columns = figures(&[]).map(|(name, _)| name);
     format!("date,commit,command,{}\n", columns.join(","))
@@ -22,7 +22,8 @@ pub fn heading() -> String {
 /// Appends a run to the table.
 ///
 /// # Errors
-/// Returns an error if the table has other columns.
+///
+/// A table with other columns.
 pub fn append_run(table: &str, run: &Run, score: &Score) -> Result<String, String> {
     let heading = heading();
     if !table.starts_with(&heading) {

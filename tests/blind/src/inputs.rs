@@ -1,5 +1,5 @@
-//! Inputs of the machines: slow sines that reverse the motion, a sweep, and steps; and initial
-//! states. Inputs are held from sample to sample.
+//! Inputs and initial states of the machines. Inputs consist of slow sines that reverse the motion,
+//! a frequency sweep, and steps. They are held between samples.
 
 use crate::machines::two_bodies::Form;
 use crate::machines::{Kind, Machine, Setup};
@@ -9,34 +9,34 @@ use crate::random::Draw;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Excitation {
-    /// Reversals, a sweep and steps.
+    /// Reversals, a frequency sweep and steps.
     Usual,
-    /// Constant direction.
+    /// Motion in one direction.
     OneWay,
     /// Oscillation with a small amplitude.
     Gentle,
 }
 
-/// Excitation of one record.
+/// Input and initial state of one record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
-    /// Input, one number per sample, SI.
+    /// Input at each sample, SI.
     pub input: Vec<f64>,
     /// Initial state.
     pub start: Vec<f64>,
 }
 
-/// Frequencies and amplitudes of the components of an input.
+/// Ranges of frequencies and amplitudes for the components of an input.
 struct Ingredients {
-    /// Frequencies (Hz) and amplitudes of the slow sines.
+    /// Ranges of frequency (Hz) and amplitude of the slow sines.
     slow: ((f64, f64), (f64, f64)),
-    /// Start and end frequency (Hz) and amplitude of the sweep.
+    /// Start and end frequency (Hz) and amplitude of the frequency sweep.
     sweep: (f64, f64, f64),
-    /// Height of the steps and their duration (s).
+    /// Height of the steps and range of their duration (s).
     steps: (f64, (f64, f64)),
 }
 
-/// Draws the excitation of record `place`; test records follow the training records.
+/// Draws input and initial state of record `place`; test records follow the training records.
 pub fn drive(
     kind: Kind,
     setup: &Setup,
@@ -57,7 +57,7 @@ pub fn drive(
             vec![0.0; samples]
         }
         (Kind::Stage, Excitation::OneWay) => {
-            // The speed varies by half, so that the viscous friction is observable.
+            // The input varies the speed by half, so that the viscous friction is observable.
             start[1] = draw.between(0.3, 0.4);
             let lasting = viscous(&machine) * start[1];
             let slow = sines(setup, samples, ((0.7, 1.5), (15.0, 30.0)), draw);
@@ -91,8 +91,7 @@ pub fn drive(
             setup,
             samples,
             &Ingredients {
-                // With jumps and fast sweeps the teeth would rattle, which is not reproducible on
-                // real rigs.
+                // Slow inputs avoid rattling of the teeth, which is not reproducible on real rigs.
                 slow: ((0.8, 4.0), (1.0, 2.5)),
                 sweep: (5.0, 16.0, 0.4),
                 steps: (0.0, (0.1, 0.1)),
@@ -110,11 +109,12 @@ pub fn drive(
     }
 }
 
-/// Returns the components for a machine of two bodies, with the given usual input.
+/// Returns the components of the input of a machine with two bodies. `usual`: usual magnitude of
+/// the input.
 fn two_body_components(form: Form, usual: f64) -> Ingredients {
     let (slow, sweep, lasting) = match form {
         Form::TwoMass => ((0.5, 2.0), (3.0, 20.0), (0.05, 0.2)),
-        // Across the resonance of the load.
+        // The sweep crosses the resonance of the load.
         Form::Crane => ((0.3, 1.0), (0.5, 4.0), (0.2, 0.5)),
         Form::QuarterCar => ((0.5, 3.0), (3.0, 20.0), (0.05, 0.2)),
     };
@@ -125,7 +125,7 @@ fn two_body_components(form: Form, usual: f64) -> Ingredients {
     }
 }
 
-/// Rounds to the digits in the record, so that machine and record have the same input.
+/// Rounds to the digits of the record, so that machine and record have the same input.
 fn round_as_recorded(value: f64) -> f64 {
     format!("{value:.8e}").parse().unwrap_or(value)
 }
@@ -137,7 +137,8 @@ fn viscous(machine: &Machine) -> f64 {
     }
 }
 
-/// Returns sines that start at their maxima, so that the motion from rest oscillates around zero.
+/// Returns sines that start at their maxima. With this phase, motion from rest oscillates around
+/// zero.
 fn sines(
     setup: &Setup,
     samples: usize,

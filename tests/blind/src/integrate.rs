@@ -1,20 +1,20 @@
-//! Classical Runge-Kutta method with a fixed step size. A switch inside a step reduces its accuracy
-//! to second order, so the steps are much shorter than the fastest motion.
+//! Classical Runge-Kutta method with a fixed step size. Steps that contain a switch are only
+//! accurate to second order, so that the steps must be much shorter than the fastest motion.
 
 /// Right-hand side of equations of motion.
 pub trait Motion {
-    /// Computes the rates of a state at a time (s) under an input.
+    /// Computes the rates of a state at a time (s) for an input.
     fn rates(&self, t: f64, state: &[f64], input: f64, rates: &mut [f64]);
 }
 
-/// Work arrays for states of one size.
+/// Buffers of the method.
 pub struct Stepper {
     slopes: [Vec<f64>; 4],
     between: Vec<f64>,
 }
 
 impl Stepper {
-    /// Allocates for states of `size` numbers.
+    /// Allocates buffers for states of `size` numbers.
     pub fn new(size: usize) -> Self {
         Self {
             slopes: std::array::from_fn(|_| vec![0.0; size]),
@@ -22,7 +22,7 @@ impl Stepper {
         }
     }
 
-    /// Takes `count` steps over a time `span` (s) with a held input.
+    /// Takes `count` steps over a time span (s) with a held input.
     pub fn advance(
         &mut self,
         motion: &impl Motion,
@@ -79,7 +79,7 @@ mod tests {
             (state[0] - (1.0 - 2.0f64.cos())).abs()
         };
         let ratio = error(20) / error(40);
-        // 16, apart from higher-order terms, a fifth of it at these steps.
+        // The expected ratio is 16; at these steps, higher-order terms change it by up to a fifth.
         assert!((13.0..19.0).contains(&ratio), "{ratio}");
     }
 }

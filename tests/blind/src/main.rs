@@ -1,4 +1,4 @@
-//! `blind` generates the cases of a seed, runs the program on them and counts correct results.
+//! `blind` generates the cases of a seed, runs the program on each case and counts correct results.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};

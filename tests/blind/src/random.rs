@@ -1,4 +1,4 @@
-//! Random numbers of a seed, equal on every machine.
+//! Random numbers of a seed, identical on every computer.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -9,7 +9,7 @@ use rand_distr::{Distribution, StandardNormal};
 pub struct Draw(ChaCha8Rng);
 
 impl Draw {
-    /// Starts a stream of numbers, independent of other streams.
+    /// Starts a stream of random numbers that is independent of other streams.
     pub fn new(seed: u64, stream: u64) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         generator.set_stream(stream);
@@ -22,12 +22,12 @@ impl Draw {
         low + (high - low) * unit
     }
 
-    /// Draws a normal number of mean 0 and standard deviation 1.
+    /// Draws a normal number with mean 0 and standard deviation 1.
     pub fn normal(&mut self) -> f64 {
         StandardNormal.sample(&mut self.0)
     }
 
-    /// Draws a normal number within two standard deviations.
+    /// Draws a normal number with a magnitude of at most 2.
     pub fn normal_within_two(&mut self) -> f64 {
         loop {
             let value = self.normal();

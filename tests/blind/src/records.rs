@@ -1,5 +1,5 @@
-//! Input files of the program for a case: motions, noisy and quantised sensors, and the files.
-//! Labels are in a separate folder.
+//! Input files of a case: simulated motions, sensor readings with noise and quantisation, and the
+//! files of the dataset. Labels are written to a separate folder.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use crate::plan::{Case, Group, Nuisances};
 use crate::random::Draw;
 use crate::size;
 
-/// True values of a case, for scoring only.
+/// True values of a case, used only for scoring.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Label {
     /// Number of the case.
@@ -24,31 +24,30 @@ pub struct Label {
     pub machine: crate::machines::Kind,
     /// Hidden effects.
     pub hidden: Vec<Truth>,
-    /// True if all parameters and sensors deviate according to their priors.
+    /// True if all parameters and sensors deviate by their full priors.
     pub full_priors: bool,
     /// True values of the declared parameters, SI.
     pub declared: Vec<(String, f64)>,
-    /// True errors of the sensors, without hidden ones.
+    /// True errors of the sensors, without hidden effects.
     pub sensors: Sensors,
 }
 
-/// Hidden effect with the values to be checked.
+/// Hidden effect with the true values for scoring.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
-    /// Effect with place and size.
+    /// Effect with site and size.
     pub hidden: Hidden,
     /// Name in results.
     pub effect: String,
     /// True values of its parameters, SI, sorted by name.
     pub parameters: Vec<f64>,
-    /// RMS residual of the effect in the outputs after fitting initial states and nuisances,
-    /// relative to the noise.
+    /// RMS residual of the effect after a fit of initial states and nuisances, in noise floors.
     pub floors: f64,
-    /// Effects that the record cannot distinguish from it, with their places.
+    /// Effects that are inseparable from the hidden effect, with their sites.
     pub alike: Vec<(String, String)>,
 }
 
-/// Returns the sensor readings of a motion: one column per channel, SI.
+/// Returns the sensor readings of a motion, one column per channel, SI.
 pub fn sensor_readings(
     machine: &Machine,
     setup: &Setup,
@@ -70,7 +69,7 @@ pub fn sensor_readings(
         for (place, channel) in setup.channels.iter().enumerate() {
             let then = (sample * setup.steps).saturating_sub(late[place]);
             let value = (1.0 + sensors.gain[place]) * history[then][place] + sensors.bias[place];
-            // Rounding adds a variance of step^2/12.
+            // The variance of rounding is step^2/12.
             let white = (channel.noise.powi(2) - channel.step.powi(2) / 12.0).sqrt();
             let noisy = value + white * draw.normal();
             columns[place].push((noisy / channel.step).round() * channel.step);
@@ -84,10 +83,11 @@ pub fn sensor_readings(
     columns
 }
 
-/// Writes a case's folder and its label, with the sizes of its effects.
+/// Determines the sizes of the effects of a case, and writes its folder and its label.
 ///
 /// # Errors
-/// Returns an error if a file cannot be written.
+///
+/// A file that cannot be written.
 pub fn make_case(case: &Case, seed: u64, specifications: &Path, out: &Path) -> std::io::Result<()> {
     let label_file = out.join("labels").join(format!("{:03}.json", case.number));
     if label_file.exists() {
@@ -232,7 +232,8 @@ fn description(setup: &Setup, case: &Case, names: &[String]) -> String {
 /// Writes a temporary file and renames it.
 ///
 /// # Errors
-/// Returns an error if a folder or file cannot be created.
+///
+/// A folder or file that cannot be created.
 pub fn write_whole(path: &Path, text: &str) -> std::io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder)?;

@@ -1,5 +1,5 @@
-//! Runs the program on a case with a specification, a dataset and an order, without its label. A
-//! case with a result is not run again.
+//! Runs the program on the specification and dataset of a case, without its label. A case with an
+//! existing result is not run again.
 
 use std::fs::File;
 use std::path::Path;
@@ -11,15 +11,15 @@ use serde_json::Value;
 
 use crate::records::write_whole;
 
-/// End of a run.
+/// Way in which a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ending {
-    /// Regular end with an answer.
+    /// The program returned an answer.
     Answered,
-    /// Time limit exceeded.
+    /// The time limit was exceeded.
     Timeout,
-    /// Error or crash without an answer.
+    /// The program ended with an error or crash.
     Failed,
 }
 
@@ -28,7 +28,7 @@ pub enum Ending {
 pub struct Outcome {
     /// Number of the case.
     pub case: usize,
-    /// End of the run.
+    /// Way in which the run ended.
     pub ending: Ending,
     /// Duration, s.
     pub seconds: f64,
@@ -38,10 +38,11 @@ pub struct Outcome {
     pub discovery: Option<Value>,
 }
 
-/// Runs the program on a case of the folder `out` with the time limit `limit`.
+/// Runs the program on a case in the folder `out` with the time limit `limit`.
 ///
 /// # Errors
-/// Returns an error if a file cannot be read or written, or the program cannot be started.
+///
+/// A file that cannot be read or written, or a program that cannot be started.
 pub fn run(program: &Path, out: &Path, case: usize, limit: Duration) -> std::io::Result<()> {
     let place = |folder: &str| out.join(folder).join(format!("{case:03}"));
     let result = place("results").with_extension("json");
@@ -59,7 +60,7 @@ pub fn run(program: &Path, out: &Path, case: usize, limit: Duration) -> std::io:
         .arg(given.join("dataset.toml"))
         .arg("--out")
         .arg(&found)
-        // Cases run in parallel, one per core.
+        // Each run uses one thread, because cases run in parallel, one per core.
         .env("RAYON_NUM_THREADS", "1")
         .stdin(Stdio::null())
         .stdout(Stdio::null())

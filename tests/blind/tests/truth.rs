@@ -1,5 +1,5 @@
-//! The hand-written equations: energy is conserved or dissipated correctly, steps are short enough,
-//! and the residual of missing modes is below the noise floor.
+//! Tests of the hand-written equations: energy balance, sufficiently short steps, and a residual of
+//! missing modes below the noise floor.
 
 use eomgen_blind::friction::{AxisForces, FrictionLaw};
 use eomgen_blind::hidden::Sensors;
@@ -36,7 +36,7 @@ fn lossless_arm(compliance: f64) -> Arm {
     arm
 }
 
-/// Returns a state in motion with closed meshes and a bent arm.
+/// Returns a moving state with closed meshes and a bent arm.
 fn state_in_motion(yields: bool) -> Vec<f64> {
     let mut state = vec![0.0; eomgen_blind::machines::arm::STATE];
     state[4] = 1e-3;
@@ -61,7 +61,8 @@ fn lossless_arm_conserves_energy() {
             (arm.energy(&end) / arm.energy(&start) - 1.0).abs()
         };
         let (coarse, fine) = (deviation(20_000), deviation(80_000));
-        // Steps in which a mesh closes are of second order; there are about a hundred impacts.
+        // Steps in which a mesh closes are accurate to second order; there are about a hundred
+        // impacts.
         assert!(fine < 1e-6, "{fine}");
         assert!(fine < coarse / 4.0, "{coarse} {fine}");
     }
@@ -84,7 +85,7 @@ fn losses_of_arm_match_their_power() {
     }
     let change = arm.energy(&start) - arm.energy(&state);
     assert!(lost > 1e-3 * arm.energy(&start), "{lost}");
-    // Error of the trapezoidal rule and of the impacts.
+    // The tolerance covers the error of the trapezoidal rule and of the impacts.
     assert!((change / lost - 1.0).abs() < 1e-4, "{change} {lost}");
 }
 
@@ -100,7 +101,7 @@ fn pendulum_conserves_energy_and_has_small_amplitude_period() {
     let turned = pendulum.mass * pendulum.distance.powi(2) + pendulum.inertia;
     let period = 2.0 * hanging * (turned / scale).sqrt();
     let end = advance_state(&pendulum, &[hanging + 1e-4, 0.0, 0.0], period, 50_000);
-    // The period increases by amplitude^2/16.
+    // The period increases by the fraction amplitude^2/16.
     assert!(
         (end[0] - hanging - 1e-4).abs() < 1e-10 && end[1].abs() < 1e-10,
         "{end:?}"
@@ -133,8 +134,8 @@ fn drives(kind: Kind, setup: &Setup, seed: u64) -> Vec<Drive> {
     vec![drive(kind, setup, Excitation::Usual, 0, &mut draw)]
 }
 
-/// Returns the RMS difference over 0.1 s windows between steps and steps of half the size from the
-/// same states, relative to the noise.
+/// Returns the RMS difference between steps and half steps over windows of 0.1 s from the same
+/// states, relative to the noise.
 fn step_error(machine: &Machine, setup: &Setup, drive: &Drive) -> f64 {
     let fine = Setup {
         steps: 2 * setup.steps,
@@ -156,8 +157,8 @@ fn step_error(machine: &Machine, setup: &Setup, drive: &Drive) -> f64 {
     f64::sqrt(sum / f64::from(count))
 }
 
-/// Maximum step error relative to the noise; it adds 2 % to the RMS of noise. Impacts amplify step
-/// errors, mainly on the arm.
+/// Maximum step error, relative to the noise. It increases the RMS of the noise by 2 %. Impacts
+/// amplify step errors, mainly on the arm.
 const MAX_STEP_ERROR: f64 = 0.2;
 
 #[test]
@@ -208,7 +209,7 @@ fn missing_modes_stay_below_noise_floor() {
         println!("missing modes: {floors} floors");
         sum += floors;
     }
-    // The RMS of noise increases by 3 %, well below the detectable 10 %.
+    // The missing modes increase the RMS of the noise by 3 %, well below the detectable 10 %.
     assert!(sum / 4.0 < 0.25, "{sum}");
 }
 
@@ -224,7 +225,7 @@ fn sensors_have_declared_noise_and_delay() {
     let noise = setup.channels[0].noise;
     let square = |(a, b): (&f64, &Vec<f64>)| ((a - b[0]) / noise).powi(2);
     let mean = seen[0].iter().zip(&clean).map(square).sum::<f64>() / clean.len() as f64;
-    // Five standard errors of a mean of 1600 squares.
+    // Tolerance: five standard errors of a mean of 1600 squares.
     assert!(
         (mean - 1.0).abs() < 5.0 * (2.0 / 1600.0f64).sqrt(),
         "{mean}"

@@ -1,4 +1,4 @@
-//! Rejected and untestable effects, grouped by reason.
+//! Tables of rejected and untestable effects, grouped by reason.
 
 use eomgen_page::{prose, section, table};
 use maud::{Markup, html};
@@ -9,20 +9,20 @@ use crate::report::quantity::format_readable;
 use crate::report::result::{EffectSite, RejectedEffect};
 use crate::report::summary::describe_effect;
 
-/// More rows than this are folded.
+/// Number of rows that are always visible; further rows are folded.
 const SHOWN: usize = 8;
 
-/// Effects with something in common.
+/// Effects with the same reason or experiment.
 struct Group<'a> {
     effects: Vec<&'a EffectSite>,
     reason: &'a str,
     experiment: &'a str,
-    /// Computed experiments, if there are any.
+    /// Computed experiments.
     next: Vec<&'a NextExperiment>,
 }
 
 impl<'a> Group<'a> {
-    /// The effects in groups of the same `key`, in the order in which each comes first.
+    /// Groups the effects by `key`, in the order of their first effects.
     fn all<K: PartialEq>(
         list: &'a [RejectedEffect],
         key: impl Fn(&'a RejectedEffect) -> K,
@@ -50,7 +50,7 @@ impl<'a> Group<'a> {
         groups.into_iter().map(|(_, group)| group).collect()
     }
 
-    /// The effects, places of the same one together.
+    /// Returns the names of the effects; sites of the same effect are joined.
     fn names(&self) -> String {
         let mut by_effect: Vec<(&str, Vec<&str>)> = Vec::new();
         for at in &self.effects {
@@ -72,8 +72,7 @@ impl<'a> Group<'a> {
         each.collect::<Vec<String>>().join("; ")
     }
 
-    /// Describes the experiments in sentences, after the description of the evidence they would
-    /// give.
+    /// Describes the experiments, as a continuation of the description of the required evidence.
     fn next(&self, files: &[ExperimentFile]) -> String {
         let all = self.next.iter();
         let all =
@@ -81,7 +80,7 @@ impl<'a> Group<'a> {
         all.collect()
     }
 
-    /// Its reason: the first line, as a message of the compiler has more.
+    /// Returns the first line of the reason, because compiler messages have several lines.
     fn why(&self) -> String {
         format_readable(self.reason.lines().next().unwrap_or_default())
     }
@@ -110,7 +109,8 @@ pub(super) fn list_rejected(list: &[RejectedEffect]) -> Markup {
     )
 }
 
-/// Describes the reduction by the best effect of each round, with which the predicted ones compare.
+/// Describes the reduction by the best effect of each round, for comparison with the predicted
+/// reductions in the table.
 fn describe_best(list: &[RejectedEffect]) -> Option<String> {
     let of_rounds = list.iter().filter_map(|of| of.best_reduction);
     let mut texts: Vec<String> = of_rounds
@@ -144,7 +144,7 @@ pub(super) fn list_untestable(list: &[RejectedEffect], files: &[ExperimentFile])
     )
 }
 
-/// A table of which a long rest is behind a summary.
+/// Returns a table whose last rows are folded if there are many.
 fn write_folded(
     groups: &[Group<'_>],
     headings: &[&str],

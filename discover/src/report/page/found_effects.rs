@@ -1,4 +1,4 @@
-//! Found effects, the steps of the search, and the change of the specification.
+//! Found effects, steps of the search, and changes of the specification.
 
 use eomgen_page::{prose, quantity_symbol, section, table};
 use maud::{Markup, html};
@@ -10,7 +10,7 @@ use crate::report::quantity::{format_estimate, format_number, format_percent, fo
 use crate::report::result::{Discovery, EffectStatus, FoundEffect, SearchStep};
 use crate::report::summary::{describe_effect, describe_with_order};
 
-/// Lists the effects; empty if none were found, because the verdict reports this.
+/// Lists the effects; empty without effects, because the verdict reports this.
 pub(super) fn list_effects(effects: &[FoundEffect], files: &[ExperimentFile]) -> Markup {
     if effects.is_empty() {
         return html! {};
@@ -76,7 +76,7 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
     }
 }
 
-/// A probability in words: what is far below anything one would bet on is only said to be so.
+/// Returns a probability in words; very small values are only given as an upper limit.
 fn probability(p: f64) -> String {
     match p < 1e-6 {
         true => "less than one in a million".to_owned(),
@@ -84,14 +84,14 @@ fn probability(p: f64) -> String {
     }
 }
 
-/// With a capital at its beginning.
+/// Returns a text with an initial capital letter.
 fn capitalise(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(|c| c.to_uppercase().to_string());
     first.unwrap_or_default() + letters.as_str()
 }
 
-/// Lists the test gap after each step and the validation of the extended specification.
+/// Lists the test residual after each step and the validation of the extended specification.
 pub(super) fn list_steps(discovery: &Discovery) -> Markup {
     let has_steps = discovery.steps.len() > 1;
     if !has_steps && discovery.validation.is_none() {
@@ -129,7 +129,7 @@ fn step_table(steps: &[SearchStep]) -> Markup {
     table(&headings, &rows)
 }
 
-/// Returns true if the equations of the specification that was written are right.
+/// Returns the result of the validation of the extended equations.
 fn validation_line(discovery: &Discovery) -> Markup {
     let Some(validation) = &discovery.validation else {
         return html! {};
@@ -150,7 +150,7 @@ fn validation_line(discovery: &Discovery) -> Markup {
     }
 }
 
-/// Shows added and changed lines of the specification with the lines that they replace.
+/// Shows added and changed lines of the specification together with the lines that they replace.
 pub(super) fn show_change(before: &str, after: &str) -> Markup {
     if before == after {
         return html! {};

@@ -39,7 +39,7 @@ pub(super) fn write_gap_table(compared: &CommonResult) -> Markup {
     }
 }
 
-/// Before and, if there is one, after.
+/// Formats the value before the search and, if available, after it.
 fn both(gap: &ChannelGap, has_after: bool, of: fn(TrainTest<f64>) -> f64) -> Markup {
     let cell = |value: f64| {
         html! {

@@ -1,9 +1,9 @@
-//! HTML page of a result: verdict, measured and simulated motion before and after, found and
-//! rejected effects, nuisances, changes of the specification, and origin.
+//! HTML page of a result: verdict, measured and simulated motion before and after the search, found
+//! and rejected effects, nuisances, changes of the specification, and origin.
 //!
-//! The files: `verdict` (first sentence), `gap_table` (gap of each channel), `found_effects` (effects and steps),
-//! `alternatives` (rejected effects), `nuisances` (declared and estimated values), `origin` (files
-//! and hashes).
+//! The files: `verdict` (first sentence), `gap_table` (gap of each channel), `found_effects`
+//! (effects and steps), `alternatives` (rejected effects), `nuisances` (declared and estimated
+//! values), `origin` (files and hashes).
 
 mod alternatives;
 mod found_effects;
@@ -61,7 +61,7 @@ impl Discovery {
     }
 }
 
-/// A document around a body; `kind` is the kind of the report.
+/// Returns a document with a header, a body and the origin. `kind`: kind of the report.
 fn whole(compared: &CommonResult, kind: &str, body: &Markup) -> String {
     let title = compared.title.as_str();
     let origin = &compared.origin;

@@ -1,4 +1,4 @@
-//! Origin of a page.
+//! Origin of a result on its page.
 
 use maud::{Markup, html};
 

@@ -11,7 +11,7 @@ use crate::report::result::{
 };
 use crate::search::acceptance::TestStatistics;
 
-/// An experiment with `text` wherever names could put it.
+/// Returns an experiment with `text` in all fields that contain names from input files.
 fn next_experiment(text: &str) -> NextExperiment {
     let name = || text.to_owned();
     NextExperiment {
@@ -27,7 +27,7 @@ fn next_experiment(text: &str) -> NextExperiment {
     }
 }
 
-/// A discovery with `text` wherever a dataset, a specification or a file name could put it.
+/// Returns a discovery with `text` in all fields that contain names from input files.
 fn discovery(text: &str) -> Discovery {
     let name = || text.to_owned();
     let at = || EffectSite {
@@ -152,7 +152,7 @@ fn comparison(text: &str) -> Comparison {
     }
 }
 
-/// The names of the elements that are opened, in order.
+/// Returns the names of the opened elements, in order.
 fn elements(page: &str) -> Vec<&str> {
     let opened = page.split('<').skip(1);
     opened
@@ -213,7 +213,7 @@ fn large_remaining_gap_is_uncertain_in_the_summary() {
     let first = "The named effects may be substitutes for others: the extended model closes 60 % of the gap between model \
                  and measurement on held-out records and leaves 41.0 noise floors.";
     assert!(summary(&found).starts_with(first), "{}", summary(&found));
-    // No line breaks before a percent sign.
+    // A percent sign follows a non-breaking space.
     let first = first.replace(" %", "\u{a0}%");
     assert!(found.to_html().contains(&first), "{}", found.to_html());
 }

@@ -1,4 +1,4 @@
-//! Verdict in words: found effects, closed gap, and remaining gap in noise floors.
+//! Verdict in words: found effects, closure, and remaining gap in noise floors.
 
 use eomgen_page::prose;
 use maud::{Markup, html};

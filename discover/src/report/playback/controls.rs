@@ -1,4 +1,4 @@
-//! Sliders for the found values: parameters of the extended specification, and sensors.
+//! Sliders for the fitted values: parameters of the extended specification, and sensors.
 
 use eomgen_page::play::{Slider, format_unit};
 use maud::{Markup, html};
@@ -10,7 +10,7 @@ use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::UnknownKind;
 use crate::search::search_result::AcceptedEffect;
 
-/// Range of a sensor's control around the result, as a fraction of it.
+/// Half the range of a sensor's slider, as a multiple of the result.
 const SENSOR_RANGE_FACTOR: f64 = 2.0;
 
 /// Writes the sliders and the reset button.
@@ -57,14 +57,14 @@ fn control(
             let unit = &problem.dataset.channels[at.index()].unit;
             of_sensor(at.index(), "bias", 0.0, unit).control("bias")
         }
-        // It is that of every sensor, and no control moves them together.
+        // A delay of the input is a delay of all sensors, for which there is no common slider.
         UnknownKind::InputDelay => html! {},
         UnknownKind::Delay(at) => of_sensor(at.index(), "delay", 0.0, "s").control("delay"),
     }
 }
 
-/// A parameter of the specification. `is_inverse`: its effect is absent where it is infinite, and
-/// nothing moves where it is 0.
+/// Returns the slider of a parameter. `is_inverse`: the effect vanishes for an infinite value, so 0
+/// is excluded from the range.
 fn parameter(model: &EstimationModel, name: &str, is_inverse: bool) -> Markup {
     let declared = model.specification().parameters.iter();
     let mut declared = declared.filter(|parameter| parameter.name == name);

@@ -1,4 +1,4 @@
-//! Data of the script as JSON, with numeric columns as bytes in base 64.
+//! Input data of the script as JSON; numeric columns are base64-encoded bytes.
 
 use eomgen_page::name_letters;
 use eomgen_page::play::{encode_base64, format_unit};
@@ -46,7 +46,7 @@ pub(super) fn write_json(
     document.to_string()
 }
 
-/// Writes the channels: column, sensor and residual of each.
+/// Returns column, sensor and residual of each channel.
 fn channels(
     problem: &EstimationProblem<'_>,
     best: &Fit,
@@ -81,7 +81,7 @@ fn channels(
     channels.map(of).collect()
 }
 
-/// Numbers as their bytes, the low ones first, as browsers read them on every machine of today.
+/// Returns numbers as base64-encoded little-endian bytes, the byte order of all current browsers.
 fn doubles(numbers: impl Iterator<Item = f64>) -> String {
     encode_base64(&numbers.flat_map(f64::to_le_bytes).collect::<Vec<u8>>())
 }

@@ -1,8 +1,8 @@
-//! Interactive part of a page: it simulates the test record with the emitted module for changed
-//! values of the found parameters, and draws it over the measurement.
+//! Interactive figure of a page. It simulates the test record with the emitted module for changed
+//! values of the found parameters and draws it over the measurement.
 //!
-//! `record_excerpt` is the part of the record on the page, `reproduction_check` checks if a page can simulate it,
-//! `controls` has the sliders, `data` is the input of the script.
+//! `record_excerpt` selects the part of the record on the page, `reproduction_check` checks if a
+//! page can simulate it, `controls` creates the sliders, `data` the input of the script.
 
 mod controls;
 mod data;
@@ -24,26 +24,26 @@ use crate::search::search_result::AcceptedEffect;
 /// Style of the interactive figure, in addition to that of all pages with computations.
 const STYLE: &str = include_str!("playback.css");
 
-/// Its own part of the script.
+/// Script files of the interactive figure.
 const SCRIPT: [&str; 3] = [
     include_str!("strips.js"),
     include_str!("playback.js"),
     include_str!("panel.js"),
 ];
 
-/// Interactive part of a page, or the reason why there is none.
+/// Interactive figure, or the reason why there is none.
 #[derive(Clone, Debug)]
 pub(crate) enum Playback {
-    /// HTML of the part, and the data of its script.
+    /// HTML of the figure, and the data of its script.
     Computed { body: Markup, data: String },
-    /// A page cannot simulate the model, for this reason.
+    /// The page cannot simulate the model, for the given reason.
     Unavailable(String),
-    /// There is no value to change.
+    /// No value can be changed.
     NotNeeded,
 }
 
 impl Playback {
-    /// Builds the part for a specification with the found effects, given as text.
+    /// Creates the figure for a specification with the found effects, given as text.
     pub(crate) fn build(
         problem: &EstimationProblem<'_>,
         (null, best): (&Fit, &Fit),
@@ -88,18 +88,18 @@ impl Playback {
         }
     }
 
-    /// Returns the style sheet of a page with this part.
+    /// Returns the style sheet of a page with an interactive figure.
     pub(crate) fn load_style() -> String {
         [play::STYLE, STYLE].concat()
     }
 
-    /// Returns the script of a page with this part.
+    /// Returns the script of a page with an interactive figure.
     pub(crate) fn load_script() -> String {
         play::join_scripts(&SCRIPT)
     }
 }
 
-/// Returns the data for the motion of a model, or the reason why a page cannot move it.
+/// Returns the data for the simulation of a model, or the reason why a page cannot simulate it.
 fn embed_model(model: &EstimationModel) -> Result<Value, String> {
     let exported = model.export().map_err(|error| error.to_string())?;
     let bytes = exported.to_bytes();

@@ -1,26 +1,27 @@
-//! Part of the test record on a page: windows from its beginning, limited by the file size.
+//! Part of the test record on a page: windows from its beginning, limited by the size of the page.
 
 use eomgen_records::windows::compared_samples;
 
 use crate::fit::fit_result::Fit;
 use crate::model::problem::EstimationProblem;
 
-/// The most samples.
+/// Maximum number of samples.
 const SAMPLES: usize = 3000;
 
-/// The most numbers in all columns: 260 kB as text.
+/// Maximum number of values in all columns, which need 260 kB as text.
 const NUMBERS: usize = 24_000;
 
-/// Minimum number of samples of a window that is cut short.
+/// Minimum number of samples of a truncated window.
 const MIN_SAMPLES: usize = 32;
 
 /// Consecutive windows of the first test record.
 pub(super) struct RecordExcerpt {
     /// Times of all samples, s.
     pub times: Vec<f64>,
-    /// Measurements: a row per sample, a number per channel; NaN for missing ones.
+    /// Measurements: one row per sample, one number per channel; NaN for missing values.
     pub measured: Vec<f64>,
-    /// Simulation of the original model in the same layout; NaN for samples that are not compared.
+    /// Simulation of the original model in the layout of `measured`; NaN for samples that are not
+    /// compared.
     pub before: Vec<f64>,
     /// Windows in the order of time.
     pub windows: Vec<ExcerptWindow>,
@@ -30,7 +31,7 @@ pub(super) struct RecordExcerpt {
     pub is_complete: bool,
 }
 
-/// A window of the excerpt.
+/// Window of the excerpt.
 pub(super) struct ExcerptWindow {
     /// Index among the test windows.
     pub window: usize,
@@ -43,8 +44,7 @@ pub(super) struct ExcerptWindow {
 }
 
 impl RecordExcerpt {
-    /// Takes the beginning of the first test record; `None` if the simulation of the fit fails
-    /// there.
+    /// Selects the beginning of the first test record; `None` if its simulation failed.
     pub fn from_fits(problem: &EstimationProblem<'_>, null: &Fit, best: &Fit) -> Option<Self> {
         let channels = problem.noise.len();
         let inputs = problem.dataset.test.first()?.input_columns.len();

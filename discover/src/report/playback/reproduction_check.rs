@@ -1,5 +1,5 @@
-//! Check if a page can simulate a motion: the steps of its engine must be few and must reproduce the
-//! residuals of the fit.
+//! Check if a page can simulate a motion. The solver of the page must need few steps and must
+//! reproduce the residuals of the fit.
 
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_compiled_model::{ExportedMotion, SolverOptions};
@@ -12,21 +12,22 @@ use crate::model::problem::EstimationProblem;
 use crate::report::playback::record_excerpt::{ExcerptWindow, RecordExcerpt};
 use crate::report::quantity::format_quantity;
 
-/// The most steps in a window, and in all: some seconds of a browser's time.
+/// Maximum number of steps in one window and in all windows: some seconds of computation in a
+/// browser.
 const MOST_STEPS: u64 = 400_000;
 
-/// Largest relative difference between the residuals of the page and of the fit. Both are accurate
-/// to a small fraction of the noise, with different methods; the fit stops at `MAX_STEP_ERROR`. If
-/// impacts amplify this difference, the motion is not reproducible and the page would contradict
+/// Maximum relative difference between the residuals of page and fit. Both are accurate to a small
+/// fraction of the noise, but the methods differ; the error limit of the fit is `MAX_STEP_ERROR`.
+/// If impacts amplify the difference, the motion is not reproducible and the page would contradict
 /// the report.
 const MAX_RELATIVE_DIFFERENCE: f64 = 0.05;
 
-/// Checks that the engine of pages reproduces the residuals of the fit, with the numbers of the extended
-/// specification.
+/// Checks that the solver of pages reproduces the residuals of the fit, with the values in the
+/// extended specification.
 ///
 /// # Errors
 ///
-/// The reason why a page cannot simulate it, in words.
+/// The reason why a page cannot simulate the motion, in words.
 pub(super) fn check_reproduces_fit(
     problem: &EstimationProblem<'_>,
     best: &Fit,
@@ -57,7 +58,7 @@ pub(super) fn check_reproduces_fit(
     let left = sums.iter().zip(&counts).zip(&stretch.rms_before_after);
     for (channel, ((sum, count), [_, fitted])) in problem.dataset.channels.iter().zip(left) {
         let left = f64::sqrt(sum / f64::max(*count, 1.0));
-        // NaN fails the comparison.
+        // The comparison is false for NaN.
         let agree = (left - fitted).abs() <= MAX_RELATIVE_DIFFERENCE * fitted;
         if !agree {
             let [left, fitted] =
@@ -72,7 +73,7 @@ pub(super) fn check_reproduces_fit(
     Ok(())
 }
 
-/// The way to a simulation that a page cannot compute.
+/// Alternative for a motion that a page cannot simulate.
 const CURE: &str =
     "`eomgen simulate extended.toml --record DATASET.toml` computes it with the other solvers";
 
@@ -82,7 +83,8 @@ fn too_many_steps() -> String {
     )
 }
 
-/// Returns the sensor values of a window and the number of steps, or the reason why the engine cannot simulate it.
+/// Returns the sensor values of a window and the number of steps. Returns the reason if the page's
+/// solver cannot simulate it.
 fn simulate_outputs(
     problem: &EstimationProblem<'_>,
     best: &Fit,

@@ -20,7 +20,8 @@ use crate::integrate::Motion;
 /// Maximum number of modes.
 pub const MODES: usize = 4;
 
-/// Number of states: x_s, x_p, th_c, psi, four modes; their rates; two bristle deflections.
+/// Number of states: coordinates x_s, x_p, th_c, psi and four modes; their rates; two bristle
+/// deflections.
 pub const STATE: usize = 2 * COORDINATES + 2;
 
 const COORDINATES: usize = 4 + MODES;
@@ -33,7 +34,7 @@ const ROOTS: [f64; MODES] = [
     10.995_540_734_875_467,
 ];
 
-/// Mesh with its hidden effects.
+/// Mesh of the reducer with its hidden effects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     /// Stiffness, N/m.
@@ -50,20 +51,20 @@ pub struct Mesh {
     pub variation: (f64, f64, f64),
 }
 
-/// Arm on its reducer. SI units.
+/// Flexible arm on its planetary reducer. SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
-    /// Decrease of the motor's torque with speed, N m s.
+    /// Decrease of the motor torque with the motor speed, N m s.
     pub b_m: f64,
-    /// I_s/r_s^2, kg.
+    /// Inertia of the sun, I_s/r_s^2, kg.
     pub sun_mass: f64,
-    /// I_c/r_c^2 of the carrier without the arm, kg.
+    /// Inertia of the carrier without the arm, I_c/r_c^2, kg.
     pub carrier_mass: f64,
     /// Young's modulus, Pa.
     pub modulus: f64,
     /// Number of modes.
     pub modes: usize,
-    /// Meshes sun-planet and planet-ring.
+    /// Meshes of sun and planet, and of planet and ring.
     pub meshes: [Mesh; 2],
     /// Hidden forces on the sun.
     pub on_sun: AxisForces,
@@ -77,8 +78,8 @@ pub struct Arm {
     pub cubic: f64,
     /// Compliance of the joint, rad per N m.
     pub compliance: f64,
-    /// Weight per length if the arm rotates in a vertical plane, N/m: components across it at the
-    /// angle 0 (sine) and along it (cosine).
+    /// Weight per length of an arm that rotates in a vertical plane, N/m. Components: perpendicular
+    /// to the arm at angle 0 (sine term) and along it (cosine term).
     pub weight: (f64, f64),
     inverse: [[f64; MODES + 2]; MODES + 2],
     /// Stiffness of each mode, N/m.
@@ -96,7 +97,7 @@ mod given {
     pub const SECTION: f64 = 8.333e-10;
 }
 
-/// Returns r_s and r_c, m.
+/// Returns the radii r_s and r_c, m.
 fn radii() -> (f64, f64) {
     let (sun, planet) = given::TEETH;
     let cosine = given::PRESSURE_ANGLE.cos();
@@ -107,7 +108,7 @@ fn radii() -> (f64, f64) {
 }
 
 impl Arm {
-    /// Returns the rig's arm with nothing hidden.
+    /// Returns the arm of the test rig without hidden effects.
     pub fn nominal() -> Self {
         let mesh = Mesh {
             stiffness: 1e8,
@@ -138,7 +139,7 @@ impl Arm {
         arm
     }
 
-    /// Updates the matrices; call it after changes of masses, the modulus or the number of modes.
+    /// Updates the matrices. To be called after changes of masses, modulus or number of modes.
     pub fn prepare(&mut self) {
         let (_, r_c) = radii();
         let length = given::LENGTH;
@@ -147,7 +148,8 @@ impl Arm {
         let mut of_arm = DMatrix::zeros(size, size);
         of_arm[(0, 0)] = mass * length * length / 3.0 + self.tip_mass * length * length;
         for i in 0..self.modes {
-            // int x phi = 2 l^2/z^2 and int phi^2 = l for the modes in the form cosh - cos - ...
+            // For modes in the form cosh - cos - ..., the integral of x phi is 2 l^2/z^2 and that
+            // of phi^2 is l.
             let at_end = end_value(i);
             let turning = 2.0 * mass * length / (ROOTS[i] * ROOTS[i]);
             of_arm[(0, i + 1)] = turning + self.tip_mass * length * at_end;
@@ -159,7 +161,7 @@ impl Arm {
         }
         let carrier = (self.carrier_mass + 3.0 * given::PLANET_OWN_MASS) * r_c * r_c;
         let whole = if self.compliance > 0.0 {
-            // Separate coordinates of carrier and arm.
+            // With a compliant joint, carrier and arm have separate coordinates.
             let mut whole = DMatrix::zeros(size + 1, size + 1);
             whole[(0, 0)] = carrier;
             whole.view_mut((1, 1), (size, size)).copy_from(&of_arm);
@@ -182,7 +184,7 @@ impl Arm {
             ROOTS.map(|root| self.modulus * given::SECTION * root.powi(4) / length_cubed);
     }
 
-    /// Returns the kinetic and potential energy, J, without effects periodic in an angle.
+    /// Returns the kinetic and potential energy, J, without effects that are periodic in an angle.
     pub fn energy(&self, state: &[f64]) -> f64 {
         let (r_s, r_c) = radii();
         let rates = &state[COORDINATES..];
@@ -242,7 +244,7 @@ impl Arm {
         [state[0] / radii().0, state[2], self.tip(state)]
     }
 
-    /// Returns the state of a machine with a rigid joint.
+    /// Converts a state to the corresponding state with a rigid joint.
     pub fn without_joint(state: &[f64]) -> Vec<f64> {
         let mut state = state.to_vec();
         state[3] = 0.0;
@@ -250,9 +252,9 @@ impl Arm {
         state
     }
 
-    /// Returns directions of initial states of a model with this many modes: first the joint
-    /// rotation of all bodies, then mesh deflections. The derivatives along mesh deflections are
-    /// very large, so single coordinates would be ill-conditioned.
+    /// Returns directions that span the initial states of a model with `modes` modes: first the
+    /// joint rotation of all bodies, then mesh deflections. With single coordinates, the problem
+    /// would be ill-conditioned, because derivatives along mesh deflections are very large.
     pub fn directions(modes: usize) -> Vec<Vec<f64>> {
         let lever = radii().1 * given::PRESSURE_ANGLE.cos();
         let of = |parts: &[(usize, f64)]| {
@@ -272,7 +274,7 @@ impl Arm {
         directions
     }
 
-    /// Returns the indices of the states of a model with this many modes, without bristles.
+    /// Returns the indices of the states of a model with `modes` modes, without bristles.
     pub fn states_of_model(modes: usize) -> Vec<usize> {
         let coordinates: Vec<usize> = [0, 1, 2].into_iter().chain(4..4 + modes).collect();
         let rates = coordinates.iter().map(|place| place + COORDINATES);
@@ -280,7 +282,7 @@ impl Arm {
     }
 }
 
-/// Returns phi_i(l) = 2 (-1)^(i+1), counted from 1.
+/// Returns phi_i(l) = 2 (-1)^(i+1), for modes counted from 1.
 fn end_value(mode: usize) -> f64 {
     if mode.is_multiple_of(2) { 2.0 } else { -2.0 }
 }
@@ -303,7 +305,7 @@ fn deadzone(deflection: f64, play: f64) -> f64 {
 }
 
 impl Mesh {
-    /// Returns an effect periodic in the sun's angle, and its derivative.
+    /// Returns an effect that is periodic in the angle of the sun, and its derivative.
     fn periodic(&self, part: (f64, f64, f64), angle: f64) -> (f64, f64) {
         let (order, cosine, sine) = part;
         if cosine == 0.0 && sine == 0.0 {
@@ -313,8 +315,8 @@ impl Mesh {
         (cosine * c + sine * s, order * (sine * c - cosine * s))
     }
 
-    /// Returns the force along the line of action, N, and the reaction torque on the sun, N m, of
-    /// periodic effects, both for one of three planets.
+    /// Returns the force along the line of action, N, and the reaction torque of periodic effects
+    /// on the sun, N m. Both apply to one of three planets.
     fn forces(&self, deflection: f64, speed: f64, angle: f64, turning: f64) -> (f64, f64) {
         let (error, error_slope) = self.periodic(self.error, angle);
         let (variation, variation_slope) = self.periodic(self.variation, angle);
@@ -376,7 +378,7 @@ impl Motion for Arm {
             forces[1 + yields + i] =
                 -self.bending[i] * bent - cubic * end_value(i) - pressed * area_value(i);
         }
-        // Missing rows and columns are zero.
+        // Rows and columns of unused modes are zero.
         let acceleration = |row: usize| -> f64 {
             let row = self.inverse[row].iter().zip(&forces);
             row.map(|(a, b)| a * b).sum()

@@ -4,7 +4,7 @@
 use crate::friction::{AxisForces, FrictionLaw};
 use crate::integrate::Motion;
 
-/// Stage: M q'' = F - F_v q' + hidden forces. SI units.
+/// Linear stage: M q'' = F - F_v q' + hidden forces. SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
     /// Moved mass, kg.
@@ -16,7 +16,7 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// Returns the stage with nothing hidden.
+    /// Returns the stage without hidden effects.
     pub fn nominal() -> Self {
         Self {
             mass: 95.0,
@@ -35,26 +35,26 @@ impl Motion for Stage {
     }
 }
 
-/// Pendulum, its angle measured from upright: (m a^2 + I) th'' = m g a sin(th) - k th' + hidden
-/// torques. SI units.
+/// Pendulum with the angle th measured from the upright position: (m a^2 + I) th'' = m g a sin(th)
+/// - k th' + hidden torques. SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pendulum {
     /// Mass, kg.
     pub mass: f64,
     /// Distance from the pivot to the centre of mass, m.
     pub distance: f64,
-    /// Inertia about the centre of mass, kg m^2.
+    /// Moment of inertia about the centre of mass, kg m^2.
     pub inertia: f64,
     /// Viscous friction, N m s.
     pub viscous: f64,
-    /// Gravity, m/s^2.
+    /// Acceleration of gravity, m/s^2.
     pub gravity: f64,
     /// Hidden torques.
     pub hidden: AxisForces,
 }
 
 impl Pendulum {
-    /// Returns the pendulum with nothing hidden.
+    /// Returns the pendulum without hidden effects.
     pub fn nominal() -> Self {
         Self {
             mass: 0.14758,

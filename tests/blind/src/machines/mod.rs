@@ -1,4 +1,4 @@
-//! Machines with all effects that can be hidden in them, and their measurement.
+//! Machines with all effects that can be hidden in them, and their measurements.
 
 pub mod arm;
 pub mod axes;
@@ -24,7 +24,7 @@ pub enum Machine {
     Stage(Stage),
     /// Free pendulum.
     Pendulum(Pendulum),
-    /// Two bodies from a random family.
+    /// Two bodies with random parameters.
     TwoBodies(Box<TwoBodies>),
 }
 
@@ -48,7 +48,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Returns the machine with nothing hidden and the parameters of the specification.
+    /// Returns the machine without hidden effects, with the parameters of the specification.
     pub fn nominal(self) -> Machine {
         match self {
             Kind::Arm => Machine::Arm(Box::new(Arm::nominal())),
@@ -134,7 +134,7 @@ impl Machine {
         }
     }
 
-    /// Returns the indices of the states in the machine's model.
+    /// Returns the indices of those states that the machine's model has.
     pub fn states_of_model(&self) -> Vec<usize> {
         match self {
             Machine::Arm(_) => Arm::states_of_model(2),
@@ -144,7 +144,7 @@ impl Machine {
     }
 
     /// Returns directions that span the initial states of the model, see
-    /// [`Machine::states_of_model`]; joint motions first.
+    /// [`Machine::states_of_model`]. Directions in which all bodies move together are first.
     pub fn directions(&self) -> Vec<Vec<f64>> {
         match self {
             Machine::Arm(_) => Arm::directions(2),
@@ -155,7 +155,7 @@ impl Machine {
         }
     }
 
-    /// Returns the corresponding state of a machine with nothing hidden.
+    /// Converts a state to the corresponding state of the machine without hidden effects.
     pub fn plain_state(&self, state: &[f64]) -> Vec<f64> {
         match self {
             Machine::Arm(_) => Arm::without_joint(state),
@@ -197,7 +197,7 @@ impl Machine {
         }
     }
 
-    /// Multiplies a parameter; returns false if it does not exist.
+    /// Multiplies a parameter by a factor; returns false if it does not exist.
     pub fn scale(&mut self, parameter: &str, factor: f64) -> bool {
         let value = match (self, parameter) {
             (Machine::Arm(arm), "b_m") => &mut arm.b_m,
@@ -225,7 +225,7 @@ impl Machine {
         true
     }
 
-    /// Chooses the law of dry friction on every axis.
+    /// Selects the law of dry friction on every axis.
     pub fn choose_dry(&mut self, draw: &mut Draw) {
         let bristles = draw.between(0.0, 1.0) < 0.5;
         let choose = |forces: &mut AxisForces, reach: f64, inertia: f64| {

@@ -1,11 +1,11 @@
-//! Declaration and measurement of a machine.
+//! Specification and measurement of a machine.
 
 /// Specification of a machine.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Specification {
-    /// File of `model-spec/models`.
+    /// Name of a file in `model-spec/models`.
     Shipped(&'static str),
-    /// Text.
+    /// Text of a specification.
     Text(String),
 }
 
@@ -16,9 +16,9 @@ pub struct Channel {
     pub name: &'static str,
     /// Unit of the record.
     pub unit: &'static str,
-    /// Unit of the record in SI.
+    /// Unit of the record in the SI unit.
     pub scale: f64,
-    /// Standard deviation, SI, of white noise and rounding together.
+    /// Standard deviation of the total error due to white noise and rounding, SI.
     pub noise: f64,
     /// Resolution of the encoder, SI.
     pub step: f64,
@@ -35,15 +35,15 @@ pub struct Setup {
     pub channels: Vec<Channel>,
     /// Name and unit of the input, if there is one.
     pub input: Option<(&'static str, &'static str)>,
-    /// Time between samples, s.
+    /// Sample interval, s.
     pub sample: f64,
-    /// Number of integration steps per sample.
+    /// Number of integration steps per sample interval.
     pub steps: usize,
     /// Length of a record, s.
     pub duration: f64,
     /// Window length, s; `None` for the whole record.
     pub window: Option<f64>,
-    /// Uncertain parameters and the relative standard deviations of their priors.
+    /// Uncertain parameters, with the relative standard deviations of their priors.
     pub uncertain: Vec<(&'static str, f64)>,
     /// Numbers of training and test records.
     pub records: (usize, usize),

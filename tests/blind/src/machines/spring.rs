@@ -1,7 +1,8 @@
-//! Spring between two bodies with its hidden effects. Its laws differ from the catalogue's:
-//! backlash and stops begin smoothly, and hardening is a hyperbolic sine.
+//! Spring between two bodies with its hidden effects. Its laws differ from the laws of the
+//! catalogue: contact after backlash or at a stop begins smoothly, and hardening is a hyperbolic
+//! sine.
 
-/// Spring with declared stiffness and damping, and hidden effects; zero means none.
+/// Spring with declared stiffness and damping and with hidden effects, which are zero if absent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spring {
     /// Force per deflection.
@@ -10,22 +11,23 @@ pub struct Spring {
     pub damping: f64,
     /// Half of the backlash.
     pub play: f64,
-    /// Hardening: force per cube of the deflection, at small deflections.
+    /// Hardening: coefficient of the cubic force at small deflections.
     pub hardening: f64,
     /// Stop on the positive side: stiffness, and deflection at contact.
     pub upper: (f64, f64),
-    /// Stop on the negative side.
+    /// Stop on the negative side: stiffness, and deflection at contact.
     pub lower: (f64, f64),
 }
 
-/// Width of the smooth transition to contact, relative to the backlash or the distance of the stop.
+/// Width of the smooth transition to contact, relative to the backlash or to the deflection at
+/// contact.
 const TRANSITION_FRACTION: f64 = 1.0 / 30.0;
 
-/// Damping of a stop divided by its stiffness, s.
+/// Ratio of damping to stiffness of a stop, s.
 const STOP_LOSS: f64 = 2e-3;
 
 impl Spring {
-    /// Returns the spring with nothing hidden.
+    /// Returns the spring without hidden effects.
     pub fn declared(stiffness: f64, damping: f64) -> Self {
         Self {
             stiffness,
@@ -37,7 +39,7 @@ impl Spring {
         }
     }
 
-    /// Returns the restoring force at the deflection `p` with the rate `v`.
+    /// Returns the restoring force for the deflection `p` and its rate `v`.
     pub fn force(&self, p: f64, v: f64) -> f64 {
         let (p_held, v_held) = match self.play > 0.0 {
             true => {
@@ -58,7 +60,7 @@ impl Spring {
     }
 }
 
-/// Returns the force of a stop on a deflection towards it; never attractive.
+/// Returns the force of a stop for a deflection towards the stop. The force is never attractive.
 fn stop_force((stiffness, at): (f64, f64), p: f64, v: f64) -> f64 {
     if stiffness == 0.0 {
         return 0.0;

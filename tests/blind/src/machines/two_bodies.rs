@@ -1,5 +1,5 @@
-//! Machines of two coordinates with random parameters: a drive of two masses on an elastic shaft, a
-//! crane, and a quarter car on its actuator. States: two displacements, their rates, bristle
+//! Machines of two coordinates with random parameters: motor and load on an elastic shaft, a crane,
+//! and a quarter car with an actuator. States: two displacements, their rates, and the bristle
 //! deflections of both axes. SI units.
 
 use super::setup::{Channel, Setup, Specification};
@@ -17,30 +17,30 @@ const GRAVITY: f64 = 9.81;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
-    /// Motor and load on an elastic shaft, driven by the motor's torque.
+    /// Motor and load on an elastic shaft, driven by the motor torque.
     TwoMass,
-    /// Load on a rod below a trolley that is driven by a force.
+    /// Load on a rod below a trolley, which is driven by a force.
     Crane,
-    /// Body and wheel of a car with a spring, a damper and an actuator between them.
+    /// Body and wheel of a car, with a spring, a damper and an actuator between them.
     QuarterCar,
 }
 
-/// Two bodies with their true parameters and hidden effects.
+/// Machine of two bodies with its true parameters and hidden effects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TwoBodies {
-    /// Machine of the family.
+    /// Kind of machine.
     pub form: Form,
-    /// Inertias of motor and load, masses of trolley and load, of body and wheel.
+    /// Inertias of motor and load, or masses of trolley and load or of body and wheel.
     pub inertia: [f64; 2],
-    /// Friction of motor and load, or of trolley and rod.
+    /// Viscous friction of motor and load, or of trolley and rod.
     pub viscous: [f64; 2],
-    /// Spring of the shaft or suspension.
+    /// Spring of the shaft or of the suspension.
     pub spring: Spring,
     /// Stiffness of the tyre, N/m.
     pub tyre: f64,
     /// Length of the rod, m.
     pub length: f64,
-    /// Hidden forces: on motor and load, on trolley and rod, or on the suspension's travel and the
+    /// Hidden forces: on motor and load, on trolley and rod, or on the suspension travel and the
     /// body.
     pub hidden: [AxisForces; 2],
     /// Gain and bias of the drive relative to the record.
@@ -53,9 +53,9 @@ fn round_to_four_digits(value: f64) -> f64 {
 }
 
 impl TwoBodies {
-    /// Returns a machine with random parameters and nothing hidden.
+    /// Returns a machine with random parameters and without hidden effects.
     pub fn random(form: Form, seed: u64) -> Self {
-        // Cases use the streams 1, 2, ...; machines count from the other end.
+        // Machines use the last random streams, because cases use the streams 1, 2, ...
         let mut draw = Draw::new(seed, u64::MAX - form as u64);
         let mut between = |low: f64, high: f64| round_to_four_digits(draw.between(low, high));
         let friction = |speed: f64| AxisForces::none(FrictionLaw::Steep { speed });
@@ -163,9 +163,9 @@ impl TwoBodies {
         state[0] - state[1]
     }
 
-    /// Returns the deflection at which the bristles slide and their inertia, for both axes. They
-    /// respond within a fraction of a sample at usual speeds: slower ones would act like a lag,
-    /// unlike all friction of the catalogue.
+    /// Returns the deflection at which the bristles slide, and the inertia, for both axes. At usual
+    /// speeds the bristles respond within a fraction of a sample. Slower bristles would act like a
+    /// lag, unlike any friction of the catalogue.
     pub fn bristles(&self) -> [(f64, f64); 2] {
         match self.form {
             Form::TwoMass => [(1e-4, self.inertia[0]), (1e-4, self.inertia[1])],
@@ -177,7 +177,8 @@ impl TwoBodies {
         }
     }
 
-    /// Returns directions of initial states, joint motions first.
+    /// Returns directions that span the initial states. Directions in which both bodies move
+    /// together are first.
     pub fn directions(&self) -> Vec<Vec<f64>> {
         let together = match self.form {
             Form::TwoMass | Form::QuarterCar => 1.0,
@@ -380,8 +381,8 @@ impl Motion for TwoBodies {
                 )
             }
             Form::Crane => {
-                // Newton's law for trolley and load, and the moment around the trolley: (a + b) x''
-                // + b l cos(th) th'' = across, cos(th) x'' + l th'' = along / (b l).
+                // Newton's law for trolley and load, (a + b) x'' + b l cos(th) th'' = across, and
+                // the moment about the trolley, cos(th) x'' + l th'' = along / (b l).
                 let (sine, cosine) = y.sin_cos();
                 let l = self.length;
                 let across = drive - self.viscous[0] * v + b * l * w * w * sine + first;

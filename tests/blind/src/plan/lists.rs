@@ -1,4 +1,4 @@
-//! Lists of effects and places for the cases.
+//! Lists of effects and sites for the cases.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,8 @@ use crate::machines::Kind;
 use crate::machines::two_bodies::Form;
 use crate::random::Draw;
 
-/// True parameters vary with their priors, biases with a fifth of theirs; no other sensor errors.
+/// True parameters deviate according to their priors, biases by a fifth of their priors. There are
+/// no other sensor errors.
 const USUAL: Nuisances = Nuisances {
     declared: 1.0,
     bias: 0.2,
@@ -17,8 +18,8 @@ const USUAL: Nuisances = Nuisances {
     delay: 0.0,
 };
 
-/// Sizes of single effects in noise floors: one that is hard to detect, the smallest that must be
-/// found, and three clear ones.
+/// Sizes of single effects, in noise floors: one that is hard to detect, the smallest that must be
+/// found, and three larger ones.
 const LEVELS: [f64; 5] = [1.5, 3.0, 6.0, 15.0, 60.0];
 
 fn case(group: Group, machine: Kind, manner: Excitation, hidden: Vec<Planned>) -> Case {
@@ -61,7 +62,7 @@ fn plan_effect(effect: Effect, on: &str, level: f64, draw: &mut Draw) -> Planned
     };
     let drawn = if either { draw.sign() } else { 1.0 };
     let sign = match (effect, on) {
-        // The spring's law can only harden.
+        // The hidden law of a spring can only harden.
         (StiffnessNonlinearity, on) if on != "arm" => 1.0,
         _ => drawn,
     };
@@ -80,14 +81,14 @@ fn plan_effect(effect: Effect, on: &str, level: f64, draw: &mut Draw) -> Planned
     }
 }
 
-/// Returns the effects that its records cannot distinguish from it.
+/// Returns the effects that are inseparable from a hidden effect.
 fn indistinguishable(effect: Effect, on: &str, order: f64) -> Vec<(String, String)> {
     if effect == Effect::TorqueRipple && order == 1.0 {
-        // An unbalanced weight, on any rotating body.
+        // An unbalanced weight on any rotating body.
         return vec![("gravity".to_owned(), on.to_owned())];
     }
     let list: &[(&str, &str)] = match (effect, on) {
-        // A torque ripple of order one.
+        // A torque ripple of order 1.
         (Effect::Gravity, "theta_c") => &[("torque_ripple", "theta_c")],
         // Only the sum of the offsets of both plays is observable.
         (Effect::AsymmetricBacklash, "x_sp") => &[("asymmetric_backlash", "x_pr")],
@@ -95,7 +96,8 @@ fn indistinguishable(effect: Effect, on: &str, order: f64) -> Vec<(String, Strin
         (Effect::ParameterShift, "E") => &[("parameter_shift", "I")],
         (Effect::ParameterShift, "m_c") => &[("parameter_shift", "m_p")],
         (Effect::ParameterShift, "a") => &[("parameter_shift", "g"), ("gravity", "theta")],
-        // Far from upright, a spring towards upright is nearly constant.
+        // Far from the upright position, the torque of a spring to this position is nearly
+        // constant.
         (Effect::ForceOffset, "theta") => &[("elastic_restraint", "theta")],
         (Effect::ElasticRestraint, "theta") => &[("force_offset", "theta")],
         // A bias of the encoder is equivalent to a rotated direction of gravity.
@@ -110,8 +112,8 @@ fn two_bodies(seed: u64) -> [Kind; 3] {
     [Form::TwoMass, Form::Crane, Form::QuarterCar].map(|form| Kind::TwoBodies { form, seed })
 }
 
-/// Returns cases of every effect of the catalogue by itself; every second one with nuisances at
-/// full priors.
+/// Returns cases with each single effect of the catalogue. In every second case, the nuisances
+/// deviate by their full priors.
 pub fn single_effects(seed: u64, draw: &mut Draw) -> Vec<Case> {
     use Effect::{
         AsymmetricBacklash, AsymmetricFriction, Backlash, CoulombFriction, ElasticRestraint,
@@ -203,7 +205,7 @@ pub fn single_effects(seed: u64, draw: &mut Draw) -> Vec<Case> {
     wanted.into_iter().enumerate().map(single).collect()
 }
 
-/// Returns cases with nothing hidden, with all nuisances.
+/// Returns cases without hidden effects, with all nuisances.
 pub fn without_effects(seed: u64) -> Vec<Case> {
     let none = Nuisances {
         declared: 0.0,
@@ -235,7 +237,7 @@ pub fn without_effects(seed: u64) -> Vec<Case> {
 
 type Placed<'a> = (Effect, &'a str);
 
-/// Returns cases with two clear effects.
+/// Returns cases with two large effects.
 pub fn effect_pairs(seed: u64, draw: &mut Draw) -> Vec<Case> {
     use Effect::{
         AsymmetricFriction, Backlash, CoulombFriction, ElasticRestraint, EndStop, ForceOffset,
@@ -319,7 +321,7 @@ pub fn outside_catalogue(seed: u64, draw: &mut Draw) -> Vec<Case> {
     list.map(strange).into()
 }
 
-/// Returns cases with effects that their records cannot distinguish from others.
+/// Returns cases with effects that are inseparable from others.
 pub fn indistinguishable_effects(draw: &mut Draw) -> Vec<Case> {
     use Effect::{CoulombFriction, ElasticRestraint, ForceOffset, ParameterShift};
     use Kind::{Arm, Pendulum, Stage};
@@ -377,7 +379,7 @@ pub fn indistinguishable_effects(draw: &mut Draw) -> Vec<Case> {
     let unclear =
         |(machine, manner, effect, on, other): (Kind, Excitation, Effect, &str, (&str, &str))| {
             let mut hidden = plan_effect(effect, on, 10.0, draw);
-            // Dry friction can only represent the part of an offset that opposes the motion.
+            // Dry friction can only imitate the component of an offset that opposes the motion.
             if effect == ForceOffset {
                 hidden.hidden.sign = -1.0;
             }

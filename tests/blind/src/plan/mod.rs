@@ -1,6 +1,6 @@
-//! Cases of a seed: 60 with one effect, half of them with all nuisances, 30 with nothing hidden, 15
-//! with two effects, and 15 with effects outside the catalogue or indistinguishable ones. Their
-//! order is random.
+//! Cases of a seed in random order: 60 with one effect, half of them with all nuisances; 30 without
+//! hidden effects; 15 with two effects; 15 with effects outside the catalogue or with inseparable
+//! effects.
 
 mod lists;
 
@@ -17,31 +17,31 @@ use crate::random::Draw;
 pub enum Group {
     /// One effect of the catalogue.
     Single,
-    /// Nothing hidden.
+    /// No hidden effect.
     Nothing,
     /// Two effects of the catalogue.
     Pair,
     /// Effect outside the catalogue.
     Outside,
-    /// Effect that the record cannot distinguish from another.
+    /// Effect that is inseparable from another effect.
     Untellable,
 }
 
-/// Effect to hide.
+/// Planned effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Planned {
     /// Effect; its size is determined later.
     pub hidden: Hidden,
     /// Size in noise floors.
     pub level: f64,
-    /// Effects that the record cannot distinguish from it, with their places.
+    /// Effects that are inseparable from the hidden effect, with their sites.
     pub indistinguishable: Vec<(String, String)>,
 }
 
 /// Machine with its excitation and hidden effects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
-    /// Number, from 0.
+    /// Number of the case, counted from 0.
     pub number: usize,
     /// Group.
     pub group: Group,
@@ -55,8 +55,8 @@ pub struct Case {
     pub nuisances: Nuisances,
 }
 
-/// Deviations that are not effects: scale, in standard deviations of the priors, of the deviations
-/// of declared parameters, biases, gains and delays.
+/// Deviations that are not effects. Each factor scales the deviations of declared parameters,
+/// biases, gains or delays, in standard deviations of the priors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nuisances {
     declared: f64,
@@ -66,7 +66,7 @@ pub struct Nuisances {
 }
 
 impl Nuisances {
-    /// All deviations at the full priors.
+    /// Deviations by the full priors.
     pub const FULL: Self = Self {
         declared: 1.0,
         bias: 1.0,
@@ -74,7 +74,8 @@ impl Nuisances {
         delay: 1.0,
     };
 
-    /// Draws the deviations, within two standard deviations; returns the true declared parameters.
+    /// Draws the deviations, within two standard deviations. Returns the true values of the
+    /// declared parameters.
     pub fn draw(
         &self,
         setup: &Setup,
@@ -88,7 +89,7 @@ impl Nuisances {
             machine.scale(name, factor);
             declared.push(((*name).to_owned(), factor));
         }
-        // Without an input, a delay is equivalent to an earlier initial state.
+        // Without an input, a delay is equivalent to an earlier initial state and is not drawn.
         let late = if setup.input.is_some() {
             self.delay
         } else {
@@ -111,7 +112,7 @@ impl Case {
     }
 }
 
-/// Returns the cases of a seed.
+/// Returns all cases of a seed.
 pub fn plan(seed: u64) -> Vec<Case> {
     let mut draw = Draw::new(seed, 0);
     let mut cases = lists::single_effects(seed, &mut draw);

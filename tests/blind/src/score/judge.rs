@@ -50,7 +50,8 @@ pub fn judge(label: &Label, outcome: &Outcome) -> Judged {
                 .hidden
                 .iter()
                 .any(|truth| match_effect(found, truth) == Match::Class) => {}
-            // An empirical force is wrong only if the hidden effect is in the catalogue.
+            // If the hidden effect is outside the catalogue, an empirical force is not a false
+            // effect.
             None if label.group == Group::Outside && is_empirical(found) => {}
             None => judged.extra += 1,
         }
@@ -131,7 +132,7 @@ fn judgement(label: &Label, outcome: &Outcome, effects: &[Value]) -> Judgement {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Match {
     None,
-    /// Class that contains it.
+    /// The effect is a member of a reported class.
     Class,
     Named,
 }
@@ -161,7 +162,7 @@ fn class_size(found: &Value) -> Option<usize> {
     (text_of(found, "status") == "class").then_some(1 + others)
 }
 
-/// Returns the ordinary error of a faulty sensor in addition to its fault.
+/// Returns the ordinary error of a sensor whose fault is hidden, which adds to the fault.
 fn ordinary_error(label: &Label, truth: &Truth) -> f64 {
     let of = match truth.hidden.effect {
         Effect::SensorBias => &label.sensors.bias,
@@ -174,7 +175,8 @@ fn ordinary_error(label: &Label, truth: &Truth) -> f64 {
     place.map_or(0.0, |place| of[place])
 }
 
-/// Checks signs and intervals of the parameters of a correct effect, sorted by name.
+/// Checks signs and intervals of the parameters of a correct effect, sorted by name. `usual`:
+/// ordinary error in addition to the hidden effect.
 fn check_parameters(truth: &Truth, usual: f64, found: &Value, judged: &mut Judged) {
     let Some(parameters) = found["parameters"].as_object() else {
         return;
@@ -187,7 +189,8 @@ fn check_parameters(truth: &Truth, usual: f64, found: &Value, judged: &mut Judge
         let (Some(value), Some(sd)) = (entry["value"].as_f64(), entry["sd"].as_f64()) else {
             continue;
         };
-        // A small cosine or sine can have the wrong sign by chance.
+        // The sign is not checked for a small value, because a small cosine or sine can have the
+        // wrong sign by chance.
         let clear = expected.abs() > HALF_WIDTH_90 * 2.0 * sd;
         judged.wrong_signs += usize::from(clear && value * expected < 0.0);
         judged.intervals.0 += usize::from((value - expected).abs() <= HALF_WIDTH_90 * sd);
@@ -195,8 +198,8 @@ fn check_parameters(truth: &Truth, usual: f64, found: &Value, judged: &mut Judge
     }
 }
 
-/// Counts the intervals of the declared parameters that contain the true value, if all hidden
-/// effects were found.
+/// Counts the intervals of the declared parameters that contain the true value, and all intervals.
+/// They count only if all hidden effects were found.
 fn count_refitted(label: &Label, discovery: &Value) -> (usize, usize) {
     let mut counts = (0, 0);
     let shifted = |name: &str| {

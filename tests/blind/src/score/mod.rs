@@ -1,5 +1,5 @@
-//! Comparison of results with labels: the judgement of every case and the success rates - correct
-//! effects at the correct place, false alarms, wrong signs, intervals, closures, classes.
+//! Comparison of results with labels: a judgement of every case, and success rates (correct effects
+//! at the correct site, false alarms, wrong signs, intervals, closures, classes).
 
 mod judge;
 mod table;
@@ -13,8 +13,8 @@ use crate::plan::Group;
 pub use judge::judge;
 pub use table::table;
 
-/// Minimum size, in noise floors, of effects that must be found: three, minus the accuracy of the
-/// sizes.
+/// Minimum size of effects that must be found, in noise floors: three, reduced by the accuracy of
+/// the sizes.
 pub const MIN_FLOORS: f64 = 2.85;
 
 /// Judgement of a case.
@@ -24,41 +24,42 @@ pub struct Judged {
     pub case: usize,
     /// Group.
     pub group: Group,
-    /// Hidden effects with places and sizes in noise floors.
+    /// Hidden effects with their sites and sizes in noise floors.
     pub hidden: Vec<(String, String, f64)>,
-    /// Found effects with places and status.
+    /// Found effects with their sites and status.
     pub found: Vec<(String, String, String)>,
     /// Judgement.
     pub judgement: Judgement,
-    /// True if all nuisances are at full priors.
+    /// True if all nuisances deviate by their full priors.
     pub full_priors: bool,
     /// Number of effects in each found class.
     pub classes: Vec<usize>,
-    /// Number of accepted effects that are not hidden.
+    /// Number of accepted effects that were not hidden.
     pub extra: usize,
     /// Number of parameters of correct effects with the wrong sign.
     pub wrong_signs: usize,
-    /// Number of intervals of correct effects' parameters with the true value, and their total.
+    /// Number of parameter intervals of correct effects that contain the true value, and number of
+    /// all these intervals.
     pub intervals: (usize, usize),
-    /// The same for refitted parameters.
+    /// Number of intervals of refitted parameters that contain the true value, and number of all
+    /// these intervals.
     pub refitted: (usize, usize),
-    /// Closure on held-out records: `None` if the answer reports no gap, zero if there is no
-    /// answer.
+    /// Closure on held-out records. `None` if the answer reports no gap, 0 if there is no answer.
     pub closure: Option<f64>,
     /// Duration, s.
     pub seconds: f64,
 }
 
 impl Judged {
-    /// Returns true if there is an answer without a false effect: every effect, if any, is hidden
-    /// or is a class with a hidden one, with the correct sign.
+    /// Returns true if there is an answer without a false effect: each reported effect was hidden,
+    /// or its class contains a hidden effect, and its sign is correct.
     pub fn has_no_false_effect(&self) -> bool {
         let is_answer = !matches!(self.judgement, Judgement::Timeout | Judgement::Failed);
         is_answer && self.extra == 0 && self.wrong_signs == 0
     }
 
-    /// Returns true if the hidden effect is first in the answer, by itself or as the first of its
-    /// class.
+    /// Returns true if the hidden effect is the first effect of the answer, or the first member of
+    /// its class.
     fn is_first(&self) -> bool {
         let is_right = matches!(self.judgement, Judgement::Right | Judgement::Class);
         let mut pairs = self.hidden.iter().zip(&self.found);
@@ -73,14 +74,14 @@ impl Judged {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Judgement {
-    /// All hidden effects are named first; nothing, if nothing is hidden; or a class, if the record
-    /// cannot distinguish its members.
+    /// All hidden effects are named first; or no effect is reported and none was hidden; or a class
+    /// is reported for inseparable effects.
     Right,
-    /// A class with the hidden effect, although it could be distinguished.
+    /// A class with the hidden effect is reported, although its members are separable.
     Class,
-    /// A part of the hidden effects.
+    /// Some of the hidden effects were found.
     Part,
-    /// Other effects.
+    /// Other effects were found.
     Wrong,
     /// No gap was found.
     Missed,
@@ -95,37 +96,41 @@ pub enum Judgement {
 /// Success rates of a suite.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Score {
-    /// Single effects of 3 floors or more: named first at their place, and their total.
+    /// Single effects of 3 noise floors or more: number named first at the correct site, and total
+    /// number.
     pub named: (usize, usize),
-    /// The same, counting the first effect of a class.
+    /// The numbers of `named`, if the first member of a class counts as named.
     pub named_or_first_of_class: (usize, usize),
-    /// The same, counting any class that contains the effect.
+    /// The numbers of `named`, if every member of a class counts as named.
     pub named_or_class: (usize, usize),
-    /// The same as `named`, only with nuisances at full priors.
+    /// The numbers of `named` for cases with nuisances at full priors.
     pub named_at_full_priors: (usize, usize),
-    /// Answers without a false effect, and the number of cases.
+    /// Number of answers without a false effect, and number of cases.
     pub nothing_false: (usize, usize),
-    /// Found classes: their number, the sum of their sizes, and the largest.
+    /// Found classes: number, sum of their sizes, and largest size.
     pub class_sizes: (usize, usize, usize),
-    /// Cases with nothing hidden and a reported effect, and their total.
+    /// Number of cases without a hidden effect but with a reported effect, and number of cases
+    /// without a hidden effect.
     pub false_alarms: (usize, usize),
-    /// Parameters of correct effects with the wrong sign.
+    /// Number of parameters of correct effects with the wrong sign.
     pub wrong_signs: usize,
-    /// Intervals that contain the true value, and their total.
+    /// Number of intervals that contain the true value, and number of all intervals.
     pub intervals: (usize, usize),
-    /// Intervals of refitted parameters.
+    /// The corresponding numbers for refitted parameters.
     pub refitted: (usize, usize),
-    /// Single effects of 3 floors or more: closures, with a threshold of 0.8.
+    /// Closures of single effects of 3 noise floors or more, with a threshold of 0.8.
     pub single_closure: Closure,
-    /// Pairs: closures, with a threshold of 0.6.
+    /// Closures of pairs, with a threshold of 0.6.
     pub pair_closure: Closure,
-    /// Pairs of which both effects were found, and their total.
+    /// Number of pairs of which both effects were found, and number of all pairs.
     pub pairs: (usize, usize),
-    /// Indistinguishable cases reported as a class with the effect, and their total.
+    /// Number of cases with inseparable effects that are reported as a class with the hidden
+    /// effect, and number of all these cases.
     pub classes: (usize, usize),
-    /// Effects outside the catalogue that were not named as one of it, and their total.
+    /// Number of effects outside the catalogue that are not reported as an effect of the catalogue,
+    /// and number of all these effects.
     pub outside: (usize, usize),
-    /// Cases beyond the time limit, and cases without an answer.
+    /// Number of cases beyond the time limit, and number of cases without an answer.
     pub without_answer: (usize, usize),
     /// Total and maximum duration, s.
     pub seconds: (f64, f64),
@@ -133,14 +138,14 @@ pub struct Score {
     pub cases: Vec<Judged>,
 }
 
-/// Closures of a group.
+/// Closures of a group of cases.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Closure {
     /// Mean of the closures.
     pub mean: f64,
     /// Number of closures above the threshold.
     pub reached: usize,
-    /// Number of closures.
+    /// Number of all closures.
     pub of: usize,
     /// Number of cases without a gap to close.
     pub without_gap: usize,
@@ -149,7 +154,8 @@ pub struct Closure {
 /// Scores the cases of a folder.
 ///
 /// # Errors
-/// Returns an error if a label or result cannot be read.
+///
+/// A label or result that cannot be read.
 pub fn score(out: &Path, cases: &[usize]) -> std::io::Result<Score> {
     let mut judged = Vec::new();
     for case in cases {
@@ -164,7 +170,7 @@ pub fn score(out: &Path, cases: &[usize]) -> std::io::Result<Score> {
     Ok(sum_judgements(judged))
 }
 
-/// Sums the judgements of cases.
+/// Computes the success rates of judged cases.
 pub fn sum_judgements(cases: Vec<Judged>) -> Score {
     let large = |judged: &&Judged| {
         judged.group == Group::Single && judged.hidden.iter().all(|(_, _, f)| *f >= MIN_FLOORS)

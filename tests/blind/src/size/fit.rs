@@ -1,7 +1,7 @@
 //! Exact measure of size: the residual after a fit of the machine without the effect. Initial
 //! states of all windows are free; declared parameters and sensors have priors and bounds (see
-//! `linear`). Impacts cause many local minima, so a fit starts with short initial segments of the
-//! windows.
+//! `linear`). Because impacts cause many local minima, a fit starts with short initial segments of
+//! the windows.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -11,7 +11,7 @@ use crate::hidden::{Hidden, Sensors};
 use crate::inputs::Drive;
 use crate::machines::{Machine, Setup};
 
-/// Fractions of the windows that are fitted in sequence.
+/// Successive fractions of the windows that are fitted.
 const SEGMENT_FRACTIONS: [f64; 3] = [0.1, 0.3, 1.0];
 
 const MAX_STEPS: usize = 6;
@@ -19,22 +19,23 @@ const MAX_STEPS: usize = 6;
 /// Relative decrease of the cost at which the steps end.
 const MIN_COST_DECREASE: f64 = 0.05;
 
-/// Step fractions that are tried until one decreases the cost.
+/// Step fractions that are tried in order until one decreases the cost.
 const STEP_FRACTIONS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
 
-/// Further reductions for a window that improves with less.
+/// Further fractions of the step for windows that improve more with a smaller step.
 const WINDOW_FRACTIONS: [f64; 3] = [0.5, 0.2, 0.0];
 
-/// Fit of the machine without the effect.
+/// Problem: fit of the machine without the effect.
 pub struct Fit<'a> {
     plain: &'a Machine,
     pub(super) setup: &'a Setup,
     pub(super) drives: &'a [Drive],
-    /// True values of the declared parameters, as deviations in standard deviations.
+    /// True values of the declared parameters, as deviations in standard deviations of their
+    /// priors.
     truth: DVector<f64>,
 }
 
-/// Records of a machine with an effect, by window.
+/// Records of a machine with the effect, divided into windows.
 pub struct Records {
     pub(super) windows: Vec<Window>,
     /// Range of the states along each of [`Machine::directions`].
@@ -45,14 +46,15 @@ pub struct Records {
 pub struct Window {
     pub(super) span: Span,
     start: Vec<f64>,
-    /// Readings relative to the noise.
+    /// Sensor readings, relative to the noise.
     pub(super) seen: DVector<f64>,
 }
 
 /// Estimate of all unknowns.
 #[derive(Clone)]
 pub struct Estimate {
-    /// Declared parameters, then gain, bias and delay of each sensor, in standard deviations.
+    /// Deviations of the declared parameters, then gain, bias and delay of each sensor, in standard
+    /// deviations of their priors.
     pub(super) shared: DVector<f64>,
     pub(super) windows: Vec<WindowEstimate>,
 }
@@ -109,7 +111,8 @@ impl Estimate {
 }
 
 impl<'a> Fit<'a> {
-    /// Prepares the fit of a machine with these factors on its declared parameters.
+    /// Prepares the fit of a machine. `declared`: factors of the true values on its declared
+    /// parameters.
     pub fn new(
         plain: &'a Machine,
         setup: &'a Setup,
@@ -130,9 +133,9 @@ impl<'a> Fit<'a> {
     }
 
     /// Returns the residual of an effect after the fit, in noise floors; NaN if the simulation
-    /// fails. Two fits are made and the better one counts: a fit of whole windows with derivatives,
-    /// which is accurate for smooth motion, and a fit with secants that starts with initial
-    /// segments, for motion with impacts.
+    /// fails. The better of two fits is used. A fit of whole windows with derivatives is accurate
+    /// for smooth motion. A fit with secants that starts with initial segments is better for motion
+    /// with impacts.
     pub fn floors(&self, hidden: &Hidden) -> f64 {
         let records = self.records(hidden);
         let begin = self.initial_estimate(&records);
@@ -216,7 +219,7 @@ impl<'a> Fit<'a> {
         self.with_residuals(records, estimate)
     }
 
-    /// Returns the estimate with its residuals in other segments of the windows.
+    /// Returns the estimate with its residuals for other segments of the windows.
     fn with_residuals(&self, records: &Records, mut estimate: Estimate) -> Estimate {
         let (machine, sensors) = self.with(&estimate.shared);
         for (window, fitted) in records.windows.iter().zip(&mut estimate.windows) {
@@ -274,8 +277,8 @@ impl<'a> Fit<'a> {
         &window.seen - with_sensor_errors(&run, self.setup, sensors)
     }
 
-    /// Returns the estimate after a fraction of a step. Windows that improve with a smaller
-    /// fraction get one.
+    /// Returns the estimate after a fraction of a step. The step of the initial state is smaller
+    /// for windows that improve more with it.
     fn after_step(&self, records: &Records, from: &Estimate, step: &Step, part: f64) -> Estimate {
         let shared = &from.shared + part * &step.shared;
         let (machine, sensors) = self.with(&shared);

@@ -1,5 +1,5 @@
-//! Gauss-Newton steps: windows linearised around an estimate, initial states eliminated per window,
-//! and shared unknowns within bounds.
+//! Gauss-Newton steps: windows are linearised at an estimate, their initial states are eliminated,
+//! and the shared unknowns are bounded.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -8,7 +8,7 @@ use super::windows::{simulate_window, with_sensor_errors};
 use crate::hidden::Sensors;
 use crate::machines::Machine;
 
-/// Bound of unknowns with priors, in standard deviations; beyond it they are effects.
+/// Bound of unknowns with priors, in standard deviations. Larger deviations are effects.
 const MAX_DEVIATION_SD: f64 = 3.0;
 
 /// Step of an initial state that the window does not determine, in ranges of its motion.
@@ -17,20 +17,20 @@ const UNDETERMINED_STEP: f64 = 0.02;
 /// Perturbations of the unknowns for finite differences.
 #[derive(Clone, Copy)]
 pub struct Nudges {
-    /// For initial states, in ranges of their motion.
+    /// Perturbation of initial states, in ranges of their motion.
     start: f64,
-    /// For shared unknowns, in standard deviations.
+    /// Perturbation of shared unknowns, in standard deviations.
     shared: f64,
 }
 
-/// Perturbations for derivatives.
+/// Small perturbations for derivatives.
 pub const SLOPES: Nudges = Nudges {
     start: 1e-6,
     shared: 1e-4,
 };
 
-/// Perturbations for secants over about a step: with impacts, derivatives do not predict a whole
-/// step.
+/// Perturbations of about the size of a step, for secants. With impacts, derivatives do not predict
+/// a whole step.
 pub const SECANTS: Nudges = Nudges {
     start: 1e-2,
     shared: 0.3,
@@ -48,7 +48,8 @@ pub struct Step {
 struct Linear {
     residual: DVector<f64>,
     shared: DMatrix<f64>,
-    /// Step of the initial state: constant part, and the part to subtract per shared unknown.
+    /// Step of the initial state: a constant part, and a part per shared unknown that is
+    /// subtracted.
     start: (DVector<f64>, DMatrix<f64>),
 }
 
@@ -56,7 +57,7 @@ struct Linear {
 pub fn step(fit: &Fit<'_>, records: &Records, at: &Estimate, nudges: Nudges) -> Step {
     let unknowns = at.shared.len();
     let around = PerturbedMachines::new(fit, records, &at.shared, nudges);
-    // The identity is the prior of the unknowns.
+    // The prior of the unknowns is the identity, because they are in standard deviations.
     let mut normal = DMatrix::identity(unknowns, unknowns);
     let mut right = -&at.shared;
     let mut parts = Vec::new();
@@ -74,13 +75,13 @@ pub fn step(fit: &Fit<'_>, records: &Records, at: &Estimate, nudges: Nudges) -> 
     }
 }
 
-/// Perturbed machines and sensors, common to all windows.
+/// Perturbed machines and sensors, shared by all windows.
 struct PerturbedMachines<'a> {
     fit: &'a Fit<'a>,
     ranges: &'a [f64],
     nudges: Nudges,
     here: (Machine, Sensors),
-    /// With one perturbed shared unknown each.
+    /// Machines and sensors with one perturbed shared unknown each.
     nudged: Vec<(Machine, Sensors)>,
 }
 
@@ -112,7 +113,7 @@ impl<'a> PerturbedMachines<'a> {
         let taken = (q.transpose() * &residual, q.transpose() * &directions);
         let residual = residual - &q * &taken.0;
         let directions = directions - &q * &taken.1;
-        // The rows of the identity keep the triangular factor regular.
+        // The rows of the identity make the triangular factor regular.
         let inverse = r
             .try_inverse()
             .unwrap_or_else(|| DMatrix::zeros(size, size));
@@ -125,8 +126,8 @@ impl<'a> PerturbedMachines<'a> {
         }
     }
 
-    /// Returns the effect of the initial state on a residual, followed by one row per direction
-    /// that bounds it if the window does not determine it.
+    /// Returns the influence of the initial state on a residual. One row per direction is appended,
+    /// which bounds a direction that the window does not determine.
     fn start_directions(&self, window: &Window, at: &WindowEstimate) -> DMatrix<f64> {
         let (machine, sensors) = &self.here;
         let directions = machine.directions();
@@ -145,7 +146,7 @@ impl<'a> PerturbedMachines<'a> {
         starts
     }
 
-    /// Returns the effect of one standard deviation of each shared unknown on a residual.
+    /// Returns the influence of one standard deviation of each shared unknown on a residual.
     fn shared_directions(&self, window: &Window, at: &WindowEstimate) -> Vec<DVector<f64>> {
         let fit = self.fit;
         let base = simulate_window(&self.here.0, fit.setup, fit.drives, &at.start, window.span);
@@ -161,7 +162,7 @@ impl<'a> PerturbedMachines<'a> {
     }
 }
 
-/// Solves the normal equations with unknowns beyond the bound held at it.
+/// Solves the normal equations; unknowns beyond their bound are set to it.
 fn solve_bounded(normal: &DMatrix<f64>, right: &DVector<f64>, at: &DVector<f64>) -> DVector<f64> {
     let mut step = DVector::zeros(at.len());
     let mut free: Vec<usize> = (0..at.len()).collect();
@@ -189,7 +190,7 @@ fn solve_bounded(normal: &DMatrix<f64>, right: &DVector<f64>, at: &DVector<f64>)
     }
 }
 
-/// Moves a state along a direction.
+/// Returns a state plus a multiple of a direction.
 pub fn moved_along(state: &[f64], direction: &[f64], by: f64) -> Vec<f64> {
     let moved = state.iter().zip(direction);
     moved.map(|(value, part)| value + by * part).collect()
@@ -207,7 +208,7 @@ mod tests {
         let at = DVector::from_vec(vec![1.0, 0.0]);
         let free = solve_bounded(&normal, &DVector::from_vec(vec![1.0, 2.0]), &at);
         assert!((free - DVector::from_vec(vec![0.0, 1.0])).norm() < 1e-12);
-        // Unbounded it would be 5. Held at 3, the step is 2, and 2 x + 2 = 1 remains.
+        // The free solution is 5. With the bound 3 the step is 2, and 2 x + 2 = 1 remains.
         let held = solve_bounded(&normal, &DVector::from_vec(vec![7.75, 1.0]), &at);
         assert!((held - DVector::from_vec(vec![2.0, -0.5])).norm() < 1e-12);
     }

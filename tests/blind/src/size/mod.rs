@@ -1,8 +1,8 @@
 //! Size of a hidden effect: the RMS residual over the windows, relative to the noise, after a fit
-//! of the machine without it. Initial states are free; declared parameters and sensors are within
-//! three standard deviations of their priors. The size is adjusted until this is a given number of
-//! noise floors, first with a fast linear projection (see `projection`), then with full fits
-//! (`fit`).
+//! of the machine without the effect. Initial states are free; declared parameters and sensors are
+//! within three standard deviations of their priors. The size is adjusted until the residual is a
+//! given number of noise floors: first with a fast linear projection (`projection`), then with full
+//! fits (`fit`).
 
 mod fit;
 mod linear;
@@ -29,7 +29,8 @@ const FIT_ACCURACY: f64 = 0.05;
 
 const MAX_FITS: usize = 3;
 
-/// Fractions of the integration steps for fits; later ones if such long steps are unstable.
+/// Divisors of the number of integration steps for fits. Smaller divisors are used if long steps
+/// are unstable.
 const STEP_DIVISORS: [usize; 3] = [8, 4, 2];
 
 /// Effect with its size.
@@ -40,10 +41,10 @@ pub struct SizedEffect {
     pub floors: f64,
 }
 
-/// Determines the size at which the residual of an effect is `level` noise floors. For a sensor's
-/// fault or a declared parameter, the size is `level + 2` standard deviations of its prior (beyond
-/// three it is an effect), and the noise floors follow. `declared` contains the true declared
-/// parameters as factors.
+/// Determines the size for which the residual of an effect is `level` noise floors. For a sensor
+/// error or a declared parameter, the size is `level + 2` standard deviations of its prior, because
+/// deviations above three are effects; the noise floors are computed from it. `declared`: true
+/// values of the declared parameters, as factors.
 pub fn determine_size(
     machine: &Machine,
     setup: &Setup,
@@ -59,7 +60,7 @@ pub fn determine_size(
         steps: setup.steps / part,
         ..setup.clone()
     };
-    // Records and fit have the same step size, so that its errors cancel.
+    // Records and fit use the same step size, so that its errors cancel.
     let left = |hidden: &Hidden| {
         let of = |part: &usize| Fit::new(machine, &coarse(*part), drives, declared).floors(hidden);
         let mut all = STEP_DIVISORS.iter().map(of);
@@ -122,7 +123,7 @@ fn size_range(hidden: &Hidden, machine: &Machine, drives: &[Drive]) -> (f64, f64
         // Half of the critical damping of the first mode.
         Effect::StructuralDamping => (1e-4, 5e-3),
         Effect::TipMass => (0.01, 1.0),
-        // The stiffness must stay positive at the largest deflections.
+        // The stiffness must be positive at the largest deflections.
         Effect::StiffnessNonlinearity if hidden.sign < 0.0 => (3e7, 1e8),
         Effect::StiffnessNonlinearity => (1e8, 1e11),
         Effect::JointCompliance => (1e-4, 0.01),
@@ -130,7 +131,7 @@ fn size_range(hidden: &Hidden, machine: &Machine, drives: &[Drive]) -> (f64, f64
         Effect::StiffnessVariation => (0.2, 0.6),
         Effect::AsymmetricBacklash => (1e-5, 2e-5),
         Effect::ParameterShift => (0.02, 0.5),
-        // The drive must overcome the friction.
+        // The drive must be stronger than the friction.
         Effect::CoulombFriction | Effect::StribeckFriction
             if matches!(machine, Machine::Stage(_) | Machine::TwoBodies(_)) =>
         {
@@ -177,7 +178,7 @@ mod tests {
         let (setup, drives) = pendulum();
         let machine = Kind::Pendulum.nominal();
         let fit = Fit::new(&machine, &setup, &drives, &[]);
-        // 0.6 of the declared friction is two standard deviations.
+        // The factor 0.6 on the declared friction is two standard deviations.
         let friction = hidden(Effect::ViscousFriction, 0.6 * 2.239e-4);
         let projected = Basis::new(&machine, &setup, &drives, &friction)
             .floors(&machine, &setup, &drives, &friction);
@@ -185,7 +186,7 @@ mod tests {
         println!("projected {projected}, fitted {fitted}");
         assert!(projected > 1.0, "{projected}");
         assert!(fitted < 0.02, "{fitted}");
-        // Four standard deviations: one more than the bound.
+        // Four standard deviations exceed the bound by one.
         let beyond = hidden(Effect::ViscousFriction, 1.2 * 2.239e-4);
         let fitted = fit.floors(&beyond);
         println!("beyond {fitted}");

@@ -1,6 +1,6 @@
-//! Fast measure of size: the change of the outputs due to an effect, minus the linearised changes
-//! due to initial states (free), declared parameters and sensors (within their priors), around the
-//! motion of the machine without it.
+//! Fast measure of size: the change of the outputs due to an effect, without the changes that the
+//! null model can fit. These are linearised along the motion of the machine without the effect:
+//! initial states are free, declared parameters and sensors are within their priors.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,13 +9,13 @@ use crate::hidden::{Effect, Hidden, Sensors};
 use crate::inputs::Drive;
 use crate::machines::{Machine, Setup};
 
-/// Directions of the outputs that the null model can fit, relative to the noise.
+/// Changes of the outputs that the null model can fit, relative to the noise.
 pub struct Basis {
     windows: Vec<Part>,
 }
 
-/// Directions of one window: orthonormal ones of initial states, and those of the declared
-/// unknowns, orthogonalised.
+/// Directions for one window: an orthonormal basis for initial states, and the orthogonalised
+/// directions of the declared unknowns.
 struct Part {
     span: Span,
     starts: DMatrix<f64>,
@@ -23,8 +23,8 @@ struct Part {
 }
 
 impl Basis {
-    /// Computes the directions along the motion of a machine. The direction of the effect itself is
-    /// excluded.
+    /// Computes the directions along the motion of a machine, without the direction of the effect
+    /// itself.
     pub fn new(machine: &Machine, setup: &Setup, drives: &[Drive], hidden: &Hidden) -> Self {
         let all: Vec<_> = drives
             .iter()
@@ -61,7 +61,7 @@ impl Basis {
 
     fn projected_rms(&self, mut differences: Vec<DVector<f64>>) -> f64 {
         let unknowns = self.windows.first().map_or(0, |part| part.declared.ncols());
-        // The identity is the prior of the unknowns, which are in standard deviations.
+        // The prior of the unknowns is the identity, because they are in standard deviations.
         let mut normal = DMatrix::identity(unknowns, unknowns);
         let mut right = DVector::zeros(unknowns);
         for (part, difference) in self.windows.iter().zip(&mut differences) {
@@ -128,8 +128,8 @@ fn window_part(
     }
 }
 
-/// Returns the effects of one standard deviation of each sensor's gain, bias and delay, except the
-/// hidden one.
+/// Returns the influence of one standard deviation of gain, bias and delay of each sensor, without
+/// the hidden error.
 fn sensor_directions(seen: &DVector<f64>, setup: &Setup, hidden: &Hidden) -> Vec<DVector<f64>> {
     let channels = setup.channels.len();
     let mut columns = Vec::new();
@@ -146,8 +146,8 @@ fn sensor_directions(seen: &DVector<f64>, setup: &Setup, hidden: &Hidden) -> Vec
     columns
 }
 
-/// Returns the RMS residual, in noise floors, of the true arm's motion for a model with fewer
-/// modes.
+/// Returns the RMS residual of a model with fewer modes for the motion of the true arm, in noise
+/// floors.
 pub fn floors_of_missing_modes(machine: &Machine, setup: &Setup, drives: &[Drive]) -> f64 {
     let Machine::Arm(arm) = machine else {
         return 0.0;

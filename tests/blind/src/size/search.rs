@@ -2,7 +2,8 @@
 
 use crate::hidden::Hidden;
 
-/// Proportional search until two sizes bracket the level, then interpolation of logarithms.
+/// Search for a size. Sizes are scaled proportionally until two of them bracket the level; then
+/// logarithms are interpolated.
 pub struct Search {
     level: f64,
     /// Required relative accuracy of the level.
@@ -14,7 +15,7 @@ pub struct Search {
 }
 
 impl Search {
-    /// Starts a search for a level with this relative accuracy.
+    /// Starts a search for a level. `right`: required relative accuracy.
     pub fn new(level: f64, right: f64) -> Self {
         Self {
             level,
@@ -25,8 +26,7 @@ impl Search {
         }
     }
 
-    /// Evaluates sizes from the initial one, at most the largest; returns the best size and its
-    /// noise floors.
+    /// Evaluates sizes from `start` up to `largest`. Returns the best size and its noise floors.
     pub fn run(
         mut self,
         mut hidden: Hidden,
@@ -54,7 +54,7 @@ impl Search {
         self.distance(self.best.1) < self.right
     }
 
-    /// Records the result of a size; NaN if the simulation failed.
+    /// Stores the result for a size. `floors` is NaN if the simulation failed.
     fn record_size(&mut self, amount: f64, floors: f64) {
         let nearer = self.distance(floors) < self.distance(self.best.1);
         if floors.is_finite() && (nearer || self.best.1.is_infinite()) {
@@ -73,7 +73,8 @@ impl Search {
         match (self.below, self.above) {
             (Some(below), Some(above)) => {
                 let part = (self.level / below.1).ln() / (above.1 / below.1).ln();
-                // Stays away from the ends, where curvature would stall the search.
+                // Keeps a distance from both ends of the bracket, because a strongly curved
+                // function would stall the search.
                 let part = if part.is_finite() {
                     part.clamp(0.1, 0.9)
                 } else {

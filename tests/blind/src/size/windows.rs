@@ -1,5 +1,5 @@
-//! Windows of the records, the motion of a machine in a window, and sensor readings. Outputs are
-//! relative to the noise, by channel within each sample.
+//! Windows of the records, motion of a machine in a window, and sensor readings. Outputs are
+//! relative to the noise; channels of a sample are adjacent.
 
 use nalgebra::DVector;
 
@@ -19,7 +19,7 @@ pub struct Span {
     pub count: usize,
 }
 
-/// Returns the windows of all records; a rest shorter than half a window is omitted.
+/// Returns the windows of all records. A last window shorter than half the length is left out.
 pub fn spans(setup: &Setup, drives: &[Drive]) -> Vec<Span> {
     let mut spans = Vec::new();
     for (record, drive) in drives.iter().enumerate() {
@@ -46,7 +46,7 @@ pub fn states(machine: &Machine, setup: &Setup, drive: &Drive) -> Vec<Vec<f64>> 
     window(machine, setup, drive, &drive.start, 0, drive.input.len())
 }
 
-/// Returns the states at `count` samples from the first on.
+/// Returns the states at `count` samples, starting from a state at the first sample.
 pub fn window(
     machine: &Machine,
     setup: &Setup,
@@ -73,7 +73,7 @@ pub fn window(
     states
 }
 
-/// Returns the readings of ideal sensors in a window from an initial state.
+/// Returns the readings of ideal sensors in a window for an initial state.
 pub fn simulate_window(
     machine: &Machine,
     setup: &Setup,
@@ -86,7 +86,7 @@ pub fn simulate_window(
     outputs(machine, setup, &states)
 }
 
-/// Returns the outputs of states.
+/// Returns the outputs for given states.
 pub fn outputs(machine: &Machine, setup: &Setup, states: &[Vec<f64>]) -> DVector<f64> {
     let values = states.iter().flat_map(|state| {
         let of = machine.outputs(state);
@@ -98,7 +98,7 @@ pub fn outputs(machine: &Machine, setup: &Setup, states: &[Vec<f64>]) -> DVector
     DVector::from_iterator(states.len() * setup.channels.len(), values)
 }
 
-/// Returns outputs with these sensor errors; a delay is linearised.
+/// Returns outputs with sensor errors; delays are linearised.
 pub fn with_sensor_errors(seen: &DVector<f64>, setup: &Setup, sensors: &Sensors) -> DVector<f64> {
     let channels = setup.channels.len();
     let samples = seen.len() / channels;
