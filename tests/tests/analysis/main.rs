@@ -1,4 +1,4 @@
-//! Equilibria, linearisation, natural modes and sweeps.
+//! Tests of equilibria, linearisation, natural modes and sweeps.
 
 mod operating_points;
 mod sweep;

@@ -1,5 +1,5 @@
-//! Dry friction hidden in the arm's joint. The records are from equations written with Newton's
-//! laws, in fixed steps, independent of the program.
+//! Test with dry friction hidden in the arm's joint. The records are simulated with fixed steps from hand-written
+//! equations, independent of the program.
 
 use std::path::Path;
 use std::time::Duration;
@@ -110,7 +110,7 @@ fn dry_friction_of_the_joint_is_found_with_place_and_sign() {
         found["validation"]
     );
 
-    // The extended specification contains the friction and leaves only noise in the records.
+    // The extended specification contains the friction, and its residual is at the noise floor.
     let extended = folder.path().join("discover/extended.toml");
     let text = std::fs::read_to_string(&extended).expect("a specification");
     assert!(text.contains("-T_c*sign(dot(theta_c))"), "{text}");

@@ -1,5 +1,5 @@
-//! A small fixed part of the blind suite: cases are generated, run and scored. The assertions are
-//! on errors that discovery must never make; the full suite measures the success rate.
+//! Test of a small fixed part of the blind suite: cases are generated, run and scored. The assertions concern errors
+//! that discovery must never make. The full suite measures the success rate.
 
 use std::path::Path;
 use std::time::Duration;
@@ -21,7 +21,7 @@ fn make_cases(cases: &[&Case], out: &Path) {
     }
 }
 
-/// Returns the first cases on machines of one coordinate, which run fast.
+/// Returns the first cases with machines of one coordinate, because these run fast.
 fn fast_cases(cases: &[Case]) -> Vec<&Case> {
     use eomgen_blind::machines::Kind;
     let of = |kind: Kind, group: Group, count: usize| {
@@ -80,7 +80,7 @@ fn same_seed_gives_same_cases() {
     }
 }
 
-/// Returns a label with these effects; each has one parameter with the true value 2.
+/// Returns the label (true answer) of a case with these effects; each has one parameter with the true value 2.
 fn label(group: Group, effects: &[&str]) -> Label {
     let truth = |effect: &&str| {
         json!({
@@ -97,7 +97,7 @@ fn label(group: Group, effects: &[&str]) -> Label {
     serde_json::from_value(label).expect("a label")
 }
 
-/// Returns an answer with these effects, each with a value and an equivalent.
+/// Returns an answer with these effects; each has an estimated value and optionally an equivalent.
 fn answer(verdict: &str, effects: &[(&str, f64, Option<&str>)]) -> Outcome {
     let effect = |(name, value, other): &(&str, f64, Option<&str>)| {
         json!({
@@ -246,7 +246,8 @@ fn scores_are_summed_correctly() {
     );
     let alarm = answer("effects_found", &[("force_offset", 1.0, None)]);
     let alarm = score::judge(&label(Group::Nothing, &[]), &alarm);
-    // The interval of 1.645 standard deviations of 0.1 contains 2 from 2.16, but not from 2.17.
+    // The standard deviation is 0.1. The interval of +- 1.645 standard deviations about 2.16 contains 2; the interval
+    // about 2.17 does not.
     let cases = vec![single(2.16), single(2.17), single(-2.0), nothing, alarm];
     let score: Score = score::sum_judgements(cases);
     assert_eq!(score.named, (3, 3));
@@ -288,7 +289,7 @@ fn correct_answers_and_class_sizes_are_counted() {
         ),
         (judged(Single, &[coulomb], &[]), true, vec![]),
         (judged(Nothing, &[], &[]), true, vec![]),
-        // Another effect, the opposite sign, an additional effect, a class without the effect.
+        // Wrong answers: another effect, the opposite sign, an additional effect, a class without the effect.
         (
             judged(Single, &[coulomb], &[(offset, 2.0, None)]),
             false,
@@ -344,7 +345,8 @@ fn faulty_sensor_is_judged_including_its_ordinary_error() {
     let mut faulty = label(Group::Single, &[]);
     faulty.hidden = serde_json::from_value(json!([truth])).expect("a truth");
     faulty.sensors.gain = vec![0.01];
-    // 90 % intervals of 0.1 contain 1.06 from values up to 1.2245, and 1.05 only up to 1.2145.
+    // With a standard deviation of 0.1, the 90 % interval contains 1.06 for estimates up to 1.2245, and 1.05 only for
+    // estimates up to 1.2145.
     let found = answer("effects_found", &[("sensor_gain", 1.22, None)]);
     assert_eq!(score::judge(&faulty, &found).intervals, (1, 1));
 }

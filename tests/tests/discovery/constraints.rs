@@ -1,4 +1,4 @@
-//! Hidden effects of machines with constraints, whose records are computed in independent coordinates.
+//! Tests of `discover` on machines with constraints. The records are computed in independent coordinates.
 
 use eomgen_tests::constrained_machines::{pendulum, sleigh, slider_crank};
 use eomgen_tests::constrained_records::{Machine, Sampling};
@@ -28,8 +28,8 @@ fn discover<const S: usize, const C: usize>(machine: &Machine<S, C>, sampling: S
     run_on_texts("discover", texts)
 }
 
-/// Asserts that one effect is found with this parameter within 5 % and 4 standard deviations, and that the extended
-/// specification passes its checks.
+/// Asserts that only this effect is found, that its parameter is within 5 % and 4 standard deviations of `size`, and
+/// that the extended specification passes the checks.
 fn assert_found(found: &Value, (effect, on): (&str, &str), (parameter, size): (&str, f64)) {
     let effects = found["effects"].as_array().expect("effects");
     assert_eq!(effects.len(), 1, "{found:#}");
@@ -78,7 +78,7 @@ fn spring_on_a_coordinate_of_a_pendulum_is_found() {
 
 #[test]
 fn wrong_length_in_a_constraint_is_found() {
-    // Shorter windows do not separate the length from the gains of the sensors.
+    // With shorter windows, the length and the gains of the sensors would be inseparable.
     let sampling = Sampling {
         samples: 600,
         window: Some(0.6),

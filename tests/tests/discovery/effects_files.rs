@@ -1,4 +1,4 @@
-//! Files of user-defined effects: their effects are tested; invalid files are rejected with
+//! Tests of files with user-defined effects. Valid effects are tested as candidates; invalid files are rejected with
 //! location and suggestion.
 
 use eomgen_tests::measured::{Measured, Moment};
@@ -23,7 +23,7 @@ fn arguments(measured: &Measured, effects: &str, out: &str) -> Vec<String> {
     arguments
 }
 
-/// Returns the location of `part` in a file of effects, in the form of messages.
+/// Returns the location of `part` in a file of effects, as messages print it.
 fn location(effects: &str, part: &str) -> String {
     let lines = effects.lines().enumerate();
     let mut places = lines.filter_map(|(line, text)| Some((line, text.find(part)?)));
@@ -31,7 +31,7 @@ fn location(effects: &str, part: &str) -> String {
     format!("effects.toml:{}:{}", line + 1, column + 1)
 }
 
-/// Asserts that each change of the file is rejected at the given part with the given words.
+/// Asserts that each changed file is rejected with the location of the given part and with the given words.
 fn assert_rejects(measured: &Measured, cases: &[(&str, &str, &str, &str)]) {
     for (from, to, part, words) in cases {
         let effects = EFFECTS.replacen(from, to, 1);

@@ -1,6 +1,6 @@
-//! Each entry of the catalogue, hidden in records of a suitable small machine, is found with its
-//! name, place, sign and size. The records are simulated without noise. The blind suite measures
-//! discovery on equations from other sources.
+//! Each effect of the catalogue is hidden in records of a suitable small machine and must be found with name, site,
+//! sign and value. The records are simulated without noise. The blind suite measures discovery with equations from
+//! other sources.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -22,10 +22,10 @@ struct Machine {
     specification: &'static str,
     channels: &'static [(&'static str, &'static str, f64)],
     uncertain: &'static str,
-    /// Unit of the input `u`, and its value at a time in s for two records.
+    /// Unit of the input `u`.
     unit: &'static str,
     input: fn(f64, bool) -> f64,
-    /// Time between samples and window length, s.
+    /// Time between samples, in s.
     sample: f64,
     window: f64,
     samples: usize,
@@ -38,12 +38,12 @@ struct Hidden {
 }
 
 enum Change {
-    /// Entry of the catalogue: its index among entries of the same name, its order and its values.
+    /// Effect of the catalogue: index among entries of the same name, order and parameter values.
     Entry(usize, Option<u32>, &'static [f64]),
-    /// Parameter with a value other than in the specification.
+    /// Parameter whose true value differs from the specification.
     Shift(f64),
-    /// Sensor fault: the parameter to be found with its value, and a function of the previous
-    /// readings that gives the faulty one.
+    /// Sensor fault: name and value of the parameter to find, and a function that computes the faulty reading from the
+    /// latest readings.
     Sensor(&'static str, f64, fn(&[f64]) -> f64),
 }
 
@@ -182,14 +182,14 @@ tip = { value = "at(w, l)", unit = "m" }
     samples: 400,
 };
 
-/// The beam with longer windows. A compliant joint has its own coordinate; in short windows its
-/// initial state would explain the records.
+/// Beam with longer windows. A compliant joint has a coordinate of its own. In short windows, its fitted initial state
+/// would explain the records.
 const BEAM_FOR_LONG: Machine = Machine {
     window: 1.0,
     ..BEAM
 };
 
-/// Beam with a payload, of which a part of the weight may be missing.
+/// Beam with a payload; a part of its weight can be missing in the specification.
 const LOADED_BEAM: Machine = Machine {
     name: "loaded_beam",
     specification: r#"
@@ -245,7 +245,7 @@ tip = { value = "at(w, l)", unit = "m" }
     ..BEAM
 };
 
-/// Two bodies on springs in space, to which gravity applies in one or two directions.
+/// Two bodies on springs in space; gravity can act in one or two directions.
 const BODIES: Machine = Machine {
     name: "bodies",
     specification: r#"
@@ -298,9 +298,9 @@ z = { on = "z_2", value = "u" }
     ..OSCILLATOR
 };
 
-/// Two shafts connected by a pair of teeth with the mesh deflection `x`. The backlash is small:
-/// with a large one the teeth rattle, and the impacts hide a varying stiffness. The ratio is
-/// not a simple fraction, so that the orders of the two shafts differ.
+/// Two shafts connected by a gear mesh with the deflection `x`. The backlash is small. With a large backlash the teeth
+/// would rattle, and the impacts would hide a varying stiffness. The transmission ratio is not a simple fraction, so
+/// that the orders of the two shafts differ.
 const GEAR: Machine = Machine {
     name: "gear",
     specification: r#"
@@ -388,7 +388,7 @@ impl Machine {
         text
     }
 
-    /// Simulates `hidden` and writes the channels as one of the two records.
+    /// Simulates the machine with `hidden` and writes one of the two records.
     fn record(&self, folder: &Path, hidden: &Hidden, again: bool) {
         let (file, record) = match again {
             false => ("train.csv", "train[0]"),
@@ -469,14 +469,14 @@ impl Machine {
         found.find(is).expect("the effect has a place")
     }
 
-    /// Returns the specification that generates the records, and the expected values by name.
+    /// Returns the specification that generates the records, and the true parameter values by name.
     fn truth(&self, hidden: &Hidden) -> (String, Vec<(String, f64)>) {
         match hidden.by {
             Change::Entry(entry, order, values) => {
                 let candidate = self.candidate(hidden, entry, order);
                 let written =
                     candidate.write_effect(self.specification, self.name, values, "hidden");
-                // Records determine shape parameters less well than the size, so these are not
+                // Records determine shape parameters less accurately than the size, so shape parameters are not
                 // compared.
                 let sizes = candidate.parameters.iter().zip(values);
                 let sizes = sizes.filter(|(parameter, _)| parameter.shape_size.is_none());
@@ -527,8 +527,7 @@ impl Machine {
         serde_json::from_str(&text).expect("JSON")
     }
 
-    /// Asserts that the hidden effect is named first, with its place, sign and size, and closes the
-    /// gap.
+    /// Asserts that the hidden effect is named first with site, sign and value, and that it closes the gap.
     fn assert_found(&self, hidden: &Hidden) {
         let (truth, sizes) = self.truth(hidden);
         let found = self.answer(hidden, &truth);
@@ -650,7 +649,7 @@ fn weights_of_a_machine_and_of_its_load_are_found() {
     }
 }
 
-/// Here a hardening spring is equivalent to stops on both sides, and closes only a part of the gap.
+/// In these records a hardening spring is inseparable from stops on both sides, and it closes only a part of the gap.
 #[test]
 fn approximate_effect_is_reported_as_substitute() {
     let stops = Hidden {

@@ -1,5 +1,5 @@
-//! Each entry of the catalogue, added to each shipped specification at all its sites, gives a
-//! specification that passes the checks and can be derived.
+//! Test of all sites in the shipped specifications: with each effect of the catalogue added, the specification passes
+//! the checks and can be derived.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,7 +14,7 @@ use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 use eomgen_tests::models::shipped_specifications;
 
-/// Returns the candidates of an effect in a model: the first order per place and angle.
+/// Returns the candidates of an effect in a model; of a periodic effect only the first order at each site and angle.
 fn candidates_of(model: &Model, effect: &Effect) -> Vec<Candidate> {
     let one = std::slice::from_ref(effect);
     let mut found = list_candidates(model, one, &find_sites(model), &UsualMotion::default());
@@ -59,7 +59,8 @@ fn catalogue_effects_keep_shipped_specifications_valid() {
     }
     for (place, effect) in effects.iter().enumerate() {
         let homes = homes.get(&place).map_or(0, BTreeSet::len);
-        // Shipped machines with several masses in space have a weight; `effects_found` has one without.
+        // All shipped machines with several masses in space have weight; the tests in `effects_found` contain a machine
+        // without weight.
         assert!(
             homes > 0 || effect.site_kind == SiteKind::Machine,
             "`{}` ({}) has no site in any shipped specification",
@@ -108,7 +109,7 @@ spring = "1/2*k*(p - q)^2"
 stop = "1/4*k_4*p^4"
 "#;
 
-/// Springs in several notations, and a force that resembles a spring.
+/// Springs in several notations, and a force that only resembles a spring.
 const SPRINGS: &str = r#"
 [model]
 name = "springs"
@@ -179,8 +180,8 @@ fn user_defined_effect_is_placed_on_springs() {
     assert_eq!(found[0].term, "1/4*k_h*(p - q)^4");
 }
 
-/// Pendulum with observables of its angle, on which friction would be another than at the angle, or
-/// the same.
+/// Pendulum with observables that depend on its angle. Friction on an observable is equivalent to friction on the angle
+/// only if they are proportional.
 const BOB: &str = r#"
 [model]
 name = "bob"
@@ -330,7 +331,7 @@ fn initial_place_of_a_stop_is_in_the_travel_of_its_side() {
     }
 }
 
-/// Dampers parallel to a spring in several notations, and a force that resembles a damper.
+/// Dampers parallel to a spring in several notations, and a force that only resembles a damper.
 const DAMPERS: &str = r#"
 [model]
 name = "dampers"

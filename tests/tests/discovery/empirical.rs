@@ -1,5 +1,5 @@
-//! Forces outside the catalogue, on a stage: a function of rate and position becomes an unnamed
-//! expression; any other force stays unexplained.
+//! Tests with forces outside the catalogue on a stage. A function of rate and position is found as an empirical
+//! expression; any other force remains unexplained.
 
 use std::f64::consts::TAU;
 
@@ -24,7 +24,7 @@ fn parameter(text: &str, name: &str) -> f64 {
 
 #[test]
 fn force_outside_catalogue_becomes_an_expression() {
-    // Guides whose friction increases towards one side, N s/m^2.
+    // Increase of the guides' viscous friction towards one side, in N s/m^2.
     let tighter = 60.0;
     let measured = Measured::stage_with_force(&|at| -tighter * at.q * at.v);
     let (found, _) = measured.run_command("discover", "found");
@@ -46,7 +46,7 @@ fn force_outside_catalogue_becomes_an_expression() {
     let scale = parameter(&extended, "e_rate") * parameter(&extended, "e_place");
     let (value, sd) = (number(&size["value"]) / scale, number(&size["sd"]) / scale);
     assert_eq!(size["unit"], "N");
-    // Of fifteen thousand records one is outside 4 sd.
+    // The deviation exceeds 4 standard deviations in one of fifteen thousand records.
     assert!((value + tighter).abs() < 4.0 * sd, "{value} +- {sd}");
     assert!(sd < 0.05 * tighter, "{value} +- {sd}");
 
@@ -55,7 +55,7 @@ fn force_outside_catalogue_becomes_an_expression() {
         number(&gap["before"]["test"]),
         number(&gap["after"]["test"]),
     );
-    // A correct model reaches the floor; each effect must close at least half of the gap.
+    // A correct model reaches the noise floor; each effect must close at least half of the gap.
     assert!(
         after < 1.2 * number(&gap["floor"]) && before > 3.0 * after,
         "{gap:#}"
@@ -76,8 +76,8 @@ fn force_outside_catalogue_becomes_an_expression() {
         found["validation"]
     );
     assert_eq!(steps[1]["validated"], true);
-    // The extended specification must reach the noise floor within ten percent. Refitted values
-    // that moved by less than half of their uncertainty are not written.
+    // The extended specification must reach the noise floor within ten percent. Refitted values that changed by less
+    // than half of their uncertainty are not written.
     for set in ["train_rms_over_noise", "test_rms_over_noise"] {
         let left = number(&found["validation"][set]);
         assert!(left < 1.1, "{set}: {left}");
@@ -98,7 +98,7 @@ fn force_outside_catalogue_becomes_an_expression() {
 
 #[test]
 fn force_with_threshold_becomes_expression_with_kink() {
-    // Cable that is stretched from 60 mm on, N/m; the model has no spring.
+    // Cable that is taut beyond 60 mm, with a stiffness in N/m; the model has no spring.
     let (from, stiffness) = (0.06, 2e3);
     let measured = Measured::stage_with_force(&|at| -stiffness * (at.q - from).max(0.0));
     let (found, _) = measured.run_command("discover", "found");

@@ -1,4 +1,4 @@
-//! Faults of a sensor and of an input that a linear model cannot tell apart form one class.
+//! Test that inseparable faults of a sensor and of an input of a linear model form one class.
 
 use eomgen_tests::program;
 use serde_json::Value;
@@ -48,7 +48,7 @@ const NOISE: f64 = 2e-4;
 /// Faults of a record.
 #[derive(Clone, Copy)]
 struct Faults {
-    /// Force, relative to the recorded one.
+    /// True force relative to the recorded force.
     gain: f64,
     /// Offset of the sensor, m.
     offset: f64,
@@ -71,7 +71,7 @@ fn record(faults: Faults, shift: f64) -> String {
         let sensed: f64 = if lag > 0.0 { filtered } else { x };
         let shown = sensed + offset + NOISE * 2.8 * (noise - 0.5);
         text += &format!("{t:.2},{:.9},{shown:.9}\n", force(t));
-        // Velocity Verlet with the force interpolated between samples, as `discover` does.
+        // Velocity Verlet method; the force is interpolated between samples as in `discover`.
         let steps = 200;
         let h = 0.01 / f64::from(steps);
         for step in 0..steps {
@@ -93,7 +93,7 @@ fn record(faults: Faults, shift: f64) -> String {
     text
 }
 
-/// Returns the answer to records with these faults.
+/// Runs `discover` on records with these faults and returns the document.
 fn answer(faults: Faults) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |name: &str| folder.path().join(name);
@@ -109,7 +109,7 @@ fn answer(faults: Faults) -> Value {
     program::run_on_dataset("discover", paths.each_ref())
 }
 
-/// Returns the effects of the answer, the named one first.
+/// Returns the names of the effects in the class; the first is the reported effect.
 fn find_class(gain: f64, offset: f64) -> Vec<String> {
     let document = answer(Faults {
         gain,

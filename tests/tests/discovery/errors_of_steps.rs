@@ -1,4 +1,4 @@
-//! Fixed steps of a fit do not shift its estimates, however small the noise.
+//! Test that the errors of fixed steps do not bias the estimates of a fit, for any small noise.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -63,7 +63,7 @@ const SAMPLE_S: f64 = 0.0025;
 /// Cubic stiffness of the machine, N/m^3.
 const CUBIC_STIFFNESS: f64 = 2e6;
 
-/// Returns the rates of two masses.
+/// Returns the rates of the two masses.
 fn rates([x, y, dx, dy]: [f64; 4], u: f64) -> [f64; 4] {
     let deflection = y - x;
     let force = 400.0 * deflection + CUBIC_STIFFNESS * deflection.powi(3) + (dy - dx);

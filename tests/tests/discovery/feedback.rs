@@ -1,4 +1,4 @@
-//! Records of a machine under feedback: the recorded outputs of its controllers drive it.
+//! Tests with records of a machine under feedback: the recorded outputs of its controllers drive the machine.
 
 use eomgen_tests::program::{run, run_accepted, run_rejected, text};
 use eomgen_tests::random_numbers::Numbers;
@@ -115,7 +115,7 @@ fn recorded_outputs_drive_the_machine_and_show_its_friction() {
             ),
             "{said}"
         );
-        // The reference acts only through the controller.
+        // The reference acts only through the controller, so there is no warning about it.
         assert!(!said.contains("is not driven"), "{said}");
         let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
         assert_eq!(document["verdict"], verdict, "{document}");

@@ -1,5 +1,6 @@
-//! Stribeck friction that has not fallen at a third of the usual speed, on a stage that often stops, is found
-//! with its sizes. The records are from set-valued time stepping that shares no code with the simulator.
+//! Test of Stribeck friction on a stage that often stops. The friction decreases only above a third of the typical
+//! speed. The effect is found with its parameter values. The records are from set-valued time stepping that shares no
+//! code with the simulator.
 
 use std::f64::consts::TAU;
 
@@ -61,8 +62,8 @@ c = { relative = 0.1 }
 length = 0.6
 "#;
 
-/// Returns a record from rest under a sum of sines. In each short step the friction impulse brings the speed as
-/// close to zero as its level at this speed permits.
+/// Returns a record from rest under a sum of sines. In each short step, the friction impulse brings the speed as close
+/// to zero as the friction level permits.
 fn record(turn: f64) -> String {
     let parts = 2000;
     let h = SAMPLE / f64::from(parts);

@@ -1,5 +1,5 @@
-//! Dry friction that stops a pendulum is found with name, place and size. The records are from
-//! set-valued time stepping that shares no code with the simulator.
+//! Test that dry friction that stops a pendulum is found with name, site and value. The records are from set-valued
+//! time stepping that shares no code with the simulator.
 
 use eomgen_tests::program;
 use serde_json::Value;
@@ -70,7 +70,7 @@ c = { relative = 0.1 }
 length = 0.5
 "#;
 
-/// Approximately normal numbers, each a sum of twelve uniform ones.
+/// Generator of approximately normal numbers: sums of twelve uniform numbers.
 struct Noise(u64);
 
 impl Noise {
@@ -86,8 +86,8 @@ impl Noise {
     }
 }
 
-/// Returns a record from rest at an angle, and the total time at rest, s. In each short step the
-/// friction impulse brings the speed as close to zero as its bounds permit.
+/// Returns a record from rest at an angle, and the total time at rest, s. In each short step, the friction impulse
+/// brings the speed as close to zero as the bounds of the friction permit.
 fn record(angle: f64, torque: impl Fn(f64) -> f64, until: f64, seed: u64) -> (String, f64) {
     let (inertia, parts) = (M * L * L, 100);
     let h = SAMPLE / f64::from(parts);

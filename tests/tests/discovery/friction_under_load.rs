@@ -1,5 +1,5 @@
-//! Friction proportional to the load of a shaft, in a drive of two masses with equations written
-//! here: it is found on the shaft with friction, and distinguished from friction of constant level.
+//! Tests of friction proportional to the load of a shaft, in a drive of two masses with hand-written equations. The
+//! effect is found on the shaft with friction, and it is distinguished from friction of constant level.
 
 use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program;
@@ -115,7 +115,7 @@ fn discover(per_load: f64, constant: f64) -> Value {
     program::run_on_dataset("discover", paths.each_ref())
 }
 
-/// Asserts that the only effect is this one on the motor's shaft, with about this size.
+/// Asserts that this effect on the motor's shaft is the only one, and that its parameter is close to `size`.
 fn assert_only(found: &Value, effect: &str, parameter: &str, size: f64) {
     let effects = found["effects"].as_array().expect("effects");
     assert_eq!(effects.len(), 1, "{effects:#?}");

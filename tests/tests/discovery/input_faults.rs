@@ -1,6 +1,6 @@
-//! Inputs of a driven pendulum that differ from their records: they are found as effects if not
-//! declared, and refitted within declared uncertainties. The records integrate Newton's law with
-//! small steps.
+//! Tests of a driven pendulum whose input differs from the recorded input. The difference is found as an effect if it
+//! is not declared, and refitted if it is within declared uncertainties. The records are from Newton's law, integrated
+//! with small steps.
 
 use eomgen_tests::program;
 use serde_json::Value;
@@ -58,8 +58,8 @@ state = "rest"
 length = 0.5
 "#;
 
-/// Drive torque gain * (u + bias), N m, with u delayed by `delay` and low-pass filtered with the
-/// time constant `lag`, s.
+/// Drive torque gain * (u + bias) in N m. The input u is delayed by `delay` and low-pass filtered with the time
+/// constant `lag`, both in s.
 #[derive(Clone, Copy)]
 struct Drive {
     gain: f64,
@@ -199,11 +199,11 @@ fn declared_input_uncertainty_is_refitted_within_prior() {
     assert!((fitted("u_gain") - 0.97).abs() < 2e-3, "{document:#}");
     assert!((fitted("u_bias") - 0.06).abs() < 2e-3, "{document:#}");
     assert!(extended.contains("u_gain*(u + u_bias)"), "{extended}");
-    // The refit starts from the previous result, and nothing is added twice.
+    // The refit starts from the previous result, and no effect is added twice.
     let (again, extended) = discover(&declared, &extended, (0.97, 0.06));
     assert_eq!(again["verdict"], "no_significant_gap", "{again:#}");
     assert_eq!(extended.matches("u_gain*").count(), 1, "{extended}");
-    // Another parameter with that name is not used as the gain.
+    // An existing parameter with the name of the gain is not used as the gain.
     let other = PENDULUM.replace(
         "[coordinates]",
         "u_gain = { value = 5, unit = \"1\" }\n\n[coordinates]",
@@ -219,7 +219,7 @@ fn declared_input_uncertainty_is_refitted_within_prior() {
     let (model, dataset, out) = (file("other.toml"), file("dataset.toml"), file("out"));
     let message = program::run_rejected(&["discover", &model, &dataset, "--out", &out]);
     assert!(message.contains("u_gain"), "{message}");
-    // Beyond three standard deviations of the prior it is an effect.
+    // A deviation above three standard deviations of the prior is an effect.
     let (document, _) = discover(&said("gain = { sd = 0.01 }"), PENDULUM, (0.9, 0.0));
     let (gain, names) = only_effect(&document);
     assert_eq!(names[0], "input_gain on u", "{names:?}");
@@ -237,7 +237,7 @@ fn delayed_input_is_a_single_unknown() {
             .replace("[initial]", second)
             .replace("unit = \"mN m\"", &format!("unit = \"mN m\"\n{delay}"))
     };
-    // The first four samples are at rest.
+    // In the first four samples the pendulum is at rest.
     let records = [0.0, 1.0].map(|turn| {
         let lines = driven_record(
             Drive {

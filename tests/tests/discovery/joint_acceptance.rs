@@ -1,5 +1,5 @@
-//! Two effects in swings of a pendulum, one periodic in the angle. Neither is significant by
-//! itself; both are named.
+//! Test of two effects in swings of a pendulum, one of them periodic in the angle. Neither effect is significant
+//! without the other; both are named.
 
 use eomgen_tests::models::path;
 use eomgen_tests::program;
@@ -45,7 +45,7 @@ fn acceleration(theta: f64, rate: f64) -> f64 {
     (m * g * a * theta.sin() - k * rate + hidden_torque(theta, rate)) / (m * a * a + inertia)
 }
 
-/// Returns a swing released at an angle, by the midpoint rule with steps of 20 us.
+/// Returns a record of a swing that starts at rest at an angle, by the midpoint rule with steps of 20 us.
 fn swing(from: f64) -> String {
     let (samples, parts, sample) = (700, 100, 0.002);
     let h = sample / f64::from(parts);
@@ -89,7 +89,7 @@ fn friction_and_ripple_significant_only_together_are_both_named() {
         2,
         "{ripple:#?}"
     );
-    // Both effects together must reach the noise and the encoder's resolution.
+    // With both effects, the residual must reach the noise and the encoder's resolution.
     let closure = found["closure"]["test"].as_f64().expect("a number");
     assert!(closure > 0.95, "{closure}");
 }

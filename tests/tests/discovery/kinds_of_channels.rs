@@ -1,5 +1,5 @@
-//! All kinds of channels and models: `compare` and `discover` find no gap in records made by the
-//! model.
+//! Test of all kinds of channels and models: `compare` and `discover` find no gap in records that were simulated with
+//! the model.
 
 use std::fs;
 use std::path::Path;
@@ -171,7 +171,7 @@ fn missing_spring_is_found_from_acceleration_of_a_point() {
     assert_eq!(again["verdict"], "no_significant_gap", "{again:#}");
 }
 
-/// The second derivative of the cylinder's force needs the rate of the voltage.
+/// The second derivative of the cylinder's force depends on the rate of the voltage, which is unknown.
 #[test]
 fn undefined_acceleration_is_rejected() {
     let channel = ("o_ddot", "o", "N/s^2");
@@ -204,8 +204,7 @@ fn inputs_along_given_motion_show_no_gap() {
         let folder = tempfile::tempdir().expect("a folder");
         let folder = folder.path();
         let train = machine.write_records(folder);
-        // The input is a held one, but the curve through the samples has no jumps in its second
-        // rate.
+        // The input is piecewise constant, but the curve through the samples has a continuous second derivative.
         let noise = 0.3 * standard_deviation(&train.column("u"));
         let channel = ("u", "u", machine.input.0);
         let description = description(&machine, &channel, noise);

@@ -1,11 +1,11 @@
-//! Laws with a shape or a memory are found from records of machines that are written out
-//! here, with equations that contain them.
+//! Tests that force laws with a shape or a memory are found. The records are from hand-written equations that contain
+//! these laws.
 
 use eomgen_tests::program;
 use eomgen_tests::runge_kutta::integrate;
 use serde_json::Value;
 
-/// Approximately normal numbers, each a sum of twelve uniform ones.
+/// Generator of approximately normal numbers: sums of twelve uniform numbers.
 struct Noise(u64);
 
 impl Noise {
@@ -33,7 +33,7 @@ fn discover(specification: &str, dataset: &str, records: [String; 2]) -> Value {
     program::run_on_dataset("discover", paths.each_ref())
 }
 
-/// Asserts that one effect is named, with values within a relative tolerance, and closes the gap.
+/// Asserts that only this effect is found, that its values are within a relative tolerance, and that it closes the gap.
 fn assert_named(found: &Value, effect: &str, on: &str, sizes: &[(&str, f64)], tolerance: f64) {
     let effects = found["effects"].as_array().expect("effects");
     assert_eq!(effects.len(), 1, "{found:#}");
@@ -139,7 +139,7 @@ fn overlap_of_a_valve_is_found() {
     assert_curve_of_overlap(&found["curve"]);
 }
 
-/// The curve is the part of the command that the valve does not pass on.
+/// The curve is the part of the command that the overlap of the valve suppresses.
 fn assert_curve_of_overlap(curve: &Value) {
     assert_eq!(curve["variable"], "u", "{curve:#}");
     assert_eq!(curve["equation"], "u", "{curve:#}");
@@ -204,8 +204,8 @@ state = "rest"
 length = 0.4
 "#;
 
-/// `friction`: force as a function of the rate and of the deflection of bristles that yield within
-/// 0.15 mm.
+/// Returns a record of the stage. `friction` is the force as a function of the rate and of the deflection of bristles,
+/// which yield within 0.15 mm.
 fn stage_record(
     force: impl Fn(f64) -> f64,
     friction: impl Fn(f64, f64) -> f64,
@@ -246,7 +246,7 @@ fn dahl_friction_that_yields_before_it_slides_is_found() {
     assert_named(&found, "bristle_friction", "x", &sizes, 0.05);
 }
 
-/// Bristles with a short yield explain a friction without memory as well as Coulomb friction does.
+/// Friction without memory could also be fitted by bristles that yield within a short distance.
 #[test]
 fn bristles_are_not_fitted_to_friction_without_memory() {
     let records = stage_records(|v, _| 1.8 * v / v.hypot(5e-3));
@@ -291,7 +291,7 @@ guides = "1/2*c*dot(x)^2"
 motor = { on = "x", value = "force" }
 "#;
 
-/// Returns a record of a mass on a spring with a stop on one side. The noise is 0.02 mm.
+/// Returns a record of a mass on a spring with a stop on one side. The standard deviation of the noise is 0.02 mm.
 fn stop_record(force: impl Fn(f64) -> f64, (side, place): (f64, f64), seed: u64) -> String {
     let (mut noise, mut state) = (Noise(seed), [0.0; 2]);
     let mut text = "t,F,x\n".to_owned();
@@ -308,8 +308,7 @@ fn stop_record(force: impl Fn(f64) -> f64, (side, place): (f64, f64), seed: u64)
     text
 }
 
-/// The stop shortens the travel of its side: it is far below the largest distance from 0, which the
-/// motion reaches on the other side.
+/// The stop limits the motion on its side to much less than the largest distance from 0, which is on the other side.
 #[test]
 fn stop_on_one_side_is_found_in_the_shorter_travel() {
     for stop in [(-1.0, 0.03), (-1.0, 0.02), (1.0, 0.03)] {

@@ -1,4 +1,4 @@
-//! Small machines of all kinds, with records made by their models.
+//! Small machines of all kinds, with records simulated with their models.
 
 use std::fmt::Write;
 use std::fs;
@@ -18,7 +18,7 @@ pub struct Machine {
 /// Observable of a channel, its column of `simulate`, and its unit.
 pub type Channel = (&'static str, &'static str, &'static str);
 
-/// Mass on a spring. `SPRING` is the spring's energy, `PULL` its force, `DRIVE` the other force.
+/// Mass on a spring. `SPRING` stands for the spring's energy, `PULL` for its force, `DRIVE` for the driving force.
 const MASS: &str = r#"[model]
 name = "mass"
 [parameters]

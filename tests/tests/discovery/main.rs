@@ -1,4 +1,4 @@
-//! Inputs and results of `compare` and `discover`.
+//! Tests of the inputs and results of `compare` and `discover`.
 
 mod arm;
 mod blind;

@@ -1,5 +1,5 @@
-//! A motor with measured current and angle: a first-order state as a channel, with windows that
-//! start from fitted or from measured states.
+//! Tests of a motor with measured current and angle: the channel of the current is a first-order state. Windows start
+//! from fitted or from measured states.
 
 use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program::{self, Texts};
@@ -125,7 +125,7 @@ fn wrong_resistance_is_found_from_measured_current() {
     );
 }
 
-/// Effects on coordinates are found in models with first-order states.
+/// Effects on coordinates are also found in models with first-order states.
 #[test]
 fn drag_on_shaft_is_found_with_measured_current() {
     let found = run_on_records("discover", (1.2, 2e-5), DATASET);
@@ -145,8 +145,8 @@ fn windows_start_from_measured_current() {
     let smoothed = DATASET.replace("length = 0.2", "length = 0.2\nstart = \"smoothed\"");
     let found = run_on_records("compare", (1.2, 0.0), &smoothed);
     assert_eq!(found["gap"]["i"]["unit"], "A", "{found:#}");
-    // Measured initial states are not fitted to the window, so the residual exceeds the noise but
-    // stays far below the current.
+    // Measured initial states are not fitted to the window. Therefore the residual exceeds the noise, but it remains
+    // far below the current.
     let left = found["gap"]["i"]["train"].as_f64();
     assert!(
         left.is_some_and(|left| (4e-3..0.05).contains(&left)),

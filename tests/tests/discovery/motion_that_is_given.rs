@@ -1,5 +1,5 @@
-//! Records with a given motion and measured torques, as in start-stop and constant-speed runs: an
-//! arm of two joints with inverse dynamics written here.
+//! Tests of records with a given motion and measured torques, as in start-stop and constant-speed runs. The torques of
+//! an arm with two joints are computed by hand-written inverse dynamics.
 
 use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program;
@@ -79,8 +79,7 @@ m_2 = { relative = 0.05 }
 const SAMPLES: u32 = 1500;
 const STEP: f64 = 0.004;
 
-/// Returns a polynomial of fifth degree from rest to rest in 1.5 s, with its first and second
-/// rates.
+/// Returns a fifth-degree polynomial for a motion from rest to rest in 1.5 s, with its first and second derivatives.
 fn ramp(t: f64) -> [f64; 3] {
     let s = (t / 1.5).clamp(0.0, 1.0);
     [
@@ -90,8 +89,7 @@ fn ramp(t: f64) -> [f64; 3] {
     ]
 }
 
-/// Returns a joint's angle with its rates: oscillations plus a move forth and back with a rest in
-/// between.
+/// Returns a joint's angle with its first and second rates: oscillations plus a motion to and fro with a pause.
 fn joint(t: f64, swing: f64, way: f64) -> [f64; 3] {
     let (w, turn) = (2.7, 0.4);
     let (forth, back) = (ramp(t - 0.5), ramp(t - 3.0));
@@ -125,7 +123,7 @@ fn record(friction: f64, encoders: f64, turn: f64) -> String {
             - coupled * s * (2.0 * v_p * v_q + v_q * v_q)
             + (m_1 + m_2) * g * l_1 * p.cos()
             + weight_2;
-        // At rest the friction is a part of its level.
+        // During sticking, the friction is a fraction of its level.
         let rubbing = match v_q == 0.0 {
             true => 0.4 * friction,
             false => friction * v_q.signum(),
@@ -205,7 +203,7 @@ fn friction_torque_of_a_joint_is_found() {
     let notes = found["notes"].to_string();
     let said = "of 1500 samples of `tau_2` are ignored: the friction force at rest";
     assert!(notes.contains(said), "{notes}");
-    // The masses are wrong by two percent, visible in their weight.
+    // The masses in the specification are wrong by two percent; their weight makes this visible.
     let masses = found["refitted"].to_string();
     assert!(masses.contains("m_1") && masses.contains("m_2"), "{masses}");
 }
@@ -214,7 +212,7 @@ fn friction_torque_of_a_joint_is_found() {
 fn noisy_encoders_are_handled_by_averaging_samples() {
     let averaged = DATASET.replace("unit = \"s\"", "unit = \"s\"\nevery = 5");
     assert_friction_found(&discover(0.6, 2e-6, &averaged), 0.02);
-    // Without averaging, noise of the motion causes more torque noise than the torque sensors.
+    // Without averaging, the noise of the motion would cause more torque noise than the torque sensors.
     let said = "noise of the motion causes noise of";
     let notes = |dataset: &str| {
         let compared = run_on_folder("compare", &write_arm_records(0.6, 2e-6, dataset));
@@ -225,7 +223,7 @@ fn noisy_encoders_are_handled_by_averaging_samples() {
 
 #[test]
 fn torque_ripple_of_unusual_order_is_found_at_constant_speed() {
-    // Fourteen per revolution, from a motor with seven pole pairs.
+    // The ripple of a motor with seven pole pairs has fourteen periods per revolution.
     let rotor = |turn: f64| {
         let mut noise = LogisticNoise::new(0.01, 0.2 + 0.1 * turn);
         let mut text = "t,q,u\n".to_owned();
@@ -303,8 +301,8 @@ observable = "u"
 c = { relative = 0.1 }
 "#;
 
-/// Returns the effects found in records of the pendulum that swings by an angle, with so much time between
-/// samples and a torque in addition to that of the model, a function of angle, rate and acceleration.
+/// Returns the effects found in records of a swinging pendulum. `swing` is the amplitude of the angle and `step` the
+/// time between samples. `added` is a torque that the model lacks, a function of angle, rate and acceleration.
 fn find_on_pendulum(swing: f64, step: f64, added: fn([f64; 3]) -> f64) -> Vec<Value> {
     let record = |turn: f64| {
         let mut noise = LogisticNoise::new(0.02, 0.2 + 0.1 * turn);
@@ -332,7 +330,7 @@ fn find_on_pendulum(swing: f64, step: f64, added: fn([f64; 3]) -> f64) -> Vec<Va
 
 #[test]
 fn halves_of_a_pair_form_classes_with_parameters() {
-    // An inertia without weight is a heavier bob in less gravity.
+    // An inertia without weight is equivalent to a heavier bob with less gravity.
     let effects = find_on_pendulum(1.0, 0.005, |[_, _, a]| 0.2 * 1.9 * 0.42 * 0.42 * a);
     let of = |effect: &str| {
         let mut all = effects.iter();
@@ -354,7 +352,7 @@ fn halves_of_a_pair_form_classes_with_parameters() {
 
 #[test]
 fn inseparable_orders_of_a_ripple_form_a_class() {
-    // The record covers little more than one period of the ripple.
+    // The record covers only slightly more than one period of the ripple.
     let effects = find_on_pendulum(0.15, 0.02, |[q, _, _]| 0.06 * (24.0 * q + 0.4).cos());
     assert_eq!(effects.len(), 1, "{effects:#?}");
     let ripple = &effects[0];

@@ -1,4 +1,4 @@
-//! Hidden effects of machines on a moving base, whose prescribed motion is recorded.
+//! Tests of `discover` on machines with a moving base, whose prescribed motion is recorded.
 
 use eomgen_tests::moving_base::{Machine, Recording};
 use eomgen_tests::moving_machines::{slider, tower};
@@ -19,7 +19,7 @@ fn discover<const N: usize, const C: usize>(
     run_on_texts("discover", texts)
 }
 
-/// Asserts that one effect is found with this parameter within 3 % and 4 standard deviations.
+/// Asserts that only this effect is found and that its parameter is within 3 % and 4 standard deviations of `size`.
 fn assert_found(found: &Value, (effect, on): (&str, &str), (parameter, size): (&str, f64)) {
     let effects = found["effects"].as_array().expect("effects");
     assert_eq!(effects.len(), 1, "{found:#}");

@@ -1,6 +1,5 @@
-//! Proposed experiments: a class of equivalent effects is resolved by the experiment proposed for
-//! it. A simple integrator of the true machine records it; discovery on both records names the true
-//! effect.
+//! Tests of proposed experiments. The experiment is simulated with hand-written equations of the true machine. With the
+//! additional record, discovery names the true effect of the class.
 
 use std::path::Path;
 
@@ -10,7 +9,7 @@ use serde_json::Value;
 
 use super::specifications::OSCILLATOR;
 
-/// Machine of one coordinate `x` driven by an input `u`, and its records.
+/// Machine of one coordinate `x` that is driven by an input `u`, with the settings of its records.
 struct Machine<'m> {
     specification: &'m str,
     units: [&'m str; 2],
@@ -23,12 +22,12 @@ struct Machine<'m> {
     /// Force without dry friction, as a function of position, rate and input.
     force: &'m dyn Fn(f64, f64, f64) -> f64,
     friction: f64,
-    /// Initial state of the first records, and their input as a function of time in s.
+    /// Initial state of the first records.
     begin: (f64, f64),
     input: fn(f64, f64) -> f64,
 }
 
-/// Time between samples, s, and number of samples of the first records.
+/// Time between samples, in s.
 const SAMPLE: f64 = 0.005;
 const SAMPLES: usize = 600;
 
@@ -53,8 +52,8 @@ motor = { on = "x", value = "u" }
 "#;
 
 impl Machine<'_> {
-    /// Returns a record from an initial state for an input at each sample. Steps are implicit in
-    /// the dry friction, so that it can hold the machine at rest. `seed` selects the noise.
+    /// Returns a record from an initial state for an input at each sample. The steps are implicit in the dry friction,
+    /// so that sticking is possible. `seed` selects the noise.
     fn record(&self, (mut x, mut v): (f64, f64), input: &[f64], seed: f64) -> String {
         let parts = 200;
         let h = SAMPLE / f64::from(parts);
@@ -95,7 +94,7 @@ impl Machine<'_> {
         program::run_on_dataset(command, paths.each_ref())
     }
 
-    /// Returns the class of equivalent effects that the first records give.
+    /// Runs `discover` on the first records and returns the class of equivalent effects.
     fn first_class(&self, folder: &Path) -> Value {
         let write = |name: &str, text: &str| {
             std::fs::write(folder.join(name), text).expect("a file");
@@ -126,8 +125,8 @@ impl Machine<'_> {
         Some(input.collect())
     }
 
-    /// Asserts that the first records give a class with the true effect, and that two records of
-    /// the experiment leave only that effect. Returns the proposed experiment.
+    /// Asserts that the first records give a class that contains the true effect. Asserts that, with two records of the
+    /// experiment, only the true effect remains. Returns the proposed experiment.
     fn assert_resolved(&self, folder: &Path, effect: &str, on: &str) -> Value {
         let class = &self.first_class(folder);
         let is_true = |of: &Value| of["effect"] == effect && of["on"] == on;
@@ -155,7 +154,7 @@ impl Machine<'_> {
         let effects = second["effects"].as_array().expect("a list");
         assert_eq!(effects.len(), 1, "{effects:#?}");
         assert!(is_true(&effects[0]), "{effects:#?}");
-        // A softer spring is always equivalent to a joint in series.
+        // A softer spring is always equivalent to an additional spring in series.
         let others = effects[0]["equivalent"].as_array().expect("a list");
         let mut others = others.iter().map(|of| of["effect"].as_str());
         assert!(
@@ -210,8 +209,8 @@ fn experiment_separates_dry_friction_from_constant_force() {
     machine.assert_resolved(folder().path(), "coulomb_friction", "x");
 }
 
-/// Viscous friction is always equivalent to the bearing's parameter. With that parameter free, the
-/// residual of the wrong model must equal the prediction.
+/// Viscous friction is always equivalent to a shift of the bearing's friction parameter. If this parameter is fitted,
+/// the residual of the wrong model must equal the prediction.
 #[test]
 fn experiment_separates_asymmetric_from_symmetric_friction() {
     let specification = rotor_in_bearing();
@@ -283,7 +282,7 @@ fn experiment_separates_weight_from_spring() {
     .assert_resolved(folder().path(), "gravity", "x");
 }
 
-/// The bounds must also hold on the true machine.
+/// The true machine must also stay within the bounds.
 #[test]
 fn experiment_keeps_declared_bounds() {
     let specification = rotor_in_bearing();
@@ -311,7 +310,7 @@ fn experiment_keeps_declared_bounds() {
         assert!((pair[1][0] - pair[0][0] - 0.01).abs() < 1e-9);
         assert!((pair[1][1] - pair[0][1]).abs() <= 0.005 * (1.0 + 1e-9));
     }
-    // The input is held over the samples of a record.
+    // The input is constant between the samples of a record.
     let held = rows.iter().flat_map(|row| [row[1], row[1]]);
     let input: Vec<f64> = held.take(601).collect();
     for line in machine.record((0.0, 0.0), &input, 2.0).lines().skip(1) {
@@ -319,8 +318,8 @@ fn experiment_keeps_declared_bounds() {
     }
 }
 
-/// Without declared bounds the input must stay within the limits of the records, which rotate in
-/// one direction only.
+/// Without declared bounds, the input must stay within the range of the records, in which the rotor turns in one
+/// direction only.
 #[test]
 fn experiment_without_bounds_stays_within_recorded_range() {
     let specification = rotor_in_bearing();
@@ -337,7 +336,7 @@ fn experiment_without_bounds_stays_within_recorded_range() {
         assert!(bounds.contains(said), "{bounds}");
     }
     if let Some(input) = machine.proposed_input(folder.path()) {
-        // From 0, the input at rest, to the largest recorded value.
+        // The range is from 0, the input at rest, to the largest recorded value.
         assert!(input.iter().all(|u| (0.0..=0.35 + 1e-9).contains(u)));
         let record = machine.record((0.0, 0.0), &input, 2.0);
         let shown = |text: &str| -> Vec<f64> {

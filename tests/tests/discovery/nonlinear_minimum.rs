@@ -1,4 +1,5 @@
-//! A fit of a nonlinear model ends at the minimum of the cost, with the standard deviations there.
+//! Test that a fit of a nonlinear model converges to the minimum of the cost and reports the standard deviations at the
+//! minimum.
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
@@ -72,7 +73,7 @@ length = "record"
 const NOISE: f64 = 0.01;
 const SAMPLE: f64 = 0.01;
 
-/// Returns the rates of three modes, of which EI is 0.3 N m^2, c 0.3 N s/m^2 and k_3 8000 N/m^3.
+/// Returns the rates of three modes of a beam with EI = 0.3 N m^2, c = 0.3 N s/m^2 and k_3 = 8000 N/m^3.
 fn rates(state: [f64; 6], u: f64) -> [f64; 6] {
     let middle = state[0] - state[2];
     let acceleration = |mode: usize| {
@@ -114,7 +115,7 @@ fn hardly_determined_parameters_of_a_beam_reach_the_minimum() {
     let dataset = read_dataset(&path, &model).unwrap_or_else(|refusal| panic!("{refusal}"));
     let problem = EstimationProblem::new(&dataset, None, "beam.toml", SPECIFICATION);
     let fit = fit_null_model(&problem, SPECIFICATION).expect("a fit");
-    // The minimum by Gauss-Newton steps with the simulation of the record.
+    // The expected minimum is from Gauss-Newton steps with the simulation that generated the record.
     let expected = [
         ("EI", 0.299721, 6.1519e-4),
         ("c", 0.286236, 9.3425e-3),

@@ -1,5 +1,4 @@
-//! Datasets with nothing to compare: `compare` and `discover` reject them with the location and the
-//! remedy.
+//! Tests of datasets with nothing to compare: `compare` and `discover` reject them with the location and the remedy.
 
 use eomgen_tests::measured::{DESCRIPTION, Measured, record};
 use eomgen_tests::models::path;
@@ -45,7 +44,7 @@ fn change_column(column: usize, cell: impl Fn(usize, &str) -> String) -> String 
 #[test]
 fn windows_longer_than_records_are_rejected() {
     let measured = Measured::stage(3.0);
-    // The records last 1.995 s; with the interval after the last sample, 2 s.
+    // The records last 1.995 s, or 2 s including the interval after the last sample.
     for length in ["5", "1e9", "2.1"] {
         let to = format!("length = {length}");
         let place = ["dataset.toml:27:10", "lasts 1.995", "\"record\""];
@@ -90,7 +89,7 @@ fn record_shorter_than_half_a_window_is_noted() {
 
 #[test]
 fn windows_without_samples_are_rejected() {
-    // In windows of four samples the inner two are compared; these are all missing.
+    // In a window of four samples only the inner two are compared. All inner samples are missing.
     let measured = Measured::stage(0.0);
     let holes = |place: usize, cell: &str| match (place - 1) % 4 {
         1 | 2 => String::new(),
@@ -108,7 +107,7 @@ fn windows_without_samples_are_rejected() {
 fn model_that_diverges_in_windows_is_rejected() {
     let measured = Measured::stage(3.0);
     let sound = std::fs::read_to_string(path("emps")).expect("a specification");
-    // A spring of negative stiffness: the motion overflows.
+    // With a negative stiffness the motion overflows.
     let unstable = sound
         .replacen(
             "[coordinates]",

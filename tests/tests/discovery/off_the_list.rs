@@ -1,5 +1,5 @@
-//! Effects outside the lists of effects and orders: hardening springs, springs with a stop, an
-//! undeclared stiffness, a ripple of order seven. The records are from the midpoint rule.
+//! Tests of effects outside the default lists of effects and orders: hardening springs, springs with a stop, an
+//! undeclared stiffness, a ripple of order seven. The records are simulated with the midpoint rule.
 
 use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program::{self, Texts};
@@ -17,7 +17,7 @@ struct Machine<'m> {
     uncertain: &'m str,
     /// Delay of the input, s.
     late: f64,
-    /// True if the machine receives the held samples of the input, false if a smooth input.
+    /// True if the input of the machine is held between samples, false if it is smooth.
     is_held: bool,
     input: fn(f64, f64) -> f64,
     acceleration: &'m dyn Fn(f64, f64, f64) -> f64,
@@ -47,7 +47,7 @@ bearing = "1/2*c*dot(x)^2"
 motor = { on = "x", value = "u" }
 "#;
 
-/// Time between samples, s, and number of samples.
+/// Time between samples, in s.
 const SAMPLE: f64 = 0.005;
 const SAMPLES: usize = 400;
 
@@ -97,7 +97,7 @@ impl Machine<'_> {
         program::run_on_texts("discover", texts)
     }
 
-    /// Asserts that only this effect is found at this place; returns it.
+    /// Asserts that only this effect is found at this site; returns it.
     fn only_effect(&self, effect: &str, on: &str) -> Value {
         let found = self.answer();
         let effects = found["effects"].as_array().expect("a list");
@@ -158,8 +158,8 @@ fn hardening_spring_is_found() {
 
 #[test]
 fn parameters_confounded_with_gain_are_as_uncertain_as_the_gain() {
-    // A sensor gain is equivalent to scaling inertia and stiffness. The gain is therefore as
-    // uncertain as declared, and the cubic spring three times as uncertain.
+    // A sensor gain is equivalent to a scaling of inertia and stiffness. Therefore the gain is as uncertain as its
+    // prior, and the cubic stiffness is three times as uncertain.
     let spring = |x: f64, v: f64, u: f64| u - 400.0 * x - 6e4 * x.powi(3) - 4.0 * v;
     let machine = Machine {
         gain: 1.01,
@@ -177,7 +177,7 @@ fn parameters_confounded_with_gain_are_as_uncertain_as_the_gain() {
     assert!((0.03..0.08).contains(&(sd / value)), "{value} +- {sd}");
 }
 
-/// A model that is nonlinear everywhere is integrated with a constant step size.
+/// A model without linear parts is integrated with a constant step size.
 #[test]
 fn declared_cubic_spring_is_refitted() {
     let specification = OSCILLATOR
@@ -210,7 +210,7 @@ fn one_sided_stop_is_found_as_stop() {
 
 #[test]
 fn soft_two_sided_stop_is_not_reported_as_hardening_spring() {
-    // The stop begins over a few millimetres; a cubic spring is a close fit but needs a second
+    // The stiffness of the stop increases over a few millimetres. A cubic spring fits approximately but needs a second
     // effect.
     let beyond = |x: f64| {
         let past = x.abs() - 0.024;
@@ -254,7 +254,7 @@ fn unlisted_order_is_found_in_residual_force() {
     assert_eq!(effect["order"]["order"], 7, "{effect:#}");
 }
 
-/// Over several revolutions an unbalanced weight and a torque of order one are the same term.
+/// Over several revolutions, an unbalanced weight and a torque ripple of order one have the same form.
 #[test]
 fn weight_on_rotating_shaft_is_equivalent_to_ripple_of_order_one() {
     let rotor = Machine {
@@ -275,8 +275,8 @@ fn weight_on_rotating_shaft_is_equivalent_to_ripple_of_order_one() {
     assert_eq!(other["on"], "x", "{effect:#}");
 }
 
-/// A delayed drive delays all sensors: a delay beyond the sensors' priors is reported as a delayed
-/// input.
+/// A delayed drive appears as a delay of all sensors. If the delay exceeds the sensors' priors, it is reported as a
+/// delayed input.
 #[test]
 fn common_sensor_delay_is_noted_as_delayed_input() {
     let acceleration = |x: f64, v: f64, u: f64| u - 400.0 * x - 4.0 * v;
@@ -290,7 +290,7 @@ fn common_sensor_delay_is_noted_as_delayed_input() {
     assert!(notes.contains("[inputs.u]"), "{notes}");
 }
 
-/// Samples of a smooth input are late by half an interval on average if they are held.
+/// If samples of a smooth input are held, they are late by half an interval on average.
 #[test]
 fn lead_by_half_an_interval_is_noted_as_held_input() {
     let acceleration = |x: f64, v: f64, u: f64| u - 400.0 * x - 4.0 * v;
@@ -307,7 +307,7 @@ fn lead_by_half_an_interval_is_noted_as_held_input() {
     assert!(!held.contains("half the interval"), "{held}");
 }
 
-/// The force of these records acts exactly as it is held, and the fitted lead is smaller than its uncertainty.
+/// The true force is held between samples, as the dataset declares. The fitted lead is smaller than its uncertainty.
 #[test]
 fn insignificant_lead_is_not_noted_as_held_input() {
     let measured = eomgen_tests::models::project().join("examples/measured");
@@ -321,7 +321,7 @@ fn insignificant_lead_is_not_noted_as_held_input() {
     assert!(!document.contains("half the interval"), "{document}");
 }
 
-/// A stop reached only in the held-out records.
+/// The motion reaches the stop only in the held-out records.
 #[test]
 fn effect_visible_only_in_held_out_records_is_noted() {
     let stop = |x: f64| 900.0 * (x - 0.08).max(0.0);

@@ -1,7 +1,7 @@
-//! Backlash in the shaft of a drive of two masses is the only effect found, if the damper parallel
-//! to the shaft's spring acts in contact only and also if it acts inside the backlash; no damping
-//! is reported as shifted. An offset of the backlash is found if the model has backlash already,
-//! and a softer shaft has two names. The records integrate Newton's laws with the midpoint rule.
+//! Tests of backlash in the shaft of a drive of two masses. Backlash is the only effect found, whether the damper
+//! parallel to the shaft's spring acts only in contact or also inside the backlash. No damping is reported as shifted.
+//! If the model already has backlash, an offset of the backlash is found. A softer shaft has two names. The records are
+//! from Newton's laws, integrated with the midpoint rule.
 
 use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program;
@@ -14,17 +14,17 @@ const D: f64 = 8e-3;
 const B_M: f64 = 6e-4;
 const B_L: f64 = 5e-4;
 
-/// Half of the backlash, rad: sixty times the encoders' noise.
+/// Half of the backlash in rad, sixty times the encoders' noise.
 const PLAY: f64 = 9e-3;
 
 /// Standard deviation of an encoder, rad.
 const NOISE: f64 = 1.5e-4;
 
-/// Time between samples, s, and number of samples.
+/// Time between samples, in s.
 const SAMPLE: f64 = 1e-3;
 const SAMPLES: usize = 1500;
 
-/// Returns a specification without backlash, with `damper` in its section.
+/// Returns a specification without backlash; `damper` is the text of the damper with its section.
 fn specification(damper: &str) -> String {
     format!(
         r#"
@@ -64,7 +64,7 @@ drive = {{ on = "theta_m", value = "u" }}
     )
 }
 
-/// Damper as dissipation, and as force.
+/// Damper as a term of the dissipation.
 const AS_DISSIPATION: &str = "shaft = \"1/2*d*(dot(theta_m) - dot(theta_l))^2\"\n[forces]";
 const AS_FORCE: &str = "[forces]\ndamper = { on = \"twist\", value = \"-d*dot(twist)\" }";
 
@@ -161,8 +161,8 @@ fn answer_of(specification: &str, dataset: &str, shaft: Shaft) -> (Value, String
     (found, extended.expect("a file"))
 }
 
-/// Asserts that backlash is the only effect and closes the gap, and that the extended specification
-/// reproduces the fit; returns it.
+/// Asserts that backlash is the only effect and closes the gap, and that the extended specification reproduces the fit.
+/// Returns the extended specification.
 fn assert_only_play(specification: &str, shaft: Shaft) -> String {
     let (found, extended) = answer(specification, shaft);
     let effects = found["effects"].as_array().expect("a list");
@@ -233,7 +233,7 @@ fn softer_shaft_is_stiffness_shift_or_joint_compliance() {
     );
 }
 
-/// Centre of an offset backlash, rad: three times its half-width from the model's.
+/// Centre of an offset backlash in rad: three half-widths from the centre in the model.
 const CENTRE: f64 = 3.0 * PLAY;
 
 #[test]
@@ -249,7 +249,7 @@ fn offset_play_is_found_in_rotating_mesh() {
         .replace("twist = \"theta_m - theta_l\"", "theta_m = \"theta_l + p\"")
         .replace("dot(twist)", "dot(p)")
         .replace("(twist, b)", "(p, b)");
-    // Encoders with small bias priors; otherwise a bias is named first.
+    // The encoders have small bias priors. Otherwise a bias would be named first.
     let dataset = DATASET
         .replace("[channels.theta_m]", "[channels.motor]")
         .replace("state = \"rest\"", "state = \"estimate\"")
@@ -259,7 +259,7 @@ fn offset_play_is_found_in_rotating_mesh() {
             contact_torque(p - CENTRE, rate)
         });
         let effects = found["effects"].as_array().expect("a list");
-        // An encoder bias is an equivalent.
+        // An encoder bias is an equivalent effect.
         let names = class_names(&effects[0]);
         assert_eq!(names[0], format!("asymmetric_backlash {on}"), "{found:#}");
         let mut others = names[1..].iter();

@@ -1,5 +1,5 @@
-//! Residual force: a carriage pulls a second one by a spring, with a hidden force on the second.
-//! The motion is integrated here; the model has springs and dampers only.
+//! Tests of the residual force. A carriage pulls a second carriage by a spring, and a hidden force acts on the second
+//! one. The motion is integrated by hand-written equations; the model has springs and dampers only.
 
 use eomgen_records::read_dataset;
 use std::fs;
@@ -77,8 +77,7 @@ length = 0.4
 start = "fitted"
 "#;
 
-/// Returns a record with a hidden force on the second carriage, a function of its rate and
-/// position.
+/// Returns a record with a hidden force on the second carriage, a function of the carriage's rate and position.
 fn record(hidden: &dyn Fn(f64, f64) -> f64, turn: f64) -> String {
     let (m, k, c) = (1.5, 400.0, 3.0);
     let step = 0.002;
@@ -90,7 +89,7 @@ fn record(hidden: &dyn Fn(f64, f64) -> f64, turn: f64) -> String {
         let t = step * f64::from(sample);
         let force = 25.0 * (4.0 * t + turn).sin() + 12.0 * (11.0 * t * (1.0 + 0.1 * turn)).cos();
         let mut drawn = || {
-            // Twelve uniform numbers of the logistic map, whose sum is nearly normal.
+            // The sum of twelve numbers of the logistic map is nearly normal.
             let sum: f64 = (0..12)
                 .map(|_| {
                     noise = (noise * 997.0 + 0.123_456_7).fract();
@@ -142,8 +141,8 @@ fn residual_force_in(folder: &Path, specification: &str) -> ResidualForce {
     estimate_residual_force(&problem, &fit, None).expect("neighbouring motions")
 }
 
-/// Asserts that a profile matches a function within four standard deviations plus a tenth of the
-/// largest force, due to smoothing. Returns the number of points known to a fifth.
+/// Asserts that a profile matches a function within four standard deviations plus a tenth of the largest force (for the
+/// smoothing). Returns the number of points with a standard deviation below a fifth of the largest force.
 fn assert_matches(profile: &Profile, of: impl Fn(usize, f64) -> f64, largest: f64) -> usize {
     let mut known = 0;
     for (number, at) in profile.arguments.iter().enumerate() {
@@ -183,8 +182,8 @@ fn dry_friction_appears_as_residual_force_on_its_carriage() {
     assert!(assert_matches(&force.rate, side, 2.0) >= bends);
 }
 
-/// With a weak nonlinear spring the model is integrated by Runge-Kutta steps, with small forces
-/// added to its motion.
+/// With a weak nonlinear spring, the model is integrated by Runge-Kutta steps. Responses are computed by adding small
+/// forces to the motion.
 #[test]
 fn nonlinear_model_gives_the_same_residual_force() {
     let stiffening = SPECIFICATION
@@ -204,7 +203,7 @@ fn nonlinear_model_gives_the_same_residual_force() {
     assert_eq!(other.equations[other.best_equation].name, "q");
     let pairs = linear.rate.values.iter().zip(&other.rate.values);
     for ((a, b), sd) in pairs.zip(&linear.rate.sd) {
-        // Both are first-order methods; they differ in the ends of steps at switches.
+        // Both responses are of first order; they differ because steps end at different times near switches.
         assert!(
             *sd > 0.4 || (a - b).abs() < 0.04 + 0.5 * sd,
             "{a} {b} +- {sd}"

@@ -1,10 +1,10 @@
-//! Machines whose mode shapes are in a file next to the specification.
+//! Tests of machines whose mode shapes are in a file next to the specification.
 
 use eomgen_tests::moving_base::Recording;
 use eomgen_tests::moving_machines::mast;
 use eomgen_tests::program::run_on_dataset;
 
-/// Shapes of a clamped-free beam of 0.5 m, without their usual scale.
+/// Returns mode shapes of a clamped-free beam of 0.5 m, with an unusual normalisation.
 fn table() -> String {
     let mut text = "x,phi_1,phi_2,phi_3\n".to_owned();
     for row in 0..=60 {

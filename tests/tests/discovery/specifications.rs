@@ -1,4 +1,4 @@
-//! Specifications common to several tests.
+//! Specifications that several tests use.
 
 pub const OSCILLATOR: &str = r#"
 [model]

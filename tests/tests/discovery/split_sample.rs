@@ -1,5 +1,5 @@
-//! P-values of absent effects in records of a rotor: uniformly distributed or larger. And the
-//! p-value of a present effect.
+//! Tests of p-values in records of a rotor: p-values of absent effects are uniformly distributed or larger, and the
+//! p-value of a present effect is small.
 
 use std::path::Path;
 
@@ -73,7 +73,7 @@ length = 0.4
 
 const NOISE: f64 = 1e-3;
 
-/// Returns a record by the midpoint rule, with an additional constant force.
+/// Returns a record with an additional constant force, by the midpoint rule.
 fn record(normal: &mut NormalNumbers, turn: f64, force: f64) -> String {
     let (sample, samples, parts) = (0.01, 200, 20);
     let h = sample / f64::from(parts);
@@ -156,7 +156,7 @@ fn p_values_of_absent_effects_are_uniform_or_larger() {
         let own: Vec<f64> = all.iter().filter_map(|of| of[place]).collect();
         println!("{name}: {own:.3?}");
         assert_uniform_or_larger(name, &own);
-        // A parameter that must not be negative is estimated as zero in half of the cases.
+        // A parameter that must not be negative is estimated as zero in half of the cases, which then have no p-value.
         assert!(own.len() as u64 > cases / 4, "{name}: {}", own.len());
     }
     for of in &all {

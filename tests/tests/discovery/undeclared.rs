@@ -1,10 +1,10 @@
-//! Undeclared parameters of a stage: they are equivalents of an effect if the records cannot
-//! separate them, and not otherwise.
+//! Tests of undeclared parameters of a stage: a parameter is listed as equivalent to an effect only if the records
+//! cannot separate them.
 
 use eomgen_tests::measured::{DESCRIPTION, Measured, Moment};
 use serde_json::{Value, json};
 
-/// Returns the only effect found in records of a stage with no related uncertain parameter.
+/// Returns the only effect found in records of a stage. No uncertain parameter is related to the effect.
 fn only_effect(other: &dyn Fn(Moment) -> f64) -> Value {
     let measured = Measured::stage_with_force(other);
     let declared = "[uncertain]\nF_v = { relative = 0.05 }\n";
@@ -19,7 +19,7 @@ fn only_effect(other: &dyn Fn(Moment) -> f64) -> Value {
 
 #[test]
 fn viscous_friction_is_reported_with_equivalent_parameter() {
-    // In N s/m, a seventh of the stage's own friction.
+    // The additional friction of 30 N s/m is a seventh of the stage's own viscous friction.
     let effect = only_effect(&|at| -30.0 * at.v);
     assert_eq!(effect["effect"], "viscous_friction", "{effect:#}");
     assert_eq!(effect["status"], "class", "{effect:#}");

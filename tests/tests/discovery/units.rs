@@ -1,4 +1,4 @@
-//! Results are independent of the units of machine and record.
+//! Tests that results are independent of the units in the specification and in the records.
 
 use std::fs;
 use std::path::Path;
@@ -16,7 +16,7 @@ const ROUNDING: f64 = 1e-6;
 /// Exponents of the powers of two that multiply length, mass and current.
 type Units = [i32; 3];
 
-/// Returns the factor from SI to other units for a number of this unit.
+/// Returns the factor that converts a number with this unit from SI to other units.
 fn factor(unit: &str, [length, mass, current]: Units) -> f64 {
     let unit = Unit::parse(unit).expect("a unit");
     let exponents = unit
@@ -43,8 +43,8 @@ fn in_units(specification: &str, units: Units) -> String {
     specification.lines().map(line).collect()
 }
 
-/// Returns numbers of a result that are independent of units: gaps in noise floors, and parameters
-/// of effects in the original units.
+/// Returns numbers of a result that do not depend on units: gaps relative to the noise floor, and parameters of effects
+/// converted to the original units.
 fn numbers(answer: &Value, units: Units) -> Vec<(String, f64)> {
     let number = |value: &Value| value.as_f64().expect("a number");
     let mut found = Vec::new();
@@ -72,8 +72,8 @@ fn numbers(answer: &Value, units: Units) -> Vec<(String, f64)> {
     found
 }
 
-/// Returns the relative difference of two numbers. Gaps are compared with the noise floor, because
-/// rounding dominates smaller ones.
+/// Returns the relative difference of two numbers. Differences of gaps are relative to the noise floor, because
+/// rounding dominates smaller gaps.
 fn difference(name: &str, other: f64, own: f64) -> f64 {
     let size = if name.starts_with("gap ") {
         own.abs().max(1.0)
@@ -192,7 +192,7 @@ fn trajectories_are_independent_of_units() {
     assert_same_trajectories(&linear, "exact", &positions);
 }
 
-/// Very small, very large, and opposite scales of length and mass.
+/// Very small and very large units, and opposite scales of length and mass.
 const OTHERS: [Units; 3] = [[-17, -20, 0], [17, 20, 0], [-20, 20, 10]];
 
 #[test]
@@ -228,7 +228,7 @@ fn missing_spring_is_found_in_all_units() {
     assert_same_results(&truth, &machine, &("x", "x", "rad"), &OTHERS);
 }
 
-/// A pressure in pascals, kilopascals, megapascals and gigapascals.
+/// The pressure is in Pa, kPa, MPa or GPa.
 #[test]
 fn results_are_independent_of_the_unit_of_a_state() {
     let in_unit = |unit: f64| {

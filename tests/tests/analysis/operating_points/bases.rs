@@ -1,4 +1,4 @@
-//! All bases by name: textbook frequencies, certificates, and rejected names.
+//! Tests of all bases of mode shapes: textbook frequencies, certificates, and rejected names.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
@@ -10,8 +10,8 @@ use serde_json::Value;
 
 use super::{run_json, shipped, write_model};
 
-/// Stiffness, mass per length and length. The frequency of a beam is (beta l/l)^2 sqrt(B/mu)/tau,
-/// that of a rod or string (beta l/l) sqrt(B/mu)/tau.
+/// Stiffness, mass per length and length. The frequency of a beam is (beta l/l)^2 sqrt(B/mu)/(2 pi); of a rod or
+/// string, (beta l/l) sqrt(B/mu)/(2 pi).
 const B: f64 = 3.0;
 const MU: f64 = 2.0;
 const LENGTH: f64 = 0.7;
@@ -48,8 +48,8 @@ fn is_rod(basis: &str) -> bool {
     basis.starts_with("rod") || basis == "string"
 }
 
-/// Returns the names with beta_r l of their first modes: R. D. Blevins, "Formulas for Natural
-/// Frequency and Mode Shape" (1979), Table 8-1; S. S. Rao, "Mechanical Vibrations", 8.2 to 8.5.
+/// Returns the names of the bases with beta_r l of the first modes: R. D. Blevins, "Formulas for Natural Frequency and
+/// Mode Shape" (1979), Table 8-1; S. S. Rao, "Mechanical Vibrations", 8.2 to 8.5.
 fn published_wavenumbers() -> Vec<(String, [f64; 3])> {
     let equal = [4.73004074, 7.85320462, 10.9956079];
     let pinned = [3.92660231, 7.06858275, 10.21017612];
@@ -99,7 +99,7 @@ fn frequencies_of_all_bases_match_textbooks() {
         for (mode, root) in modes.iter().zip(roots) {
             let right = (root / LENGTH).powi(power) * (B / MU).sqrt() / TAU;
             let frequency = mode["frequency"].as_f64().expect("Hz");
-            // The roots are printed to nine digits.
+            // The published roots have nine digits.
             assert!(
                 (frequency / right - 1.0).abs() < 2e-8,
                 "{basis}: {frequency} {right}"
@@ -108,8 +108,8 @@ fn frequencies_of_all_bases_match_textbooks() {
     }
 }
 
-/// Returns a model with the field in every kind of expression: with itself, with the position, with
-/// a weight, to the fourth power, at both ends and in between.
+/// Returns a model whose terms contain the field in every kind of expression: squared, times the position, times a
+/// weight, to the fourth power, at both ends and between them.
 fn all_expressions(basis: &str, order: usize) -> String {
     let mut text = uniform(basis, order).replace("\"N\"", "\"N m^2\"");
     text = text.replace(
@@ -143,7 +143,7 @@ fn certificates_of_all_bases_pass() {
     }
 }
 
-/// A string hanging from the end of a beam; the ends are coupled.
+/// String that hangs from the end of a beam; a stiff spring couples the ends.
 const BEAM_AND_STRING: &str = r#"
 [model]
 name = "beam_and_string"
@@ -222,8 +222,7 @@ fn highest_order_keeps_its_digits() {
     }
 }
 
-/// Rigid motions are separate coordinates: a free beam has two zero frequencies and its elastic
-/// ones.
+/// Rigid-body motions are separate coordinates, so a free beam has two zero frequencies and the elastic frequencies.
 #[test]
 fn free_beam_with_rigid_coordinates_has_two_zero_frequencies() {
     let text = uniform("free_free", 3)
@@ -252,8 +251,8 @@ fn free_beam_with_rigid_coordinates_has_two_zero_frequencies() {
     );
 }
 
-/// Two discs on a shaft: tan b = b (m + d)/(b^2 m d - 1) with the discs' inertias divided by the
-/// shaft's (Rao, 8.3). A model with few modes is stiffer.
+/// Two discs on a shaft: tan b = b (m + d)/(b^2 m d - 1) with the inertias m and d of the discs relative to the shaft
+/// (Rao, 8.3). With few modes the frequencies are too high.
 #[test]
 fn shaft_and_disc_match_closed_form_frequencies() {
     let model = load("shaft_and_disc");

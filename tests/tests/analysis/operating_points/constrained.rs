@@ -1,10 +1,10 @@
-//! Modes and equilibria of machines with constraints, against closed forms.
+//! Comparison of modes and equilibria of machines with constraints with closed forms.
 
 use super::{numbers, run_json, write_model};
 
 const GRAVITY: f64 = 9.81;
 
-/// Writes two masses at Cartesian coordinates, joined by rods.
+/// Returns the specification of two masses in Cartesian coordinates, joined by rods.
 fn masses(masses: [&str; 2], initial: [&str; 4], constraints: [&str; 2]) -> String {
     let [x_0, y_0, x_1, y_1] = initial;
     format!(
@@ -36,7 +36,7 @@ b = {{ zero = "{}" }}
 
 const LONG_ROD: &str = "x_0^2 + y_0^2 - l^2";
 
-/// Returns the eigenvalues of `modes` at a state.
+/// Returns the eigenvalues that `modes` prints for a state.
 fn eigenvalues(text: &str, arguments: &[&str]) -> Vec<[f64; 2]> {
     let folder = tempfile::tempdir().expect("a folder");
     let model = write_model(folder.path(), text);

@@ -1,4 +1,4 @@
-//! `linearise --discrete` against simulated motions with held inputs.
+//! Comparison of `linearise --discrete` with simulated motions for piecewise constant inputs.
 
 use eomgen_compiled_model::{CompiledModel, Instance, Orders, Request, Solver};
 use eomgen_sim::inputs::HeldInputs;
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::{numbers, run_json, shipped};
 
-/// Simulates one period by the Runge-Kutta method from a state with held inputs.
+/// Simulates one period by the Runge-Kutta method, with constant inputs.
 fn state_after(run: &Instance<'_>, period: f64, state: &[f64], inputs: &[f64]) -> Vec<f64> {
     let request = Request {
         initial: state,
@@ -30,7 +30,7 @@ fn matrix(document: &Value, name: &str) -> Vec<Vec<f64>> {
 }
 
 /// Compares the columns of A_d and B_d with differences of motions, which are exact for linear machines. `point` is the
-/// state with these deviations of states and inputs.
+/// operating point; `deviation` and `input` are the changes of states and inputs.
 fn compare(name: &str, point: &[(&str, f64)], period: f64, [deviation, input]: [f64; 2]) {
     let model = CompiledModel::load(path(name), Orders::Declared).expect("a model");
     let run = model.with_declared_parameters().expect("an instance");
@@ -78,7 +78,7 @@ fn compare(name: &str, point: &[(&str, f64)], period: f64, [deviation, input]: [
 fn discrete_matrices_match_motions_with_held_inputs() {
     compare("loudspeaker", &[], 2e-4, [1e-6, 1e-3]);
     let contact = [("x_sp", 1e-3), ("x_pr", 1e-3)];
-    // The meshes stay in contact during this time.
+    // The meshes stay in contact during the period.
     compare("planetary_arm_rig", &contact, 2e-5, [1e-5, 1.0]);
 }
 

@@ -1,12 +1,12 @@
-//! `modes --plot`: curves against the closed form of a clamped beam, bars against the table, and
-//! the regime of a piecewise model.
+//! Tests of `modes --plot`: curves are compared with the closed form of a clamped beam, bars with the printed table.
+//! The regime of a piecewise model is shown.
 
 use eomgen_tests::program::{run, run_accepted, run_rejected, text};
 use serde_json::Value;
 
 use super::{BEAM, OSCILLATOR, numbers, run_json, shipped, write_model};
 
-/// Spring that touches a wall beyond some position.
+/// Mass on a spring that touches an elastic wall beyond a position.
 const WALL: &str = r#"
 [model]
 name = "wall"
@@ -53,8 +53,8 @@ fn curves_match_shapes_of_clamped_beam() {
     let svg = std::fs::read_to_string(svg).expect("the figure");
     let drawn = curves(&svg);
     assert_eq!(drawn.len(), 5);
-    // Ratio of the deflection at half the length to that at the free end: W. C. Young, R. G.
-    // Budynas, Roark's Formulas, and from cosh - cos - sigma (sinh - sin).
+    // Mode shape cosh - cos - sigma (sinh - sin), relative to the deflection of the free end (W. C. Young, R. G.
+    // Budynas, Roark's Formulas).
     for (curve, wavenumber) in drawn
         .iter()
         .zip([1.875104069_f64, 4.694091133, 7.854757438])
@@ -69,7 +69,7 @@ fn curves_match_shapes_of_clamped_beam() {
         for (place, (_, y)) in curve.iter().enumerate() {
             let s = place as f64 / (curve.len() - 1) as f64;
             let found = (y - first) / (last - first);
-            // Pixels have two decimals, and the deflection of the end is about 50 pixels.
+            // Coordinates in pixels have two decimals, and the deflection of the end is about 50 pixels.
             let expected: f64 = shape(s) / shape(1.0);
             assert!(
                 (found - expected).abs() < 1e-3,
@@ -87,7 +87,7 @@ fn piecewise_model_prints_its_regime() {
     let spec = write_model(folder.path(), WALL);
     let svg = folder.path().join("a.svg");
     let shown = svg.display().to_string();
-    // sqrt(k/m) = 5 rad/s off the wall, sqrt((k + k_w)/m) = 10 rad/s on it.
+    // The frequency is sqrt(k/m) = 5 rad/s without contact and sqrt((k + k_w)/m) = 10 rad/s in contact with the wall.
     for (x, side, omega) in [("0", "<", 5.0), ("0.2", ">", 10.0)] {
         let at = format!("x={x}");
         let found = run_json(&["modes", &spec, "--state", &at, "--json", "--plot", &shown]);
@@ -136,7 +136,7 @@ fn figures_of_all_machines_are_complete_documents() {
             modes["modes"].as_array().expect("modes").len().min(12)
         );
     }
-    // A single coordinate has a single full bar.
+    // A machine with one coordinate has one bar of full length.
     let spec = write_model(folder.path(), OSCILLATOR);
     let found = run_json(&["modes", &spec, "--json", "--plot", &shown]);
     assert_eq!(numbers(&found["modes"][0]["shape"]), [1.0]);

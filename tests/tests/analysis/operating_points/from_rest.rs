@@ -1,5 +1,5 @@
-//! Equilibria that a search reaches from a state at which small changes have no effect: plays and drag at rest, and
-//! steady running at a given speed.
+//! Tests of `trim` from states at which the Jacobian is singular: inside plays, with quadratic drag at rest, and for
+//! steady motion at a given speed.
 
 use super::{run_json, write_model};
 
@@ -24,7 +24,7 @@ fn assert_close(found: &[f64], right: &[f64], place: &str) {
     }
 }
 
-/// Masses that hang from the ceiling and from each other, each with a play of its spring. Those in `heavy` have weight.
+/// Returns masses that hang from the ceiling and from each other; each spring has play. Masses in `heavy` have weight.
 fn hanging(count: usize, heavy: &[usize], springs: &str) -> String {
     let names: Vec<String> = (1..=count).map(|place| format!("x_{place}")).collect();
     let coordinates = names
@@ -74,7 +74,7 @@ fn plays_in_series_close_under_weight() {
             (&["--set", "b=1e-3"], 1e-6),
             (&["--set", "b=2e3"], 2.0),
         ] {
-            // The spring above mass i carries the weight of the masses from i on.
+            // The spring above mass i carries the weights of mass i and of all masses below it.
             let stretch = |above: usize| {
                 let below = heavy.iter().filter(|place| **place > above).count();
                 play + below as f64 * weight / stiffness
@@ -89,7 +89,7 @@ fn plays_in_series_close_under_weight() {
 
 #[test]
 fn plays_in_parallel_close_one_after_the_other() {
-    // 300 (d - 0.05) + 300 (d - 0.1) = 2 g for a displacement d beyond both.
+    // For a displacement d outside both plays: 300 (d - 0.05) + 300 (d - 0.1) = 2 g.
     let springs = "near = \"1/2*k*deadzone(x_1, b)^2\"\nfar = \"1/2*k*deadzone(x_1, 2*b)^2\"\n";
     let found = trim(&hanging(1, &[1], springs), &["--set", "g=30"], &["x_1"]);
     assert_close(&found, &[-(60.0 / 300.0 + 0.15) / 2.0], "both");
@@ -97,7 +97,7 @@ fn plays_in_parallel_close_one_after_the_other() {
     assert_close(&found, &[-(2.0 / 300.0 + 0.05)], "the near one");
 }
 
-/// A body that falls through air, in the directions of `[x, y, z]`.
+/// Returns a body that falls through air, with a coordinate for each of `directions`.
 fn falling(directions: &[&str], drag: &str, unit: &str) -> String {
     let coordinates = directions
         .iter()
@@ -146,7 +146,7 @@ fn falling_body_reaches_its_terminal_velocity() {
     }
 }
 
-/// Two arms with bobs that swing out as the shaft turns; the speed of the shaft is free.
+/// Centrifugal governor: two arms with bobs on a rotating shaft. The speed of the shaft is free.
 const GOVERNOR: &str = r#"
 [model]
 name = "governor"

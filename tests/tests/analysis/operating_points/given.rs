@@ -1,4 +1,4 @@
-//! Values given on the command line, and the nearest equilibria.
+//! Tests of values given on the command line, and of the nearest equilibria.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -98,7 +98,7 @@ fn modes_and_linearise_report_whether_state_is_equilibrium() {
     assert!((number(&trimmed, "theta") - PI).abs() < 1e-9);
 }
 
-/// Mass with zero spring force at x = 0, and a pressure that decays.
+/// Mass with zero spring force at x = 0, and a first-order state (pressure) that decays.
 const MOVING: &str = r#"
 [model]
 name = "moving"
@@ -372,7 +372,7 @@ fn free_inputs_are_zero_where_nothing_is_to_be_balanced() {
     }
 }
 
-/// A bob on a rod that swings about two axes, with a motor about the vertical one.
+/// Bob on a rod that swings about two axes; a motor drives the vertical axis.
 const CONICAL: &str = r#"
 [model]
 name = "conical_pendulum"

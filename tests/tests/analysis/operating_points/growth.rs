@@ -1,5 +1,5 @@
-//! Growth of the work of `check` and `modes`: instructions counted by callgrind for a model and one
-//! twice its size. Skipped without valgrind and in unoptimised builds.
+//! Tests of the growth of the work of `check` and `modes` with the size of the model. Callgrind counts the instructions
+//! for a model and for a model of twice the size. Skipped without valgrind and in unoptimised builds.
 
 use std::process::Command;
 
@@ -10,7 +10,8 @@ const MAX_RATIO: f64 = 2.5;
 /// Axes of hinges.
 const SPATIAL: [char; 3] = ['x', 'y', 'z'];
 
-/// Ratio of a work that grows with the cube of the size. Eigenvalues of a connected machine take it.
+/// Ratio of the work for twice the size if the work grows with the cube of the size, as for eigenvalues of a connected
+/// machine.
 const CUBIC_RATIO: f64 = 8.0;
 
 fn section(name: &str, count: usize, line: &dyn Fn(usize) -> String) -> String {
@@ -64,7 +65,7 @@ fn chain_with_coefficients(count: usize) -> String {
     )
 }
 
-/// Returns a chain of bodies on hinges about axes that repeat.
+/// Returns a chain of bodies on hinges; the axes of the hinges repeat periodically.
 fn hinged_bodies(count: usize, axes: &[char]) -> String {
     let frame = |k: usize| {
         let axis = axes[k % axes.len()];
@@ -86,7 +87,8 @@ fn hinged_bodies(count: usize, axes: &[char]) -> String {
         + &section("bodies", count, &body)
 }
 
-/// Returns a body on a vector that rotations move, each the square of the one before.
+/// Returns a body at the end of a vector that is rotated several times; each rotation is the square of the previous
+/// one.
 fn doubled_rotations(count: usize) -> String {
     let square = |k: usize| match k {
         0 => "R0 = \"rotation_x(a)*rotation_z(b)\"".to_owned(),
@@ -219,7 +221,7 @@ fn modes_of_connected_masses_grow_with_the_cube() {
     assert_growth_below(CUBIC_RATIO, ("modes", 40), chain_with_coefficients);
 }
 
-/// Modes without the eigenvalues.
+/// `linearise` does the work of `modes` except the eigenvalues.
 #[test]
 fn linearise_of_connected_masses_grows_linearly() {
     assert_growth("linearise", 30, chain_with_coefficients);
@@ -232,7 +234,7 @@ fn modes_of_hinged_bodies_grow_with_the_cube() {
     });
 }
 
-/// With every entry of the Jacobians derived, this chain takes 1.5 GB.
+/// If all entries of the Jacobians were derived, including zeros, this chain would need 1.5 GB.
 #[test]
 #[cfg(target_os = "linux")]
 fn modes_of_forty_hinged_bodies_take_less_than_800_mebibytes() {

@@ -1,4 +1,4 @@
-//! `modes` of models with a stiffness so large that rounding hides the others.
+//! Tests of `modes` for models with one stiffness so large that the others are lost by rounding.
 
 use std::f64::consts::TAU;
 
@@ -6,7 +6,7 @@ use eomgen_tests::program::run_rejected;
 
 use super::{run_json, write_model};
 
-/// Returns a model of two masses of 1 kg with the stiffnesses `stiff` and 25 N/m in these springs.
+/// Returns a model of two masses of 1 kg. The terms `springs` use the stiffnesses k = `stiff` and c = 25 N/m.
 fn masses(stiff: &str, springs: &str) -> String {
     format!(
         "[model]\nname = \"masses\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
@@ -19,7 +19,7 @@ fn masses(stiff: &str, springs: &str) -> String {
 #[test]
 fn lost_stiffness_is_rejected_with_its_name() {
     let folder = tempfile::tempdir().expect("a folder");
-    // Both masses move together on c: 25/2 is lost in the sum with 1e30.
+    // The stiff spring k joins the masses: omega^2 = c/(2 m) = 25/2 1/s^2, which is lost in the sum k + c.
     for stiff in ["1e16", "1e20", "1e30", "1e120", "1e200", "1e300"] {
         let text = masses(stiff, "1/2*k*(x - y)^2 + 1/2*c*y^2");
         let message = run_rejected(&["modes", &write_model(folder.path(), &text)]);
@@ -57,7 +57,7 @@ fn visible_stiffness_and_rigid_motions_keep_their_frequencies() {
         let found = run_json(&["modes", &spec, "--json"]);
         found["modes"][0]["frequency"].as_f64().expect("a number")
     };
-    // The soft spring hangs on the stiff one, or moves both masses.
+    // The soft spring is in series with the stiff one, or it acts on both masses.
     for (stiff, springs, square) in [
         ("1e30", "1/2*k*x^2 + 1/2*c*(y - x)^2", 25.0),
         ("1e9", "1/2*k*(x - y)^2 + 1/2*c*y^2", 12.5),
@@ -66,6 +66,6 @@ fn visible_stiffness_and_rigid_motions_keep_their_frequencies() {
         let found = lowest(stiff, springs);
         assert!((found / right - 1.0).abs() < 1e-5, "{stiff}: {found}");
     }
-    // No term is lost in a free pair.
+    // A free pair of masses has the exact frequency 0; no term is lost.
     assert_eq!(lowest("1e30", "1/2*k*(x - y)^2 + 0*c*x^2"), 0.0);
 }

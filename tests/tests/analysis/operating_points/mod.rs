@@ -1,4 +1,4 @@
-//! `linearise`, `modes`, `trim`, and inputs and initial states of `simulate`, against closed forms.
+//! Comparison of `linearise`, `modes`, `trim`, and inputs and initial states of `simulate` with closed forms.
 
 mod bases;
 mod constrained;
@@ -168,7 +168,7 @@ fn modes_match_textbooks() {
         );
         assert_eq!(mode["damping"], 0.0);
     }
-    // Without friction the hub turns freely: one rigid motion, then the beam's modes.
+    // Without friction the hub turns freely: the first mode is a rigid-body motion, followed by the modes of the beam.
     let hub = run_json(&[
         "modes",
         &shipped("hub_beam_tip_mass"),
@@ -199,13 +199,13 @@ fn modes_match_textbooks() {
 
 #[test]
 fn equilibria_match_closed_form() {
-    // The angle is measured from upright; the initial 3/4 pi is nearer to hanging.
+    // The angle is measured from upright; the initial angle 3/4 pi is closer to the hanging equilibrium.
     let hanging = run_json(&["trim", &shipped("pendulum"), "--json"]);
     let theta = hanging["at"]["theta"].as_f64().expect("an angle");
     assert!((theta - PI).abs() < 1e-9, "{hanging}");
     assert_eq!(hanging["stability"], "asymptotically stable");
     let spec = shipped("furuta_pendulum");
-    // The initial angle of 3 rad is next to upright.
+    // The initial angle of 3 rad is close to the upright equilibrium.
     let upright = run_json(&["trim", &spec]);
     let theta = upright["at"]["theta"].as_f64().expect("an angle");
     assert!((theta - PI).abs() < 1e-9);
@@ -339,14 +339,14 @@ fn inputs_follow_expressions_and_initial_states_are_set() {
     };
     let omega = 5.0_f64;
     for solver in ["auto", "rk"] {
-        // A step of 10 N at 0.5 s: x = (F/k)(1 - cos(omega (t - 0.5))).
+        // Response to a step of 10 N at 0.5 s: x = (F/k)(1 - cos(omega (t - 0.5))).
         for row in simulate(&["--input", "u=10*above(t - 0.5)", "--solver", solver]) {
             let after = (row[0] - 0.5).max(0.0);
             let right = 0.2 * (1.0 - (omega * after).cos());
             assert!((row[1] - right).abs() < 2e-8, "{solver} {row:?} {right}");
         }
-        // 3 sin(2 t), with numbers and with parameters: x = F/(k - m w^2) (sin(w t) - w/omega
-        // sin(omega t)).
+        // Input 3 sin(2 t), written with numbers and with parameters. The response is x = F/(k - m w^2) (sin(w t) -
+        // w/omega sin(omega t)).
         for input in ["u=3*sin(2*t)", "u=F_0*sin(w_0*t)"] {
             for row in simulate(&[
                 "--input",

@@ -1,4 +1,4 @@
-//! Linearisations with norms at rest and with powers of a field, against closed forms.
+//! Comparison of linearisations with closed forms: norms of vectors at zero, and powers of a field.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::{run_json, write_model};
 
-/// A mass in space with drag along its velocity and a spring force along its position.
+/// Returns a mass in space with drag against its velocity and a spring force along its position vector.
 fn mass_in_space(drag: &str, spring: &str) -> String {
     format!(
         r#"
@@ -34,7 +34,7 @@ spring = {{ on = "r", value = "{spring}" }}
     )
 }
 
-/// Returns the accelerations' derivatives by positions and by velocities.
+/// Returns the derivatives of the accelerations by positions and by velocities.
 fn derivatives(model: &str, state: &[&str]) -> [[[f64; 3]; 3]; 2] {
     let given: Vec<&str> = state.iter().flat_map(|at| ["--state", at]).collect();
     let document = run_json(&[&["linearise", model], &given[..]].concat());
@@ -100,7 +100,7 @@ fn powers_of_norms_have_the_derivative_0_at_rest() {
     }
 }
 
-/// A string on a bed with a force that grows with the cube of the deflection.
+/// String on an elastic bed whose force is proportional to the cube of the deflection.
 const STRING_ON_BED: &str = r#"
 [model]
 name = "string_on_bed"
@@ -132,7 +132,7 @@ fn bed_of_fourth_power_raises_frequencies_with_the_deflection() {
     for deflection in [0.0, 0.3, -1.1] {
         let state = format!("q_1={deflection}");
         let found = run_json(&["modes", &model, "--state", &state, "--json"]);
-        // With w = q sin(pi x/l), the bed adds (a/mu) times 9/4 q^2 and 3/2 q^2 to the squares.
+        // For w = q sin(pi x/l), the bed adds (a/mu) 9/4 q^2 and (a/mu) 3/2 q^2 to the squares of the frequencies.
         let squares = [(1.0, 9.0 / 4.0), (2.0, 3.0 / 2.0)].map(|(waves, factor)| {
             let own: f64 = tension / mu * (waves * PI / length).powi(2);
             own + factor * a / mu * deflection * deflection

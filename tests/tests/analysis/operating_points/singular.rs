@@ -1,10 +1,10 @@
-//! Equilibria at which a derivative has no limit.
+//! Tests of equilibria at which a derivative has no limit.
 
 use eomgen_tests::program::run_rejected;
 
 use super::{run_json, write_model};
 
-/// A piston with a cylinder that a valve connects to a reservoir at the pressure `reservoir`.
+/// Returns a piston in a cylinder that a valve connects to a reservoir with the pressure `reservoir`.
 fn piston(flow: &str, reservoir: &str, start: &str) -> String {
     format!(
         r#"

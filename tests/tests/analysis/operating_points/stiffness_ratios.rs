@@ -1,11 +1,13 @@
-//! Equilibria of machines with a stiff and a soft part: `trim` computes their digits or rejects the machine.
+//! Tests of equilibria of machines with a stiff and a soft part: `trim` computes them accurately or rejects the
+//! machine.
 
 use eomgen_tests::program::run;
 use serde_json::Value;
 
 use super::write_model;
 
-/// A mass m on a soft spring k carries a mass M on a stiff joint K. `{x}` and `{y}` are their positions.
+/// Returns a mass m on a soft spring k that carries a mass M on a stiff joint K. `x` and `y` are the expressions of
+/// their positions.
 fn masses(x: &str, y: &str, stiffness: &str, unit: &str) -> String {
     format!(
         r#"
@@ -88,7 +90,8 @@ fn soft_spring_beside_a_stiff_joint_is_computed_or_refused() {
             let (stiffness, of_si) = (format!("1e{exponent}"), format!("1e{}", exponent - 3));
             for (stiffness, unit) in [(stiffness, "N/m"), (of_si, "N/mm")] {
                 let text = masses(x, y, &stiffness, unit);
-                // From another state, `trim` does not notice that a joint of 1e14 N/m or more hides the soft spring.
+                // From another initial state, `trim` does not detect that a joint of 1e14 N/m or more hides the soft
+                // spring.
                 let starts: &[&str] = match exponent < 14 {
                     true => &["p=0", "p=-0.7"],
                     false => &["p=0"],
@@ -119,7 +122,7 @@ fn pulled_chain_without_ground_has_no_equilibrium() {
         let text = masses("p", "q", stiffness, "N/m");
         let found = trim(&text, &["--set", "k=0"]);
         assert!(found.is_err(), "{stiffness}: {found:?}");
-        // Without a force it stays where it is.
+        // Without a force, every state is an equilibrium, so the result is the initial state.
         let found = trim(&text, &["--set", "k=0", "--set", "F=0"]);
         assert_eq!(found, Ok([0.0, 0.0]), "{stiffness}");
     }

@@ -1,4 +1,4 @@
-//! Shapes from a file: frequencies of known shapes, certificates, and rejected files.
+//! Tests of mode shapes from a file: frequencies of known shapes, certificates, and rejected files.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
@@ -10,7 +10,7 @@ use eomgen_tests::program::{run_accepted, run_rejected};
 
 use super::{run_json, write_model};
 
-/// Beam between x = 0.25 and 0.95 m with its shapes in `modes.csv`.
+/// Beam between x = 0.25 m and 0.95 m with its mode shapes in `modes.csv`.
 const BEAM: &str = r#"
 [model]
 name = "beam"
@@ -44,7 +44,7 @@ mixed = "B*integral(x^2*w*diff(w, x, 2), w)/l^4 + B*integral(diff(w, x, 1)*diff(
 moment = { value = "B*at(diff(w, x, 2), x_0 + l/2)", unit = "N m" }
 "#;
 
-/// Returns a table of sine shapes at `rows` positions, denser towards the start.
+/// Returns a table of sine shapes at `rows` positions; positions are closer to each other near the start.
 fn sines(rows: usize, modes: usize) -> String {
     let mut text = "x".to_owned();
     (1..=modes).for_each(|r| write!(text, ",phi_{r}").expect("written"));
@@ -64,8 +64,8 @@ fn with_table(folder: &Path, specification: &str, table: impl AsRef<[u8]>) -> St
     write_model(folder, specification)
 }
 
-/// Simply supported beam with its modes in a table. By Rayleigh's principle the frequencies are
-/// wrong by the square of the curvature error: (r pi h)^4/720 and a little at the ends.
+/// Simply supported beam with its modes in a table. By Rayleigh's principle, the relative error of the frequencies is
+/// the square of the curvature error: (r pi h)^4/720, plus a small contribution of the ends.
 #[test]
 fn frequencies_match_shapes_of_table() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -102,7 +102,7 @@ fn certificate_with_table_passes() {
     }
 }
 
-/// The hash in the emitted code must depend on the table.
+/// The hash in the emitted code must depend on the table of shapes.
 #[test]
 fn hash_includes_the_table() {
     let folder = tempfile::tempdir().expect("a folder");

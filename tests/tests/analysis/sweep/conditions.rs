@@ -1,4 +1,4 @@
-//! Inputs and initial states of a sweep (`--input`, `--record`, `--state`) against rows of `simulate`.
+//! Comparison of sweeps with inputs and initial states (`--input`, `--record`, `--state`) with rows of `simulate`.
 
 use std::fs;
 
@@ -6,7 +6,7 @@ use eomgen_tests::program::{run, run_accepted, text};
 
 use super::place::{SweepFolder, accept, column, merge_command, refuse, table};
 
-/// k x = u - m x'' - c x', and a rotating disc that the force does not drive.
+/// Oscillator m x'' + c x' + k x = u with a cubic spring, and a rotating disc that the force does not drive.
 const DRIVEN: &str = r#"
 [model]
 name = "driven"
@@ -32,7 +32,7 @@ damper = "1/2*c*dot(x)^2"
 motor = { on = "x", value = "u" }
 "#;
 
-/// The same without a cubic term.
+/// Returns [`DRIVEN`] without the cubic term.
 fn linear() -> String {
     DRIVEN.replace(" + 1/4*h*x^4", "").replace(
         "h = { value = 0, unit = \"N/m^3\", doc = \"cubic stiffness\" }\n",
@@ -69,7 +69,7 @@ fn folder(specification: &str) -> SweepFolder {
     place
 }
 
-/// Returns the arguments of a command with the model, `--out` and more options.
+/// Returns the arguments of a command: the model, `--out` and additional options.
 fn arguments(place: &SweepFolder, command: &str, out: &str, more: &[&str]) -> Vec<String> {
     let file = |name: &str| place.path_to(name).display().to_string();
     let start = [command.to_owned(), file("driven.toml")];
@@ -119,7 +119,7 @@ fn greatest(values: &[f64]) -> f64 {
 fn driven_sweeps_match_rows_of_simulate() {
     let until = ["--until", "4"];
     for (specification, conditions) in [
-        // Held steps, whose time is a parameter, and an exact solution.
+        // The input is a step at a time that is a parameter; the motion has an exact solution.
         (linear(), &["--input", "u=F*above(t - d)"][..]),
         (
             linear(),
@@ -176,7 +176,7 @@ fn driven_sweeps_match_rows_of_simulate() {
                 .zip(rights)
             {
                 let found = column(&swept, name)[point];
-                // A maximum may be between rows, those of the record 1/64 s apart.
+                // A maximum may be between two rows, which are 1/64 s apart with the record.
                 let above = if name == "max:x" { 1e-4 } else { 1e-12 };
                 let scale = right.abs().max(1e-3);
                 assert!(
@@ -213,7 +213,8 @@ period = { value = 50, unit = "ms" }
 outputs = { u = "k_p*(r - x) - k_d*dot(x)" }
 "#;
 
-/// Last position after 2 s, by the exact motion between samples, with r = A sin(omega t) and w = sin(t) if it is driven.
+/// Returns the position after 2 s, from the exact motion between samples, with r = A sin(omega t). If `is_disturbed`, w
+/// = sin(t), otherwise 0.
 fn controlled_position(k_p: f64, omega: f64, is_disturbed: bool) -> f64 {
     let (mass, h) = (2.0, 0.05);
     let (mut x, mut v) = (0.3, 0.0);
@@ -232,7 +233,8 @@ fn controlled_position(k_p: f64, omega: f64, is_disturbed: bool) -> f64 {
     x
 }
 
-/// Before, the sweep rejected the reference as not measured unless all inputs without controller were driven.
+/// Earlier versions of the sweep rejected the reference as not measured, unless all inputs without a controller were
+/// driven.
 #[test]
 fn sweep_of_a_controlled_model_drives_a_reference_that_only_the_controller_measures() {
     let place = folder(CONTROLLED);
@@ -324,7 +326,7 @@ fn record_gives_start_and_end() {
         let last = rows.last().expect("a row");
         assert!((found - last).abs() < 1e-12, "{h}: {found}, {last}");
     }
-    // Without a cubic term perturbations decay as exp(-c t/(2 m)), whatever the input.
+    // Without the cubic term, perturbations decay as exp(-c t/(2 m)) for any input.
     let (exponent, error) = (
         column(&swept, "lambda_1")[0],
         column(&swept, "lambda_1_se")[0],
@@ -341,7 +343,7 @@ fn record_gives_start_and_end() {
     assert!(message.contains("the record ends at 5.5 s"), "{message}");
 }
 
-/// The steady response to u = F sin(omega t) on the section t = k 2 pi/omega, and the decay exp(-c t/(2 m)).
+/// Closed forms: the steady response to u = F sin(omega t) at t = 2 pi k/omega, and the decay exp(-c t/(2 m)).
 #[test]
 fn forcing_by_an_input_has_closed_form_section() {
     let place = folder(&linear());

@@ -1,5 +1,5 @@
-//! `--measure lyapunov` against the closed form of a linear oscillator, against two motions of a
-//! nonlinear one, together with `poincare`, and rejected uses.
+//! Tests of `--measure lyapunov`: comparison with the closed form of a linear oscillator and with two motions of a
+//! nonlinear oscillator, combination with `poincare`, and rejected options.
 
 use eomgen_tests::models::path;
 use eomgen_tests::program::run_accepted;
@@ -25,8 +25,8 @@ fn exponent_of_linear_oscillator_is_minus_damping() {
         // Every tangent vector decays as exp(-c t/(2 m)) and rotates.
         let expected = -c[point] / 1000.0 / 2.0;
         let lambda = column(&found, "lambda_1")[point];
-        // The length of a rotating vector varies by a factor below 2.2, the ratio of the ellipse's
-        // axes; the mean over 400 periods divides its logarithm by their time.
+        // The length of a rotating vector varies by a factor below 2.2, the ratio of the ellipse's axes. The mean over
+        // 400 periods divides the logarithm of this factor by their duration.
         let bound = 2.2_f64.ln() / (400.0 * std::f64::consts::TAU / omega[point]);
         assert!((lambda - expected).abs() < bound, "{point}: {lambda}");
         assert!(column(&found, "lambda_1_se")[point] < bound * 10.0);
@@ -151,7 +151,7 @@ fn exponent_of_duffing_oscillator_matches_two_motions() {
     run_accepted(&[&what[..], &span].concat());
     let found = table(&out);
     let (lambda, error) = (column(&found, "lambda_1"), column(&found, "lambda_1_se"));
-    // Periodic motion in one well: the tangent vector decays as exp(-delta t/2) while it rotates.
+    // The motion is periodic in one potential well, and the tangent vector rotates and decays as exp(-delta t/2).
     assert!((lambda[0] + 0.125).abs() < 5e-3, "{lambda:?}");
     let expected = growth_of_a_distance(0.4, 50, 300);
     assert!(expected > 0.05, "chaotic: {expected}");

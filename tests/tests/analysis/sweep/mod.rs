@@ -1,5 +1,5 @@
-//! `eomgen sweep` and `eomgen merge`: equal bytes for any threads, shards and kills, numbers
-//! against the closed form of a forced oscillator, and rejected options.
+//! Tests of `eomgen sweep` and `eomgen merge`: byte-identical results for any number of threads and shards and after
+//! kills, comparison with the closed form of a forced oscillator, and rejected options.
 
 mod conditions;
 mod exponents;
@@ -31,7 +31,7 @@ fn sweep_matches_closed_form() {
     assert_eq!(c[..5], [400.0, 400.0, 400.0, 400.0, 700.0]);
     assert_eq!((omega[0], omega[3], omega[4]), (1.0, 3.0, 1.0));
     for (point, mean) in column(&table, "poincare_mean").iter().enumerate() {
-        // x = A sin(omega t) + B cos(omega t), which is B at the forcing period.
+        // The response x = A sin(omega t) + B cos(omega t) equals B after every forcing period.
         let (c, omega) = (c[point] / 1000.0, omega[point]);
         let stiffness = 4.0 - omega * omega;
         let amplitude = 3.0 / (stiffness.powi(2) + (c * omega).powi(2));
@@ -60,7 +60,7 @@ fn varied_expression_and_set_parameter_match_simulate() {
     let swept = table(&place.path_to("line"));
     let csv = place.path_to("x.csv").display().to_string();
     let spec = place.path_to("oscillator.toml").display().to_string();
-    // With omega = 2 the fourth period begins at 3 pi.
+    // For omega = 2, the fourth period begins at 3 pi.
     let (until, sample) = (format!("{:?}", TAU * 1.5), format!("{:?}", TAU / 2.0));
     let settings = ["--set", "zeta=0.3", "--set", "F=-2", "--out", &csv];
     let times = ["--until", &until, "--interval", &sample];
@@ -69,7 +69,7 @@ fn varied_expression_and_set_parameter_match_simulate() {
     let last = text.lines().last().expect("a row").split(',').nth(1);
     let expected: f64 = last.expect("x").parse().expect("a number");
     let found = column(&swept, "poincare_2")[1];
-    // Two runs of the exact solver with different samples; the table has all digits.
+    // Sweep and `simulate` run the exact solver with different output times; the table contains all digits.
     assert!(
         (found - expected).abs() < 1e-13,
         "{found}, expected {expected}"
@@ -99,7 +99,7 @@ fn threads_and_shards_give_same_bytes() {
     }
     accept(&merge_command(&shards));
     assert!(results(&one) == results(&shards), "three shards");
-    // Repeated with nothing left to compute.
+    // The command is repeated although all points are computed.
     let text = accept(&place.sweep("one", &MAP));
     assert!(text.contains("0 points computed, 20 resumed"), "{text}");
     assert!(results(&one) == results(&two), "again");
@@ -124,7 +124,7 @@ fn shards_in_separate_folders_can_be_merged() {
     assert!(results(&place.path_to("whole")) == results(&first));
 }
 
-/// Returns the number of finished parts; unfinished files after a kill are computed again.
+/// Returns the number of finished parts. Unfinished files after a kill are not counted; they are computed again.
 fn count_finished(folder: &Path) -> usize {
     let parts = parts(folder);
     parts.iter().filter(|name| name.ends_with(".part")).count()
@@ -145,7 +145,7 @@ fn kill_after(mut child: Child, folder: &Path, some: usize) {
 #[test]
 fn killed_run_resumes_to_same_bytes() {
     let place = SweepFolder::new();
-    // Points that take long enough, so that a kill falls between the first and the last.
+    // The points take long enough for a kill between the first and the last point.
     let slow = [
         "--vary",
         "c=400:1000:5",

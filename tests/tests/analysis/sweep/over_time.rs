@@ -1,5 +1,5 @@
-//! Measures over time (`max`, `rms`, `final`) against closed forms of responses, impacts and pulses, and against rows of
-//! `simulate`.
+//! Comparison of measures over time (`max`, `rms`, `final`) with closed forms of responses, impacts and pulses, and
+//! with rows of `simulate`.
 
 use std::f64::consts::SQRT_2;
 
@@ -57,7 +57,7 @@ fn forced_response_has_closed_form_amplitude() {
     }
 }
 
-/// Several statistics of one motion have the bits of those measured alone, and cost one simulation.
+/// Several statistics of one motion are bit-identical to separate measurements and need one simulation.
 #[test]
 fn measurements_of_one_motion_have_the_bits_of_single_ones() {
     let model = CompiledModel::derive(load("planetary_arm"), Orders::Declared).expect("a model");
@@ -103,7 +103,7 @@ fn measurements_of_one_motion_have_the_bits_of_single_ones() {
     }
 }
 
-/// Consecutive measures over time are one measure, whose worker simulates each point once.
+/// Consecutive measures over time share one simulation of each point.
 #[test]
 fn measures_over_time_of_a_sweep_share_the_motion_of_a_point() {
     let request = |measures: &[&str]| SweepRequest {
@@ -187,7 +187,7 @@ fn measures_over_time_match_fine_grid() {
     };
     near("max:tip", course("tip").fold(f64::MIN, f64::max), 1e-6);
     let last = course("x_sp_dot").next_back().expect("rows");
-    // The parameter differs in its last bit, and meshes open and close.
+    // The parameter differs in the last bit, and meshes open and close.
     near("final:x_sp_dot", last, 1e-9);
     let squares: Vec<f64> = course("tip").map(|x| x * x).collect();
     let ends = 0.5 * (squares[0] + squares[30_000]);
@@ -195,7 +195,7 @@ fn measures_over_time_match_fine_grid() {
     near("rms:tip", rms, 1e-6);
 }
 
-/// A mass between two stiff walls; `h` excludes the exact solver.
+/// Mass between two stiff walls. The term with `h` makes the model nonlinear, so that the exact solver is not used.
 const STOPPED: &str = r#"
 [model]
 name = "stopped"
@@ -258,7 +258,7 @@ motor = { on = "x", value = "u" }
 drive = "u"
 "#;
 
-/// Returns the same model with a cubic spring of no stiffness, which only the general solvers support.
+/// Adds a cubic spring of zero stiffness, so that only the general solvers support the model.
 fn general(specification: &str) -> String {
     let declared = "[parameters]\nh = { value = 0, unit = \"N/m^3\" }";
     let cubic = "[potential]\ncubic = \"1/4*h*x^4\"";
@@ -267,7 +267,7 @@ fn general(specification: &str) -> String {
         .replace("[potential]", cubic)
 }
 
-/// Returns the columns of these measures of a specification.
+/// Runs a sweep of a specification and returns the columns of these measures.
 fn sweep_columns(specification: &str, options: &[&str], measures: &[&str]) -> Vec<Vec<f64>> {
     let place = SweepFolder::new();
     let [spec, out] = ["own.toml", "map"].map(|name| place.path_to(name).display().to_string());
@@ -296,7 +296,7 @@ fn velocity_just_before_an_impact_is_the_maximum() {
     let options = ["--vary", "e=0.5:0.9:3", "--until", "1.2"];
     let found = sweep_columns(BALL, &options, &["max:fall", "max:y_dot", "rms:fall"]);
     for (point, e) in [0.5, 0.7, 0.9].into_iter().enumerate() {
-        // It falls for 0.5 s to 5 m/s, then rises with 5 e m/s.
+        // The ball falls for 0.5 s to the speed 5 m/s, then rises with 5 e m/s.
         assert_near(found[0][point], 5.0, 1e-9);
         assert_near(found[1][point], 5.0 * e, 1e-9);
         let mut square = 5.0_f64.powi(3) / 30.0;
@@ -325,7 +325,7 @@ fn force_of_a_hard_contact_is_seen_between_samples() {
     for specification in [STOPPED.to_owned(), general(STOPPED)] {
         let found = sweep_columns(&specification, &options, &measures);
         for (largest, rms) in found[0].iter().zip(&found[1]) {
-            // The contact is half an oscillation of 1e4 rad/s with the amplitude v sqrt(k m).
+            // The contact lasts half a period of 1e4 rad/s; the force has the amplitude v sqrt(k m).
             assert_near(*largest, 1e4, 1e-7);
             let square = 1e8 * 0.5 * std::f64::consts::PI * 1e-4;
             assert_near(*rms, (square / 0.8).sqrt(), 1e-7);
@@ -348,7 +348,7 @@ fn decaying_oscillation_and_narrow_pulse_have_closed_forms() {
         decay * (mean + swing / (4.0 * (a * a + w * w)))
     };
     let rms = ((square(until) - square(0.0)) / until).sqrt();
-    // The rate is largest at tan(w t) = w/a.
+    // The rate has its maximum at tan(w t) = w/a.
     let greatest = 2.0 * (-a * (w / a).atan() / w).exp();
     let released = ["--vary", "F=1:2:2", "--state", "x=-1", "--until", "5"];
     let pulse = [
@@ -365,13 +365,13 @@ fn decaying_oscillation_and_narrow_pulse_have_closed_forms() {
         let found = sweep_columns(&specification, &pulse, &["max:drive", "rms:drive"]);
         for (point, force) in [1.0, 2.0].into_iter().enumerate() {
             assert_near(found[0][point], force, 1e-12);
-            // Jumps are located to roundings of a step, which is much longer than the pulse.
+            // The times of the jumps have rounding errors relative to the step, which is much longer than the pulse.
             assert_near(found[1][point], force * (1e-5_f64 / 5.0).sqrt(), 1e-7);
         }
     }
 }
 
-/// An oscillator without damping, x = sin t, and quantities with narrow peaks at x = a.
+/// Undamped oscillator, x = sin t, and observables with narrow peaks at x = a.
 const PEAKS: &str = r#"
 [model]
 name = "peaks"
@@ -407,7 +407,7 @@ fn narrow_peaks_between_steps_are_measured() {
     for specification in [PEAKS.to_owned(), general(PEAKS)] {
         let found = sweep_columns(&specification, &options, &measures);
         for (point, a) in [0.9_f64, 0.945, 0.99].into_iter().enumerate() {
-            // x is beyond a for the angle 2 half.
+            // x exceeds a over an angle of 2 `half`.
             let half = a.acos();
             let sine = half.sin();
             let square = half + sine * a - 4.0 * a * sine + 2.0 * a * a * half;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use eomgen_sweep::{Folder, Table, merge};
 use eomgen_tests::program::{run_accepted, run_rejected};
 
-/// m x'' + c x' + k x = F sin(omega t), with c in another unit, to test unit conversion.
+/// Oscillator m x'' + c x' + k x = F sin(omega t). The unit of c is not SI, to test the conversion.
 pub const OSCILLATOR: &str = r#"
 [model]
 name  = "oscillator"
@@ -54,7 +54,7 @@ impl SweepFolder {
     }
 }
 
-/// Two axes of points that take little time.
+/// Options of a sweep over two axes with fast points.
 pub const MAP: [&str; 8] = [
     "--vary",
     "c=400:1000:4",

@@ -1,4 +1,4 @@
-//! Points without a result, incompatible sweeps, and invalid options.
+//! Tests of points without a result, incompatible sweeps, and invalid options.
 
 use std::fs;
 
@@ -57,7 +57,7 @@ fn invalid_engine_options_are_rejected() {
 #[test]
 fn points_without_result_have_a_reason() {
     let place = SweepFolder::new();
-    // Without mass there is no motion, and at frequency 0 no forcing period.
+    // Without mass the model cannot be simulated, and at frequency 0 there is no forcing period.
     let axes = ["--vary", "m=0:1:2", "--vary", "omega=0:2:2"];
     let more = ["--set", "zeta=0.1", "--periods", "2", "--json"];
     let json = accept(&place.sweep("few", &[&axes[..], &more[..]].concat()));

@@ -1,5 +1,5 @@
-//! Random samples of uncertain parameters: closed forms within standard errors, equal bytes for any
-//! threads, shards and kills, and rejected options.
+//! Tests of random samples of uncertain parameters: closed forms within standard errors, byte-identical results for any
+//! number of threads and shards and after kills, and rejected options.
 
 use std::fs;
 use std::path::Path;
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::place::{SweepFolder, column, table};
 
-/// Mass on a spring under a force, all uncertain; displacements are linear in the force.
+/// Mass on a spring under a force. All parameters are uncertain, and displacements are linear in the force.
 const UNCERTAIN: &str = r#"
 [model]
 name = "uncertain"
@@ -97,7 +97,8 @@ fn mean_and_deviation_of_linear_measure_match_closed_form() {
     let cos = (5.0_f64 * 0.5).cos();
     let (by_force, by_start) = ((1.0 - cos) / 50.0, cos);
     let mean = 3.0 * by_force + 0.025 * by_start;
-    // 5 % of 3 N, and a range of 30 mm with a standard deviation of 30 mm/sqrt(12).
+    // The force has a standard deviation of 5 % of 3 N. The initial value is uniform in a range of 30 mm, with a
+    // standard deviation of 30 mm/sqrt(12).
     let parts = [0.15 * by_force, 0.03 / 12_f64.sqrt() * by_start];
     let sd = parts[0].hypot(parts[1]);
     let root = (COUNT as f64).sqrt();
@@ -197,7 +198,7 @@ fn set_changes_the_nominal_value_of_uncertain_parameter() {
     let forces = table(&place.path_to("out"));
     let forces = column(&forces, "F");
     let mean = forces.iter().sum::<f64>() / 60.0;
-    // 5 % of 30 N divided by sqrt(60).
+    // The standard error of the mean is 5 % of 30 N divided by sqrt(60).
     assert!((mean + 30.0).abs() < 4.0 * 1.5 / 60_f64.sqrt(), "{mean}");
     assert!(
         forces.iter().all(|force| *force < 0.0),
@@ -210,7 +211,7 @@ fn set_changes_the_nominal_value_of_uncertain_parameter() {
             "{message}"
         );
     }
-    // Without samples, uncertainties have no effect.
+    // In a grid without `--samples`, uncertainties have no effect.
     accept(&arguments(&place, "grid", &["--vary", "F=0:50:2"]));
 }
 

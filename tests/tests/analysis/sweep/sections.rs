@@ -1,4 +1,4 @@
-//! `--measure poincare:NAME` and `--section`: any coordinate, and models without forcing.
+//! Tests of `--measure poincare:NAME` and `--section` for any coordinate and for models without forcing.
 
 use eomgen_tests::program::{run, run_accepted, run_rejected};
 
@@ -52,13 +52,13 @@ fn section_at_a_coordinate_value_samples_autonomous_model() {
     accept(&sweep_two(&place, &[&section[..], &span].concat()));
     let found = table(&place.path_to("two"));
     let one = |name: &str| column(&found, name)[0];
-    // x falls through 0 at t = pi (2 k + 1), when y = cos(1.5 pi (2 k + 1)) = 0.
+    // x crosses 0 downwards at t = pi (2 k + 1). At these times y = cos(1.5 pi (2 k + 1)) = 0.
     assert!((one("poincare:y_time") - std::f64::consts::TAU).abs() < 1e-7);
     for point in 1..=12 {
         let y = one(&format!("poincare:y_{point}"));
         assert!(y.abs() < 1e-6, "{point}: {y}");
     }
-    // The rates of y there alternate between 1.5 and -1.5.
+    // At these times the rate of y alternates between 1.5 and -1.5.
     assert_eq!(one("poincare:y_period"), 2.0);
     assert_eq!(one("poincare:y_clusters"), 2.0);
 }
@@ -78,7 +78,7 @@ fn upward_section_samples_rising_crossings() {
     accept(&sweep_two(&place, &[&section[..], &span].concat()));
     let found = table(&place.path_to("two"));
     for point in 1..=8_u32 {
-        // Rising sin(t) = 1/2: t = pi/6 + 2 pi k.
+        // sin(t) crosses 1/2 upwards at t = pi/6 + 2 pi k.
         let t = std::f64::consts::PI / 6.0 + std::f64::consts::TAU * f64::from(point + 1);
         let y = column(&found, &format!("poincare:y_{point}"))[0];
         assert!((y - (1.5 * t).cos()).abs() < 1e-6, "{point}: {y}");
@@ -100,13 +100,14 @@ fn poincare_of_another_coordinate_samples_once_per_period() {
     let out = place.path_to("map").display().to_string();
     let given = ["sweep", &spec, "--out", &out];
     run_accepted(&[&given[..], &more, &["--periods", "4"]].concat());
-    // m = 1, k = 4, omega = 2: at resonance x = -F/(c omega) cos(omega t).
+    // With m = 1, k = 4 and omega = 2 the response is resonant: x = -F/(c omega) cos(omega t).
     let found = table(&place.path_to("map"));
     let rate = column(&found, "poincare:x_dot_mean")[0];
     assert!(rate.abs() < 1e-9, "{rate}");
 }
 
-/// Falling through 0 at t = pi sqrt(m) (2 k + 1): three crossings before 19 s with m = 1, two with m = 1.5.
+/// x crosses 0 downwards at t = pi sqrt(m) (2 k + 1). Before 19 s there are three crossings for m = 1 and two for m =
+/// 1.5.
 #[test]
 fn points_with_few_crossings_are_named() {
     let section = [
@@ -220,7 +221,7 @@ fn invalid_sections_are_rejected() {
     }
 }
 
-/// Shaft driven by a motor with a varying torque; PHI is its coordinate.
+/// Shaft driven by a motor with a varying torque; PHI stands for the angle.
 const SHAFT: &str = r#"
 [model]
 name = "shaft"
@@ -240,7 +241,7 @@ c = "1/2*c*dot(phi)^2"
 motor = { on = "phi", value = "T_0 + T_1*cos(omega*t)" }
 "#;
 
-/// Shaft that a rotating field locks to its speed; the phase of the lock does not depend on d.
+/// Shaft that a rotating field synchronises with its speed; the phase between shaft and field does not depend on d.
 const LOCKED_SHAFT: &str = r#"
 [model]
 name = "locked"
@@ -289,7 +290,7 @@ fn repetition(place: &SweepFolder, text: &str, vary: &str, quantity: &str) -> (f
 fn rotating_and_travelling_machines_have_period_one() {
     use std::f64::consts::PI;
     let place = SweepFolder::new();
-    // By its rate, and by the angle within a range of angles.
+    // The period is determined from the rate, and from the angle modulo one turn.
     assert_eq!(repetition(&place, SHAFT, "c=0.5:0.6:2", "phi_dot").0, 1.0);
     let (period, greatest) = repetition(&place, SHAFT, "c=0.5:0.6:2", "phi");
     assert!(period == 1.0 && greatest <= PI, "{period} {greatest}");
@@ -302,14 +303,14 @@ fn rotating_and_travelling_machines_have_period_one() {
         .replace("N m\"", "N\"");
     assert_eq!(repetition(&place, &rack, "c=0.5:0.6:2", "phi_dot").0, 1.0);
     assert_eq!(repetition(&place, &rack, "c=0.5:0.6:2", "phi").0, 1.0);
-    // Two wheels in elastic contact turn together.
+    // Two wheels in elastic contact turn together, so the equations repeat only for a common turn.
     let gear = SHAFT
         .replace("[coordinates]", "k = { value = 40, unit = \"N m\" }\n[coordinates]\npsi = { unit = \"rad\" }")
         .replace("[dissipation]", "w = \"1/2*J*dot(psi)^2\"\n[potential]\nk = \"1/2*k*(phi - 2*psi)^2\"\n[dissipation]\nd = \"1/2*c*dot(psi)^2\"");
     assert_eq!(repetition(&place, &gear, "c=0.5:0.6:2", "phi_dot").0, 1.0);
     assert_eq!(repetition(&place, &gear, "c=0.5:0.6:2", "psi").0, 1.0);
-    // A constant torque turns the pendulum over, so its equations repeat every turn. The torque is
-    // modulated so that the motion locks to it.
+    // A constant torque rotates the pendulum, so its equations repeat every turn. The torque is modulated, and the
+    // motion synchronises with the modulation.
     let pendulum = SHAFT
         .replace(
             "value = 0.5, unit = \"N m\" }",
@@ -344,12 +345,12 @@ fn locked_shaft_has_period_one() {
             assert_eq!(period, 1.0, "{quantity}, {vary}");
         }
     }
-    // A load that pulsates at half the frequency of the field.
+    // The load pulsates at half the frequency of the field.
     let pulsating = LOCKED_SHAFT.replace("omega*t)\" }", "omega*t) + 0.1*k*sin(omega*t/2)\" }");
     assert_eq!(repetition(&place, &pulsating, "d=5:5:1", "phi_dot").0, 2.0);
 }
 
-/// Rotor in a potential V that decelerates and accelerates it.
+/// Rotor in a periodic potential V that decelerates and accelerates it.
 const ROTOR: &str = r#"
 [model]
 name = "rotor"
@@ -389,7 +390,7 @@ fn sweep_with_section(
 fn section_at_an_angle_is_crossed_once_per_turn() {
     let place = SweepFolder::new();
     let rotor = ROTOR.replace("\"V\"", "\"a*cos(p)\"");
-    // The energy is 18 + 0.1 cos(0.1) in every turn.
+    // The energy 18 + 0.1 cos(0.1) is conserved.
     let rate = |p: f64| (36.0 + 0.2 * (0.1f64.cos() - p.cos())).sqrt();
     for section in ["p=1", "p=1 + 4*pi", "p=-1:up"] {
         let one = sweep_with_section(&place, &rotor, "poincare:p_dot", section);
@@ -403,7 +404,7 @@ fn section_at_an_angle_is_crossed_once_per_turn() {
             let found = one(&point.to_string());
             assert!((found - rate(at)).abs() < 1e-7, "{section}: {found}");
         }
-        // The time per turn is the integral of 1/rate over the angle.
+        // The time for one turn is the integral of 1/rate over the angle.
         let parts = 0..1000;
         let turn: f64 = parts
             .map(|k| 1.0 / rate(std::f64::consts::TAU * f64::from(k) / 1000.0))
@@ -414,7 +415,7 @@ fn section_at_an_angle_is_crossed_once_per_turn() {
     let angle = sweep_with_section(&place, &rotor, "poincare:p", "p=1");
     assert_eq!(angle("period"), 1.0);
     assert!((angle("min") - angle("max")).abs() < 1e-7);
-    // Backwards, without a potential: one solver step covers many turns.
+    // The rotor turns backwards without a potential; one solver step covers many turns.
     let back = ROTOR
         .replace("\"V\"", "\"0*a\"")
         .replace("rate = 6", "rate = -6");
@@ -426,7 +427,8 @@ fn section_at_an_angle_is_crossed_once_per_turn() {
 #[test]
 fn section_at_an_angle_with_spring_is_crossed_at_its_value_only() {
     let place = SweepFolder::new();
-    // w = 2 rad/s, with an amplitude of about 12 rad: the section is crossed once per 2 pi/w.
+    // A spring makes the rotor oscillate with w = 2 rad/s and an amplitude of about 12 rad. The section is crossed once
+    // in every period 2 pi/w.
     let spring = ROTOR
         .replace("\"V\"", "\"1/2*40*a*p^2\"")
         .replace("initial_rate = 6", "initial_rate = 24");
