@@ -1,10 +1,10 @@
-"""Time of a call with 100,000 states compared with the time of the machine code.
+"""Compares the time of a call with 100,000 states with the time of the machine code.
 
     python python/benches/many_states.py [SPECIFICATION ...]
 
-The machine code's own time is that of a loop in Rust over the same states, in memory that is there
-already: `sim/compiled_model/examples/rates_of_many_states.rs`, which cargo builds. Both take turns, and
-of each the least time counts. The rates must have the same bits.
+The time of the machine code is measured by a Rust loop over the same states, in memory that is already allocated:
+`sim/compiled_model/examples/rates_of_many_states.rs`, which cargo builds. Both programs run in turn, and the
+shortest time of each counts. The rates must be bit-identical.
 """
 
 import json
@@ -45,7 +45,7 @@ def example() -> str:
 
 
 def measured(loop: str, path: Path) -> None:
-    """Measures and prints both times of a specification."""
+    """Measures and prints both times for a specification."""
     m = eomgen.load(path)
     x = m.initial + 1e-4 * np.random.default_rng(1).standard_normal((STATES, len(m.states)))
     own, called = np.inf, np.inf

@@ -55,7 +55,7 @@ def program():
 
 @pytest.fixture
 def states():
-    """Returns random states of a model, a row each."""
+    """Returns random states of a model, one per row."""
 
     def of(model, count, size=1e-3):
         return size * np.random.default_rng(1).standard_normal((count, len(model.states)))
@@ -65,10 +65,10 @@ def states():
 
 @pytest.fixture
 def interrupt():
-    """Sends Ctrl-C during the block, which must end soon after it, also on a busy machine.
+    """Sends Ctrl-C during the block, which must end soon afterwards, even on a busy machine.
 
-    A process that was started in the background of a shell ignores it, and Python with it: hence the
-    handler.
+    A process that a shell started in the background ignores Ctrl-C, and so does Python; therefore the
+    handler is set.
     """
 
     @contextlib.contextmanager

@@ -1,4 +1,4 @@
-"""Arguments of wrong kinds or out of range: every message names the argument, the given value and the right ones."""
+"""Tests of arguments of wrong types or out of range: every message names the argument, the given value and the valid values."""
 
 import re
 import warnings
@@ -28,7 +28,7 @@ spring = "1/2*k*x^2"
 drive = { on = "x", value = "u*cos(omega*t)" }
 """
 
-# Values of all kinds. A call may accept some of them.
+# Values of all types. A call may accept some of them.
 VALUES = [
     None,
     0,
@@ -59,7 +59,7 @@ VALUES = [
     lambda *given: 0.0,
 ]
 
-# Texts of exceptions that Python and PyO3 raise for values of another kind.
+# Texts of exceptions that Python and PyO3 raise for values of a wrong type.
 BARE = re.compile(
     r"not iterable|must be real|argument '|unsupported operand|unhashable|has no attribute|not callable|has no len|"
     r"cannot be converted|expected str|not subscriptable|cannot convert|could not convert|ambiguous|required positional"
@@ -235,7 +235,7 @@ def test_messages_name_the_argument(calls, name, tmp_path, monkeypatch):
                 continue
             text = str(error)
             assert not BARE.search(text), f"{name}({argument}={value!r}): {text}"
-            # Another argument may be wrong, or wrong beside this value.
+            # The message may be about another argument, which is invalid or does not match this value.
             others = (f"{other} = " for other in valid)
             words = (argument, *ALIASES.get(argument, ()), *others, "abc.toml")
             assert any(word in text for word in words), f"{name}({argument}={value!r}): {text}"

@@ -1,4 +1,4 @@
-"""Rates, observables, energy and Jacobians of single states and of arrays."""
+"""Tests of rates, observables, energy and Jacobians of single states and of arrays."""
 
 import threading
 

@@ -1,4 +1,4 @@
-"""Operations of the program in Python: same results as the commands."""
+"""Tests that Python functions give the same results as the commands."""
 
 import json
 import subprocess

@@ -1,4 +1,4 @@
-"""Simulations that continue from call to call."""
+"""Tests of simulations that continue over several calls."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Controllers of a specification and Python functions as controllers."""
+"""Tests of controllers of a specification and of Python functions as controllers."""
 
 import numpy as np
 import pytest

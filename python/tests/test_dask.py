@@ -1,5 +1,5 @@
-"""A sweep on a Dask cluster of two workers, one of which is killed during the run. The merged table has the same bytes as
-that of one machine."""
+"""Tests a sweep on a Dask cluster of two workers, one of which is killed during the run. The merged table must equal
+that of a single machine, byte by byte."""
 
 import os
 import signal
@@ -33,7 +33,7 @@ damper = "1/2*c*dot(x)^2"
 drive = { on = "x", value = "F*sin(omega*t)" }
 """
 
-# Points take some hundredths of a second, so that the kill occurs between the first and the last.
+# A point takes some hundredths of a second, so the worker is killed between the first and the last point.
 VARIED = ["--vary", "c=0.4:1:5", "--vary", "omega=1:3:8", "--measure", "poincare"]
 SPAN = ["--transient", "20000", "--periods", "8"]
 

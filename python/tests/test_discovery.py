@@ -1,4 +1,4 @@
-"""Discovery on a small simulated dataset: results, files, rejected arguments."""
+"""Tests of a discovery on a small simulated dataset: results, files, rejected arguments."""
 
 import json
 import re
@@ -135,7 +135,7 @@ def test_ctrl_c_interrupts_a_discovery(arm, tmp_path, interrupt):
             tmp_path / f"{name}.csv", table, delimiter=",", header="t,u,theta_c,tip", comments=""
         )
     (tmp_path / "dataset.toml").write_text(ARM_DATASET, encoding="utf-8")
-    # During the fit of the null model, the analysis of its residual, screening and fits.
+    # The interrupts occur during the fit of the null model, the analysis of its residual, screening and fits.
     for after in (0.3, 1.0, 3.0, 8.0):
         with pytest.raises(KeyboardInterrupt), interrupt(after):
             eomgen.discover(arm, tmp_path / "dataset.toml")

@@ -1,4 +1,4 @@
-"""Gradients of simulated motions against differences of motions."""
+"""Tests of gradients of simulated motions against finite differences."""
 
 import warnings
 

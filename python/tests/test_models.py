@@ -1,4 +1,4 @@
-"""Loading, parameters, linearisation, error messages."""
+"""Tests of loading, parameters, linearisation and error messages."""
 
 import json
 import pickle
@@ -187,7 +187,7 @@ def test_discrete_linearisation_is_the_exponential_over_a_period(cart):
     n, m = linear.B.shape
     block = np.zeros((n + m, n + m))
     block[:n, :n], block[:n, n:] = linear.A, linear.B
-    # Euler steps of a millionth, by squaring.
+    # Reference: Euler steps of a millionth of the period, by repeated squaring.
     power = np.eye(n + m) + block * 0.01 / 2**30
     for _ in range(30):
         power = power @ power

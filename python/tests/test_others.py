@@ -1,4 +1,4 @@
-"""Examples of docs/python.md with other libraries, if they are installed."""
+"""Tests of the examples of docs/python.md with other libraries, if these are installed."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from conftest import PROJECT, SPECIFICATIONS
 
 
 def written(section, block=0, **names):
-    """Runs a block of code of a section of the page with given names. Returns its names."""
+    """Runs a block of code of a section of the page with given variables. Returns all variables."""
     page = (PROJECT / "docs" / "python.md").read_text(encoding="utf-8")
     text = page.split(f"## {section}\n", 1)[1].split("```python\n")[1 + block].split("```", 1)[0]
     exec(compile(text, f"docs/python.md, {section}", "exec"), names)

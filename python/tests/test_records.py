@@ -1,4 +1,4 @@
-"""Conversion of NumPy and MATLAB records to CSV, and rejected files."""
+"""Tests of the conversion of NumPy and MATLAB records to CSV, and of rejected files."""
 
 import csv
 

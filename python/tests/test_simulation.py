@@ -1,4 +1,4 @@
-"""Trajectories: comparison with the command line, access by name, tables, rejected arguments, Ctrl-C."""
+"""Tests of trajectories: comparison with the command line, access by name, tables, rejected arguments, Ctrl-C."""
 
 import subprocess
 import threading
@@ -67,7 +67,7 @@ def test_inputs_are_numbers_samples_or_functions(cart):
     held = of(np.sin(t))
     assert not np.array_equal(held.states, of(lambda t: np.sin(t)).states)
     assert np.allclose(of(lambda t: np.sin(t)).states, of("sin(t)").states, rtol=2e-8, atol=2e-8)
-    # Rows within long steps have an error of at most 20 times the tolerance, 1e-9.
+    # Interpolated rows inside long steps have an error of at most 20 times the tolerance, 1e-9.
     assert np.allclose(of(0.5).states, of(np.full(101, 0.5)).states, rtol=2e-8, atol=2e-8)
     # The force is constant from sample to sample.
     step = eomgen.load(cart.text).simulate(
@@ -458,7 +458,7 @@ def test_prescribed_motion_has_spline_rates():
     assert crane.inputs == ("s", "s_dot", "s_ddot", "l", "l_dot", "l_ddot")
     drive, sample = (lambda t: 0.3 * t**2 - 0.05 * t**3), 0.01
     r = crane.simulate(until=3, interval=sample, inputs={"s": drive, "l": 6.0})
-    # m (l theta'' + s'' cos theta + g sin theta) + c (l theta' + s' cos theta) = 0, by SciPy.
+    # Reference: m (l theta'' + s'' cos theta + g sin theta) + c (l theta' + s' cos theta) = 0, solved by SciPy.
     solve_ivp = pytest.importorskip("scipy.integrate").solve_ivp
 
     def rates(t, y):

@@ -1,4 +1,4 @@
-"""All cells of the notebook run, and their assertions hold."""
+"""Tests that all cells of the notebook run and that their assertions hold."""
 
 import pytest
 

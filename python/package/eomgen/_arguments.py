@@ -35,7 +35,7 @@ def rejected(what: str, given: Any, expected: str) -> str:
 
 
 def numbers(what: str, given: ArrayLike, expected: str = "real numbers") -> Array:
-    """Converts to a contiguous float64 array. Raises TypeError unless all entries are real numbers."""
+    """Converts a value to a contiguous float64 array. Raises TypeError unless all entries are real numbers."""
     if type(given) is np.ndarray and given.dtype is FLOAT and given.flags.c_contiguous:
         return given
     if isinstance(given, np.ma.MaskedArray):
@@ -50,7 +50,7 @@ def numbers(what: str, given: ArrayLike, expected: str = "real numbers") -> Arra
 
 
 def number(what: str, given: Any, expected: str = "one number") -> float:
-    """Converts to one number, which may be infinite or NaN."""
+    """Converts a value to one number, which may be infinite or NaN."""
     array = numbers(what, given, expected)
     if array.size != 1:
         raise TypeError(rejected(what, given, expected))
@@ -58,7 +58,7 @@ def number(what: str, given: Any, expected: str = "one number") -> float:
 
 
 def real(what: str, given: Any, expected: str = "a finite number") -> float:
-    """Converts to one finite number."""
+    """Converts a value to one finite number."""
     value = number(what, given, expected)
     if not math.isfinite(value):
         raise ValueError(f"{what} = {value}: expected {expected}")
@@ -66,7 +66,7 @@ def real(what: str, given: Any, expected: str = "a finite number") -> float:
 
 
 def whole(what: str, given: Any, most: int = 2**63 - 1, least: int = 0) -> int:
-    """Converts to a whole number from `least` to `most`."""
+    """Converts a value to a whole number from `least` to `most`."""
     expected = f"a whole number from {least} to {most}"
     if isinstance(given, (bool, np.bool_)):
         raise TypeError(rejected(what, given, expected))
@@ -80,7 +80,7 @@ def whole(what: str, given: Any, most: int = 2**63 - 1, least: int = 0) -> int:
 
 
 def flag(what: str, given: Any) -> bool:
-    """Converts to True or False."""
+    """Converts a value to True or False."""
     if not isinstance(given, (bool, np.bool_)):
         raise TypeError(rejected(what, given, "True or False"))
     return bool(given)
@@ -125,7 +125,7 @@ def function(what: str, given: Any, expected: str) -> Any:
 
 
 def mapping(what: str, given: Any, expected: str) -> Mapping[Any, Any]:
-    """Returns a mapping; None is an empty one."""
+    """Returns a mapping; None gives an empty mapping."""
     if given is None:
         return {}
     if not isinstance(given, Mapping):
@@ -163,7 +163,7 @@ def unknown(kind: str, name: object, known: Sequence[str]) -> str:
 
 
 class Call:
-    """Times, states and inputs of one call, a row for each state.
+    """Times, states and inputs of one call, one row per state.
 
     t: a number, or (n,). x: (states,) or (n, states). u: (inputs,) or (n, inputs), a mapping of names to
     numbers or to (n,), or None for 0.

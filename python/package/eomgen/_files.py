@@ -8,12 +8,12 @@ from typing import List, Mapping, Union
 
 from . import _arguments
 
-# What `out` is.
+# Description of `out`, for messages.
 FOLDER = "the path of a folder"
 
 
 def write_all(out: Union[str, "os.PathLike[str]"], files: Mapping[str, bytes]) -> List[Path]:
-    """Writes files to a folder and returns their paths. Each replaces an earlier one only when it is complete."""
+    """Writes files to a folder and returns their paths. A file replaces an earlier one only when it is complete."""
     folder = Path(_arguments.path("out", out, FOLDER))
     folder.mkdir(parents=True, exist_ok=True)
     for name, contents in files.items():

@@ -1,4 +1,4 @@
-"""Progress of long work: a line in a terminal, a display in a notebook."""
+"""Progress of long computations: a line in a terminal, a display in a notebook."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import Any, Callable, Optional
 
 from . import _arguments
 
-# Shortest work with a progress line, s.
+# Duration of a computation from which on a progress line is shown, s.
 PATIENCE = 2.0
 
 
 class _Line:
-    """A line that is overwritten by its next text."""
+    """Line of a terminal or notebook that each new text overwrites."""
 
     def __init__(self) -> None:
         self._begin = time.monotonic()
@@ -56,7 +56,7 @@ def _in_notebook() -> bool:
 
 
 class Fraction:
-    """Reports the completed fraction, 0 to 1, to `progress`, or on a line."""
+    """Reports the completed fraction, 0 to 1, to `progress`, or shows it on a line."""
 
     def __init__(self, what: str, span: tuple[float, float], progress: Optional[Callable[[float], object]]):
         self._what = what

@@ -47,7 +47,7 @@ class Rates(casadi.Callback):
         return True
 
     def get_jacobian(self, name: str, names_in: Any, names_out: Any, options: Any) -> Any:
-        # CasADi holds no reference to it.
+        # CasADi keeps no reference to the Jacobian.
         self._jacobian = _Jacobian(self._model, name, self._sizes(), names_in, names_out)
         return self._jacobian
 
@@ -56,7 +56,7 @@ class Rates(casadi.Callback):
 
 
 class _Jacobian(casadi.Callback):
-    """Jacobian blocks of the rates by t, x and u, as a function of t, x, u and the rates."""
+    """Jacobian blocks of the rates with respect to t, x and u, as a function of t, x, u and the rates."""
 
     def __init__(
         self,

@@ -13,7 +13,7 @@ class Certificate:
 
     @property
     def passed(self) -> bool:
-        """True if no check failed and none was left out."""
+        """True if all checks passed and none was skipped."""
         return bool(self.document["passed"])
 
     @property

@@ -7,7 +7,7 @@
     ...                            "--out", "map"], shards=32)
 
 All workers must share a file system. If a worker is lost, Dask reassigns its shards, and the new worker resumes
-them. `eomgen sweep --engine dask` calls this module.
+them. The command `eomgen sweep --engine dask` calls this module.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ MAX_SHARDS = 100_000
 
 
 class SweepError(RuntimeError):
-    """A shard failed; the message is that of the program."""
+    """Error of a failed shard, with the message of the program."""
 
 
 def _run(command: Sequence[str], folder: Optional[str] = None) -> str:
-    """Runs the program in a folder, which its relative paths refer to. Returns its output."""
+    """Runs the program in a folder and returns its output. Relative paths in its arguments refer to this folder."""
     try:
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     except OSError as error:
@@ -74,7 +74,7 @@ def sweep(
     shards: number of shards. program: path of the program, the same on all machines. progress: function of
     the number of completed shards and the number of all shards.
 
-    Raises SweepError if a shard fails. Exceptions of Dask are passed on, such as KilledWorker if the workers of
+    Raises SweepError if a shard fails. Exceptions of Dask are not caught, such as KilledWorker if the workers of
     a shard are lost repeatedly.
     """
     arguments = _texts(arguments)

@@ -90,7 +90,7 @@ class Discovery:
         return f"<eomgen.Discovery: {self.verdict}{': ' + found if found else ''}>"
 
     def _repr_html_(self) -> str:
-        # A frame keeps the styles of report and notebook apart.
+        # The frame separates the styles of the report from those of the notebook.
         page = self.report.replace("&", "&amp;").replace('"', "&quot;")
         return f'<iframe srcdoc="{page}" style="width: 100%; height: 40em; border: 0"></iframe>'
 
@@ -107,8 +107,8 @@ def discover(
 
     dataset: path of the dataset file. out: folder for `discovery.json`, `extended.toml`, `report.html` and
     proposed experiments; None writes no files. seed: seed of the noise in the bootstrap; equal seeds give equal
-    results. progress: function that is called with each progress message. Default: the last message is shown
-    in terminals and notebooks after two seconds.
+    results. progress: function that is called with each progress message. Default: terminals and notebooks show
+    the last message after two seconds.
 
     Raises SpecificationError for an invalid dataset file, ValueError for invalid records, and DiscoveryError
     if the model cannot be simulated over the records. Ctrl-C interrupts the search.

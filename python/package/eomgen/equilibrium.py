@@ -17,7 +17,7 @@ class Equilibrium:
 
     t: time, s. x: state, (states,). u: inputs at the equilibrium, (inputs,). residual: accelerations and rates
     of first-order states, zero up to rounding. states, inputs: names of x and u. steady_rates: names of
-    the rates that are constant and not 0. free: names of the unknowns of the search. stability:
+    the rates with a constant nonzero value. free: names of the unknowns of the search. stability:
     "asymptotically stable", "marginal" or "unstable". depends_on_time: True if forces depend on time; the
     state is then an equilibrium at t only.
     """

@@ -13,12 +13,12 @@ Array = NDArray[np.float64]
 
 
 class Gradient:
-    """Gradient of a number of the samples of a motion.
+    """Gradient of a number that depends on the samples of a motion.
 
-    state: by the initial state, (states,), SI; None if friction holds the motion from the start. parameters: names of the
-    parameters that are given by numbers to the derivatives by them, in declared units, at constant initial state. inputs:
-    names of the inputs that are numbers or arrays to the derivatives, SI: a number, or an array with one for each sample.
-    Prescribed motion has no derivatives.
+    state: derivatives with respect to the initial state, (states,), SI; None if friction holds the motion at the start.
+    parameters: derivatives with respect to the independent parameters by name, in declared units, at constant initial
+    state. inputs: derivatives with respect to the inputs that are numbers or arrays, by name, SI; an array has one
+    derivative per sample. There are no derivatives with respect to prescribed motion.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class Gradient:
         self.inputs: Dict[str, Union[float, Array]] = {}
         for name, rows in columns.items():
             column = by_inputs[:, inputs.index(name)]
-            # Prescribed motion has no samples that are held.
+            # Prescribed motion is not held between its samples.
             if not np.isnan(column).any():
                 self.inputs[name] = column if rows > 1 else float(column.sum())
 

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 class DiscreteLinearisation(NamedTuple):
-    """Linear model of samples, dx[k+1] = A dx[k] + B du[k] and dy[k] = C dx[k] + D du[k], for inputs held over each
+    """Discrete-time linear model, dx[k+1] = A dx[k] + B du[k] and dy[k] = C dx[k] + D du[k], for inputs held over each
     period (s). dx, du and dy are differences from an equilibrium. It unpacks: `A, B, C, D, period = ...`.
     """
 
@@ -58,7 +58,7 @@ class Linearisation:
         self.rates, self.y = np.array(rates), np.array(observables)
 
     def discretise(self, period: float) -> DiscreteLinearisation:
-        """Returns the linear model of samples for inputs held over each period (s)."""
+        """Returns the discrete-time linear model for inputs held over each period (s)."""
         seconds = _arguments.real("period", period)
         a, b = _native.discretise(self._native, self.A.ravel(), self.B.ravel(), seconds)
         a, b = np.array(a).reshape(self.A.shape), np.array(b).reshape(self.B.shape)

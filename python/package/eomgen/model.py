@@ -39,7 +39,7 @@ DATASET = "the path of a dataset file"
 
 
 class SpecificationWarning(UserWarning):
-    """A specification is valid, but possibly not as intended."""
+    """Warning about a specification that is valid but possibly not as intended."""
 
 
 def load(path_or_text: Union[str, "os.PathLike[str]"], order: Optional[int] = None) -> "Model":
@@ -129,8 +129,8 @@ class Model:
         return self._native.text
 
     def with_parameters(self, /, **values: float) -> "Model":
-        """Returns the model with new parameter values, in declared units. Expressions that depend on them are
-        recomputed. A number replaces the expression of a parameter.
+        """Returns the model with new parameter values, in declared units. Expressions that depend on these values
+        are recomputed. A number replaces the expression of a parameter.
 
         Raises SpecificationError for an unknown name or an inadmissible value.
         """
@@ -155,7 +155,7 @@ class Model:
 
     def observables(self, t: ArrayLike, x: ArrayLike, u: Any = None) -> Array:
         """Computes the observables, in the order of `observable_names`: (observables,) or (n, observables).
-        The arguments are those of `rates`.
+        For the arguments see `rates`.
         """
         call = self._call(t, x, u)
         observables = np.empty((len(call.x), len(self._observables)))
@@ -163,17 +163,17 @@ class Model:
         return observables[0] if call.single else observables
 
     def energy(self, t: ArrayLike, x: ArrayLike, u: Any = None) -> Any:
-        """Computes kinetic plus potential energy, in J: a number or (n,). The arguments are those of `rates`."""
+        """Computes kinetic plus potential energy, in J: a number or (n,). For the arguments see `rates`."""
         return self.observables(t, x, u)[..., self._observables.index("energy")]
 
     def jacobian(
         self, t: ArrayLike, x: ArrayLike, u: Any = None, *, by: str = "state"
     ) -> Array:
         """Computes the Jacobian of the rates: (states, columns) or (n, states, columns). On a switching surface
-        its derivatives are one-sided.
+        the derivatives are one-sided.
 
-        by: "state", "inputs", "parameters" (the independent ones, in SI) or "time". The other arguments are
-        those of `rates`.
+        by: "state", "inputs", "parameters" (the independent parameters, in SI) or "time". For the other arguments
+        see `rates`.
         """
         columns = {
             "state": len(self._states),
@@ -192,7 +192,7 @@ class Model:
 
     def mass_matrix(self, t: ArrayLike, x: ArrayLike, u: Any = None) -> Array:
         """Computes the mass matrix: (coordinates, coordinates) or (n, coordinates, coordinates), where the coordinates
-        include the modes. The arguments are those of `rates`.
+        include the modes. For the arguments see `rates`.
         """
         call = self._call(t, x, u)
         size = (len(self._states) - self._native.first_order_states) // 2
@@ -215,7 +215,7 @@ class Model:
 
         t: time in s. x: state, (states,), or a mapping of names to numbers; missing states have the
         specification's initial values. u: inputs, (inputs,), or a mapping of names to numbers; missing inputs
-        are 0. A state that does not satisfy the constraints is moved onto them, with a warning.
+        are 0. A state that violates the constraints is projected onto them, with a warning.
         """
         time, state, inputs = self._operating_point(t, x, u)
         found = _native.linearise(self._native, time, state, inputs)
@@ -232,8 +232,8 @@ class Model:
         return time, np.array(state), call.u[0]
 
     def modes(self, t: float = 0.0, x: Any = None, u: Any = None) -> List[Mode]:
-        """Computes the natural modes of the model linearised at a state, lowest frequency first. The arguments are
-        those of `linearise`.
+        """Computes the natural modes of the model linearised at a state, lowest frequency first. For the arguments
+        see `linearise`.
         """
         time, state, inputs = self._operating_point(t, x, u)
         amplitudes, found = _native.modes(self._native, time, state, inputs)
@@ -323,11 +323,11 @@ class Model:
         drives the inputs, or (file, name) for another record.
 
         out: folder of the sweep, in which an interrupted run is resumed; `eomgen merge` writes its tables and figures.
-        None keeps no files. threads: number of threads; the result does not depend on it. progress: function of the
+        None keeps no files. threads: number of threads, which does not affect the result. progress: function of the
         completed fraction, 0 to 1.
 
         Raises SpecificationError or ValueError for an invalid request. Ctrl-C interrupts the sweep
-        after the points that are being computed.
+        when the current points are complete.
         """
         return sweep(
             self._native,
@@ -406,23 +406,23 @@ class Model:
         solver: "auto", "exact" (for models that are linear between switches), "rk", "adams", "radau" (for
         stiff models) or "fixed" (classical Runge-Kutta method of order 4, as the emitted `step`; inputs are held during a
         step). tolerance: relative tolerance of all solvers except "exact" and "fixed". max_step: longest step of
-        these solvers, s. Set it if inputs have short pulses that longer steps may miss. For "fixed" it is the length of
-        all steps.
+        these solvers, s. Set it if inputs have short pulses that longer steps may miss. With "fixed", all steps have
+        this length.
 
         state: initial state, (states,), or a mapping of names to numbers; missing states have the
-        specification's initial values. A state that does not satisfy the constraints is moved onto them, with a warning.
+        specification's initial values. A state that violates the constraints is projected onto them, with a warning.
 
         inputs: mapping of names to a number, to an array with a number per sample, to an expression such as
         "0.3*sin(50*t)" with t in s, or to a function of t (s). An array value is constant from its sample to
-        the next one. In a loop with controllers an expression is evaluated as a function is. Arrays for prescribed motion
+        the next one. With controllers an expression is evaluated like a function. Arrays for prescribed motion
         follow a cubic spline, which gives its rates. Functions are
-        called at the times that the solver needs; `breaks` lists the times at which one jumps. For prescribed
+        called at the times that the solver needs; `breaks` lists the times at which a function jumps. For prescribed
         motion a function returns (s, s', s''). Missing inputs are 0.
 
         controller: function of (t, x, y) that is called at the times offset + k period (s), with the time, the state and
         the observables before the sample. It returns the inputs `controls`, as a mapping of names to numbers, as a
-        sequence or as one number. They act `delay` (s) later and are held until the next ones act. Default of `controls`:
-        all inputs that nothing else drives, except prescribed motion. Controllers of the specification run too.
+        sequence or as one number. These inputs act `delay` (s) later and are held until the next values act. Default of
+        `controls`: all inputs that nothing else drives, except prescribed motion. Controllers of the specification run too.
 
         gradients: True to keep the steps for `Trajectory.gradient`, with the solver "rk". Models with controllers
         have no gradients.
@@ -430,10 +430,10 @@ class Model:
         progress: function of the completed fraction, 0 to 1, called about ten times a second. Default: a
         progress line in terminals and notebooks for simulations longer than two seconds.
 
-        Warns if the initial state is moved onto the constraints, if the energy changes without work or if bodies overlap.
+        Warns if the initial state is projected onto the constraints, if the energy changes without work or if bodies overlap.
 
-        Raises SimulationError if the solver stops; its `trajectory` holds the samples up to then. An exception
-        of an input function or of the controller is its cause. Ctrl-C interrupts the simulation.
+        Raises SimulationError if the solver stops early; its `trajectory` has the samples up to the stop. If an input
+        function or the controller raised an exception, this exception is its cause. Ctrl-C interrupts the simulation.
         """
         # `sample` and `initial` are earlier names.
         interval = _arguments.renamed("interval", interval, "sample", sample)
@@ -455,18 +455,18 @@ class Model:
         tolerance: float = 1e-9,
         max_step: Optional[float] = None,
     ) -> Simulation:
-        """Starts a simulation that continues from call to call, for controllers and interactive programs.
+        """Starts a simulation that continues over several calls, for controllers and interactive programs.
 
         start: time, s. state: initial state, as for `simulate`. inputs: (inputs,), or a mapping of names to numbers;
-        missing inputs are 0. The other arguments are those of `simulate`. Controllers of the specification run.
+        missing inputs are 0. For the other arguments see `simulate`. Controllers of the specification run.
 
-        Raises SimulationError or ValueError for a state from which the model cannot move.
+        Raises SimulationError or ValueError for a state from which no motion can start.
         """
         return Simulation(self, start, self.state(state), inputs, solver, tolerance, max_step)
 
     def state(self, values: Any = None) -> Array:
-        """Returns a state, (states,): the given array, or the initial state of the specification with some
-        values replaced, by name.
+        """Returns a state, (states,): the given array, or the initial state of the specification with values
+        replaced by name.
         """
         if values is None:
             return self.initial
@@ -486,8 +486,8 @@ class Model:
         return state
 
     def to_casadi(self, name: Optional[str] = None) -> Any:
-        """Returns the rates as a CasADi function rates(t, x, u) with its exact Jacobian. Keep a reference to it
-        while expressions use it, because CasADi calls the model back. Needs the package `casadi`.
+        """Returns the rates as a CasADi function rates(t, x, u) with its exact Jacobian. Keep a reference to the
+        function while expressions use it, because CasADi calls the model. Needs the package `casadi`.
         """
         from .casadi import Rates
 

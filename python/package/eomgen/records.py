@@ -15,14 +15,14 @@ from . import _arguments
 
 Path = Union[str, "os.PathLike[str]"]
 
-# First bytes of a MATLAB 7.3 file. It is HDF5, which SciPy does not read.
+# First bytes of a MATLAB 7.3 file. The format is HDF5, which SciPy does not read.
 _MATLAB_7_3 = b"MATLAB 7.3"
 
 
 def record_to_csv(source: Path, out: Path, columns: Optional[Iterable[str]] = None) -> List[str]:
     """Writes arrays of a `.npz` or `.mat` file as columns of a CSV file. Returns the names of the columns.
 
-    source: a file of `numpy.savez`, or of MATLAB up to version 7 (read with SciPy). out: the CSV file, which
+    source: a file written by `numpy.savez` or by MATLAB up to version 7 (read with SciPy). out: the CSV file, which
     is replaced if it exists. columns: arrays to write, in this order. Default: all real arrays that are as
     long as the longest one. A matrix `x` of n columns becomes x_1 to x_n. Numbers keep all digits.
 
@@ -95,7 +95,7 @@ def _arrays(source: pathlib.Path) -> Dict[str, NDArray]:
 
 
 def _samples(array: NDArray) -> Optional[NDArray[np.float64]]:
-    """Returns the array with a row per sample, or None unless it is real with one or two dimensions."""
+    """Returns the array with one row per sample. Returns None unless it is real and has one or two dimensions."""
     if array.dtype.kind not in "fiub" or array.ndim not in (1, 2):
         return None
     column = np.asarray(array, dtype=np.float64)

@@ -1,4 +1,4 @@
-"""Simulations that continue from call to call."""
+"""Simulations that continue over several calls."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ Array = NDArray[np.float64]
 
 
 class Simulation:
-    """Simulation that continues from call to call, created by `Model.simulation`. Only one thread may use it.
+    """Simulation that continues over several calls, created by `Model.simulation`. Only one thread may use it.
 
     >>> s = m.simulation(state={"theta": 0.1})
     >>> while s.t < 2:
     ...     s.set_inputs({"torque": -0.5 * s["theta_dot"]})
     ...     s.advance(s.t + 1e-3)
 
-    Inputs hold until `set_inputs` changes them. Without a change the solver keeps its steps: many short calls give the
-    motion of one long call.
+    Inputs are held until `set_inputs` changes them. Without a change the solver keeps its steps, so many short calls give
+    the same motion as one long call.
 
-    Controllers of the specification run. The start and each `advance` include the samples at the time reached, so that
+    Controllers of the specification run. The start and each `advance` include the samples at the current time, so
     inputs and states that are set at a sample act after it.
     """
 
@@ -81,27 +81,27 @@ class Simulation:
 
     @property
     def t(self) -> float:
-        """Time reached, s."""
+        """Current time, s."""
         return self._native.t
 
     @property
     def state(self) -> Array:
-        """State at that time, (states,)."""
+        """State at the current time, (states,)."""
         return self._native.state
 
     @property
     def inputs(self) -> Array:
-        """Inputs from that time on, (inputs,)."""
+        """Inputs from the current time on, (inputs,)."""
         return self._native.inputs
 
     @property
     def observables(self) -> Array:
-        """Observables at that time, (observables,)."""
+        """Observables at the current time, (observables,)."""
         return self._native.observables()
 
     @property
     def controller_states(self) -> Array:
-        """States of the controllers of the specification, after the samples at that time."""
+        """States of the controllers of the specification, after the samples at the current time."""
         return self._native.controller_states
 
     @property
@@ -123,18 +123,18 @@ class Simulation:
     def advance(self, until: float) -> None:
         """Continues to the time `until`, s.
 
-        Raises SimulationError if the solver stops; the simulation then keeps the time and state that it reached.
+        Raises SimulationError if the solver stops early; `t` and `state` are then those of the stop.
         """
         self._native.advance(_arguments.number("until", until, "a time in s"))
 
     def set_inputs(self, inputs: Any) -> None:
-        """Changes inputs from the time reached on: (inputs,), or a mapping of names to numbers; other inputs keep their
+        """Changes inputs from the current time on: (inputs,), or a mapping of names to numbers; other inputs keep their
         values. A controller of the specification keeps the inputs that it drives."""
         self._native.set_inputs(self._with(self.inputs, inputs))
 
     def set_state(self, state: Any) -> None:
         """Continues from another state: (states,), or a mapping of names to numbers; other states keep their values.
-        Controllers keep their states. A state that does not satisfy the constraints is moved onto them, with a warning."""
+        Controllers keep their states. A state that violates the constraints is projected onto them, with a warning."""
         if isinstance(state, Mapping):
             names = self._model.states
             _arguments.check_names("state", state, names)

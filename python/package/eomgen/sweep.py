@@ -21,7 +21,7 @@ FIRST_RECORD = "train[0]"
 
 
 class Sweep:
-    """Result of a sweep: a column for each varied parameter, measured quantity and status.
+    """Result of a sweep: one column per varied parameter, measured quantity and status.
 
     names: names of the columns. units: units by name. `s["max:x"]` is a column, (points,). A status is 0 if the
     quantity was measured; otherwise the numbers are NaN, and the status gives the reason

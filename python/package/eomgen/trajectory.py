@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-# Most decimals of times that are rounded; more are rounding errors.
+# Maximum number of decimals of times; further decimals are rounding errors.
 MAX_DECIMALS = 15
 
 # Largest number of values in one motion, rows times columns: a few GB of memory.
 MAX_VALUES = 10**8
 
-# Number of intervals without `interval`.
+# Number of output intervals if `interval` is not given.
 DEFAULT_INTERVALS = 1000
 
 
@@ -33,7 +33,7 @@ class Event(NamedTuple):
 
     t: time, s. surface: name of the contact, or formula whose sign changes; empty if the rates jump with an input.
     kind: crossing, stick, slip, impact, contact, separation, corner, reflection or input. before, after: modes of the
-    surface. jump: jump of the rate of each coordinate, SI; empty without a jump. Events at one instant share it.
+    surface. jump: jump of the rate of each coordinate, SI; empty without a jump. Simultaneous events share the jump.
     """
 
     t: float
@@ -48,10 +48,10 @@ class Trajectory:
     """Samples of a motion, in SI.
 
     t: times, (n,), s. states: (n, states). observables: (n, observables). `r["tip"]` is the column of an
-    observable or of a state; observables take precedence. solver: name of the solver. reason: why "auto"
-    selected it; None for a requested solver.
+    observable or of a state; observables take precedence. solver: name of the solver. reason: reason why "auto"
+    chose this solver; None for a requested solver.
     switches: number of events at surfaces. controller_states: states of the controllers of the specification, after the
-    samples at each time, (n, count); `r["e_i"]` is one of them.
+    samples at each time, (n, count); `r["e_i"]` is the column of one state.
     """
 
     def __init__(
@@ -93,11 +93,11 @@ class Trajectory:
         return len(self.t)
 
     def gradient(self, weights: Mapping[str, Any]) -> Gradient:
-        """Returns the gradient of a number L of the samples, through events, by the initial state, the parameters and the
-        inputs. The motion must be simulated with `gradients=True`. One call takes some two to five simulations, for any
-        number of parameters.
+        """Returns the gradient of a number L, which depends on the samples, with respect to initial state, parameters and
+        inputs, through events. The motion must be simulated with `gradients=True`. One call takes as long as two to five
+        simulations, for any number of parameters.
 
-        weights: names of states and observables with the derivatives of L by their samples, (n,), as
+        weights: derivatives of L with respect to the samples of states and observables, (n,), by name, for example
         `{"tip": 2 * (r["tip"] - target)}`.
 
         Raises ValueError if the gradient does not exist: the motion touches a switching surface or crosses several at once.
@@ -107,7 +107,7 @@ class Trajectory:
         return Gradient(self._recorded, (self.state_names, self.observable_names), len(self), weights)
 
     def to_pandas(self) -> Any:
-        """Returns a pandas DataFrame with a column for each name and the index t (s). Needs the package `pandas`."""
+        """Returns a pandas DataFrame with one column per name and the index t (s). Needs the package `pandas`."""
         import pandas
 
         index = pandas.Index(self.t, name="t")
@@ -116,10 +116,10 @@ class Trajectory:
         return pandas.DataFrame(numbers, index=index, columns=list(self.names))
 
     def plot(self, *names: str, axes: Any = None) -> Any:
-        """Plots columns over time, one above the other. Returns the matplotlib axes, one for each column. Needs
+        """Plots columns over time, one above the other. Returns the matplotlib axes, one per column. Needs
         the package `matplotlib`.
 
-        names: names of columns. Default: all coordinates and modes. axes: existing axes, one for each name.
+        names: names of columns. Default: all coordinates and modes. axes: existing axes, one per name.
         """
         from matplotlib import pyplot
 
@@ -166,7 +166,7 @@ def simulate(
     _arguments.require_finite("state", model.states, initial)
     times = sample_times(*span, len(model.states) + len(model.observable_names))
     given, breaks = driven
-    # Controllers measure the inputs, and fixed steps hold them, so that these remain inputs.
+    # Controllers measure the inputs, and fixed steps hold them, so they must remain inputs of the model.
     keep = control[0] is not None or bool(model._native.controlled_inputs) or solver == "fixed"
     if gradients and control[0] is not None:
         raise ValueError("no gradient of the trajectory: a controller drives the motion")
@@ -287,7 +287,7 @@ def controller_entry(
 
 
 def sample_times(start: Any, until: Any, interval: Any, columns: int) -> Array:
-    """Returns the times of the samples, s. They have the same bits as on the command line."""
+    """Returns the times of the samples, s. The times are bit-identical to those on the command line."""
     begin, end = (_arguments.real(what, time, "a time in s") for what, time in (("start", start), ("until", until)))
     if end <= begin:
         raise ValueError(f"until = {end}: expected a time in s after {begin:g}")
@@ -313,7 +313,7 @@ def _decimals(number: float) -> int:
 
 
 def _rounded(times: Array, decimals: int, end: float) -> Array:
-    """Returns the doubles nearest to times with this number of decimals, so that 7 times 0.05 s is 0.35 s."""
+    """Returns the floating-point numbers nearest to times with this number of decimals. 7 times 0.05 s is then 0.35 s."""
     if decimals <= MAX_DECIMALS:
         scale = 10.0**decimals
         whole = np.rint(times * scale)
@@ -338,7 +338,7 @@ def prescribe(
     model: "Model", given: Any, keep: bool
 ) -> Tuple[Any, Tuple[str, ...], Mapping[str, Any], List[Tuple[str, str]]]:
     """Replaces inputs that are given as expressions by definitions, unless `keep` is true. Returns the compiled model,
-    the names of its inputs, the values of those without an expression, and the expressions that were kept."""
+    the names of its inputs, the values of inputs without an expression, and the expressions that were kept."""
     names = model.inputs
     example = f"a mapping of names to values, such as {{{names[0]!r}: 0.0}}" if names else None
     expected = example or "nothing: the model has none"
@@ -369,7 +369,7 @@ def check_no_rates(given: Iterable[str], prescribed: Sequence[str]) -> None:
 
 def driving(names: Sequence[str], given: Mapping[str, Any], times: Array) -> Tuple[Array, Array, Any]:
     """Returns times (s), a row of inputs for each, and functions of time with the name and index of their
-    input. A row holds until the next time."""
+    input. A row is held until the next time."""
     functions = [(name, names.index(name), f) for name, f in given.items() if callable(f)]
     rates = {f"{name}_{order}" for name in given for order in ("dot", "ddot")}
     missing = [name for name in names if name not in given and name not in rates]
