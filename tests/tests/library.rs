@@ -1,4 +1,4 @@
-//! The example of the library that docs/library.md shows, compiled and run in the project's folder.
+//! Test of the example in docs/library.md: it is compiled and run in the project's folder.
 
 use eomgen_tests::models::project;
 

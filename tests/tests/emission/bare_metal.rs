@@ -1,7 +1,6 @@
-//! The example controller and observer on emulated microcontrollers: `examples/bare_metal/run` with
-//! the currently emitted arm, in Rust and in C, and `examples/bare_metal/observe`. A test is
-//! skipped with a message if the emulator or the compiler's target is missing; the C part is
-//! skipped if its compiler is missing.
+//! Tests of the example controller and observer on emulated microcontrollers. `examples/bare_metal/run` and
+//! `examples/bare_metal/observe` run with the currently emitted arm in Rust and in C. A test is skipped with a message
+//! if the emulator or the compiler's target is missing; the C part is skipped if its compiler is missing.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -14,7 +13,7 @@ use eomgen_codegen::variant::Variant;
 use eomgen_tests::models::{load, project, variant};
 use eomgen_tests::program::eomgen;
 
-/// Recorded counts; EOMGEN_REFRESH rewrites them.
+/// File with recorded counts; EOMGEN_REFRESH rewrites it.
 const COUNTS: &str = "examples/bare_metal/counts.txt";
 const OBSERVER_COUNTS: &str = "examples/bare_metal/observer_counts.txt";
 const MACHINE_COUNTS: &str = "examples/bare_metal/machine_counts.txt";
@@ -106,7 +105,7 @@ fn assert_no_count_has_risen(kept_at: &str, printed: &str, with_c: bool) {
     );
 }
 
-/// The run compares the bits of the motion and rejects panics and allocators in the program.
+/// The script compares the motion bit for bit and rejects panics and allocators in the program.
 #[test]
 fn controller_on_microcontrollers_matches_this_machine_bitwise() {
     if let Some(missing) = missing_tool() {
@@ -131,8 +130,8 @@ fn controller_on_microcontrollers_matches_this_machine_bitwise() {
     assert_no_count_has_risen(COUNTS, &run_script("run", &arm).0, with_c);
 }
 
-/// Half a second of the arm, observed with failing sensors. The run compares the bits; the program
-/// on this machine asserts the final estimate.
+/// The observer runs for half a second with sensors that fail temporarily. The script compares the estimates bit for
+/// bit; the program on this machine asserts the final estimate.
 #[test]
 fn observer_on_microcontroller_matches_this_machine_bitwise() {
     if let Some(missing) = missing_tool() {
@@ -157,11 +156,11 @@ fn observer_on_microcontroller_matches_this_machine_bitwise() {
     );
 }
 
-/// Largest difference of the instructions of one machine between its states, in percent.
+/// Largest relative difference of a machine's instruction counts between states, in percent.
 const MAX_SPREAD_PERCENT: u64 = 5;
 
-/// Machines with angles in single precision: the firmware contains its identity and passes its self-test, its rates have the bits
-/// of this machine, and no count rises.
+/// Machines with angles run in single precision. The firmware contains its identity and passes its self-test, the rates
+/// are bit-identical to this machine, and no count increases.
 #[test]
 fn machines_with_angles_on_microcontrollers_match_this_machine_bitwise() {
     if let Some(missing) = missing_tool() {
@@ -229,7 +228,7 @@ fn machines_with_angles_on_microcontrollers_match_this_machine_bitwise() {
     }
 }
 
-/// Returns smallest and largest number of instructions and bytes of stack.
+/// Returns the smallest and the largest number of instructions, and the stack in bytes.
 fn machine_counts(line: &str) -> [u64; 3] {
     let mut words = line.rsplit(' ').map(|word| word.parse().expect("a number"));
     let mut next = || words.next().expect("three numbers");

@@ -1,14 +1,14 @@
-//! The gain of the example controller (`examples/bare_metal/controller.rs`), recomputed as
-//! documented there.
+//! Test of the gain of the example controller (`examples/bare_metal/controller.rs`), which is recomputed as the example
+//! documents it.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_tests::models::{load, project, variant};
 use nalgebra::{DMatrix, DVector};
 
-/// Step size of the controller, s.
+/// Sample period of the controller, in s.
 const STEP: f64 = 20e-6;
 
-/// Scale of each state: 1 mm for deflections, the carrier's path and modes, 1 m/s for their rates.
+/// Scale of each state in the cost: 1 mm for deflections, the carrier's displacement and modes, 1 m/s for their rates.
 /// The scale of the torque is 1 N m.
 const STATE_SCALES: [f64; 14] = [
     1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0,
@@ -25,8 +25,8 @@ fn rates(evaluator: &mut Evaluator, state: &[f64], torque: f64) -> DVector<f64> 
     DVector::from_vec(out)
 }
 
-/// Returns A and B of the arm with both meshes in contact. The model is linear there, so finite
-/// differences are exact up to rounding.
+/// Returns A and B of the arm with both meshes in contact. In this regime the model is linear, so finite differences
+/// are exact up to rounding.
 fn linearise() -> (DMatrix<f64>, DVector<f64>) {
     let mut evaluator = variant(&load("planetary_arm_rig"), 4).evaluator;
     let mut state = vec![0.0; STATE_SCALES.len()];
@@ -43,9 +43,8 @@ fn linearise() -> (DMatrix<f64>, DVector<f64>) {
     (DMatrix::from_columns(&columns), b)
 }
 
-/// Computes the gain by the doubling algorithm (Chu, Fan, Lin and Wang, "Structure-preserving
-/// algorithms for periodic discrete-time algebraic Riccati equations", 2004), in states scaled so
-/// that their cost is the unit matrix.
+/// Computes the gain by the doubling algorithm (Chu, Fan, Lin and Wang, "Structure-preserving algorithms for periodic
+/// discrete-time algebraic Riccati equations", 2004), with scaled states, whose cost matrix is the identity.
 fn compute_gain() -> Vec<f64> {
     let (a, b) = linearise();
     let n = STATE_SCALES.len();
@@ -89,7 +88,7 @@ fn gain_in_source() -> Vec<f64> {
         .collect()
 }
 
-/// The source has six digits; the Riccati equation loses some of sixteen.
+/// The source has six digits. The solution of the Riccati equation has fewer than sixteen.
 #[test]
 fn gain_in_source_matches_computed_gain() {
     let (expected, written) = (compute_gain(), gain_in_source());

@@ -1,5 +1,4 @@
-//! The benchmark written by `generate --with bench` compiles, runs, and compares with a saved
-//! baseline.
+//! Test that the benchmark of `generate --with bench` compiles, runs, and compares with a saved baseline.
 
 use std::path::Path;
 use std::process::Command;
@@ -66,7 +65,7 @@ fn run_bench(folder: &Path, criterion: &Path, options: &[&str]) -> String {
         )
         .env("CRITERION_HOME", folder.join("criterion"))
         .env("CARGO_ENCODED_RUSTFLAGS", flags.join("\u{1f}"))
-        // Only the result matters here, not the speed.
+        // The test checks only the output, so the benchmark is compiled without optimisation.
         .env("CARGO_PROFILE_BENCH_OPT_LEVEL", "0")
         .output()
         .expect("cargo can be run");
@@ -82,7 +81,7 @@ fn generated_benchmark_runs_and_compares_with_baseline() {
     let with = "bias_forces,inverse_dynamics,guard_rates,jacobians,products,linearisation,bench";
     let generate = ["generate", &spec, "--with", with, "--out", &out];
     run_accepted(&generate);
-    // With the versions of this workspace, nothing is downloaded.
+    // The lock file of this workspace is used, so that nothing is downloaded.
     std::fs::copy(
         project().join("Cargo.lock"),
         folder.path().join("Cargo.lock"),

@@ -1,4 +1,5 @@
-//! Functions for CasADi: certificate, `verify`, families, and seeded faults. Python and CasADi are not needed.
+//! Tests of the functions for CasADi: certificate, `verify`, families, and seeded faults. Python and CasADi are not
+//! needed.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -43,7 +44,7 @@ fn verify(folder: &Path, more: &[&str]) -> (Option<i32>, String) {
     )
 }
 
-/// Writes the certified functions of a drive with friction.
+/// Emits and certifies the functions for a drive with friction.
 fn certified(with: &[&str]) -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     let spec = path("emps");
@@ -208,7 +209,7 @@ fn family_certifies_functions_for_casadi() {
         said.contains("the certificate covers swing_casadi.c"),
         "{said}"
     );
-    // A certificate of C is no certificate of Rust.
+    // A certificate of C does not cover Rust.
     std::fs::write(folder.path().join("lib.rs"), "pub struct Both;\n").expect("written");
     let said = expect(
         folder.path(),
@@ -230,7 +231,7 @@ fn family_certifies_functions_for_casadi() {
     );
 }
 
-/// Second derivatives at the kink of a piecewise function of parameters: a half-width 0, a stiffness 0, equal limits.
+/// Parameters are at the kink of a piecewise function: half-width 0, stiffness 0, equal limits.
 #[test]
 fn hessians_at_kinks_of_parameters_pass() {
     if !has_compiler() {

@@ -1,5 +1,5 @@
-//! The checked-in variants equal the generator's output and match the evaluator bit for bit,
-//! interpreted and as machine code.
+//! Test that the checked-in variants equal the generator's output and are bit-identical to the evaluator, interpreted
+//! and as machine code.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_tests::models::{load, project, samples, variant};
@@ -32,7 +32,7 @@ fn evaluate(evaluator: &mut Evaluator, point: Point<'_>) -> Numbers {
     [rates, observables, energy_and_power, guards, mass].concat()
 }
 
-/// Calls `compare_bits` with every checked-in variant.
+/// Calls `compare_bits` for every checked-in variant.
 macro_rules! compare_variants {
     ($($module:ident: $order:literal,)*) => {
         [$({
@@ -129,7 +129,7 @@ fn generate_check_finds_no_difference() {
     let document: serde_json::Value =
         serde_json::from_slice(&output.stdout).expect("one JSON document");
     assert_eq!(document["different"], serde_json::json!([]), "{document}");
-    // The variants with their certificates, and the manifest.
+    // The files are one source and one certificate for each variant, and the manifest.
     assert_eq!(document["files"], 2 * VARIANTS + 1);
     assert_eq!(output.status.code(), Some(0));
 }

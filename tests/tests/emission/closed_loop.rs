@@ -1,5 +1,6 @@
-//! Emitted controllers and steps: the loop of `examples/closed_loop` against `simulate --solver fixed`, and controllers with
-//! every operation in C and Rust against the evaluation in simulations. All comparisons are bit by bit.
+//! Tests of emitted controllers and steps, with bit-for-bit comparisons. The loop of `examples/closed_loop` is compared
+//! with `simulate --solver fixed`. Controllers with every operation in C and Rust are compared with their evaluation in
+//! simulations.
 
 use std::path::Path;
 use std::process::Command;
@@ -69,7 +70,7 @@ fn loop_in_c_has_the_bits_of_the_simulation_and_of_the_board() {
             "the loop in C was not run on a board: arm-none-eabi-gcc or qemu-system-arm is missing",
         ),
     }
-    // A gain with another last digit must be found.
+    // A gain that differs in the last digit must be detected.
     let changed = path("changed.csv");
     let set = ["--set", "k_phi=-0.38110000000000005"];
     run_accepted(&[&["simulate", &spec, "--out", &changed][..], &fixed, &set].concat());
@@ -115,10 +116,10 @@ outputs = { v = "-(s_2 + 1)*atan(x)" }
 states = { s_2 = { unit = "1", next = "0.5*s_2 + clamp(u, -1, 1)", initial = 2 } }
 "#;
 
-/// Number of samples.
+/// Number of samples of each controller.
 const SAMPLES: usize = 400;
 
-/// Pseudo-random numbers from -4 to 4, the same in C and Rust.
+/// Pseudo-random numbers from -4 to 4, identical in C and Rust.
 struct Random(u64);
 
 impl Random {
@@ -138,7 +139,7 @@ fn program() -> Program {
     variant.expect("a derivation").program
 }
 
-/// Returns the bits of outputs and states of all samples, as the programs print them.
+/// Returns the bits of outputs and states of all samples in the format of the compiled programs.
 fn evaluated(program: &Program) -> String {
     let parameters: Vec<f64> = program.parameters.iter().map(|known| known.value).collect();
     let mut printed = String::new();
@@ -171,7 +172,7 @@ fn evaluated(program: &Program) -> String {
     printed
 }
 
-/// Writes the C program that prints the same numbers.
+/// Returns the C program that prints the outputs and states of all samples.
 fn c_driver(program: &Program) -> String {
     let mut text = "#include \"operations.h\"\n#include <stdio.h>\n#include <string.h>\n\
         static uint64_t seed;\n\
@@ -214,7 +215,7 @@ fn c_driver(program: &Program) -> String {
     text + "return 0;\n}\n"
 }
 
-/// Writes the Rust program that prints the same numbers.
+/// Returns the Rust program that prints the outputs and states of all samples.
 fn rust_driver(program: &Program) -> String {
     let mut text = "mod operations;\nuse operations::Parameters;\n\
         struct Random(u64);\nimpl Random {\nfn next(&mut self) -> f64 {\n\

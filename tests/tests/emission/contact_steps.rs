@@ -1,5 +1,5 @@
-//! Emitted steps with frictions that hold and with contacts, in C on this machine and on a microcontroller, against
-//! `simulate --solver fixed`, bit by bit.
+//! Bit-for-bit comparison of emitted steps with sticking friction and contacts, in C on this machine and on a
+//! microcontroller, with `simulate --solver fixed`.
 
 use std::path::Path;
 use std::process::Command;
@@ -23,7 +23,7 @@ fn run(command: &mut Command) -> String {
     text(&output.stdout) + &said
 }
 
-/// Returns the bits of the states in the rows of a table after the first, one state a line.
+/// Returns the bits of the states in all rows of a table except the first, one state per line.
 fn bits_of_rows(table: &Path, states: usize) -> String {
     let table = std::fs::read_to_string(table).expect("a table");
     let numbers = table.lines().skip(2).flat_map(|row| {

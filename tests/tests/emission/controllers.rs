@@ -1,4 +1,4 @@
-//! Checks of a certificate on emitted controllers and on `step`: edits of their text are noticed.
+//! Test that the checks of a certificate detect edits of emitted controllers and of `step`.
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::rust::Packaging;
@@ -11,7 +11,8 @@ use eomgen_validate::model_certificate::{Sources, check_sources};
 
 const OUTPUTS: [Output; 1] = [Output::Step];
 
-/// Edits: the text from which on, what to replace there, and its replacement; `->` stands for the access to a field.
+/// Edits: a text after which the replacement begins, the replaced text, and the new text; `->` stands for the access to
+/// a field.
 const EDITS: [(&str, &str, &str); 7] = [
     ("controller_position", "parameters->k_p", "parameters->k_i"),
     (
@@ -45,7 +46,7 @@ fn passes(model: &Model, sources: &Sources) -> bool {
     compared.all(|check| check.passed)
 }
 
-/// Replaces a text behind the last place of another one; returns `None` if there is none.
+/// Replaces the first `before` after the last occurrence of `from`; returns `None` if there is none.
 fn edit(text: &str, (from, before, after): (&str, &str, &str)) -> Option<String> {
     let mut starts = text.match_indices(from).map(|(place, _)| place);
     let place = starts.find_map(|start| Some(start + text[start..].find(before)?))?;
@@ -94,7 +95,7 @@ fn edits_of_emitted_c_controllers_and_step_fail() {
     }
 }
 
-/// Controller whose outputs hide moderate changes of the gains in their arguments.
+/// Controller whose quantised and clamped outputs hide moderate changes of the gains.
 const HIDDEN_GAINS: &str = r#"
 [model]
 name = "hidden"

@@ -1,4 +1,4 @@
-//! `eomgen family`: variants with certificates and a manifest, comparison, linking, and wrong families.
+//! Tests of `eomgen family`: variants with certificates and a manifest, comparison, linking, and invalid family files.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -9,7 +9,7 @@ use eomgen_tests::program::eomgen;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Slewing beam behind a drive with play.
+/// Slewing beam that is driven through a gear with play.
 const BEAM: &str = r#"
 [model]
 name = "beam"
@@ -46,7 +46,7 @@ torque = { on = "motor", value = "u" }
 tip = "l*hub + at(w, l)"
 "#;
 
-/// The same without play.
+/// Slewing beam without play.
 const STIFF: &str = "[model]\nextends = \"beam.toml\"\n[parameters]\nb = false\n[potential]\ngear = \"1/2*k*(motor - hub)^2\"\n";
 
 const FAMILY: &str = r#"
@@ -76,7 +76,7 @@ order = 2
 targets = ["c99"]
 "#;
 
-/// Folder with the family and its output `models`.
+/// Creates a folder with the family and its output `models`.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, text) in [
@@ -180,7 +180,7 @@ fn family_has_certificates_and_a_manifest_without_paths() {
     let inputs: Vec<&String> = inputs.keys().collect();
     assert_eq!(inputs, ["beam.toml", "stiff.toml"]);
     assert!(!models.join("stiff_2/mod.rs").exists());
-    // The same input gives the same bytes.
+    // The same input must give the same bytes.
     let again = self::folder();
     assert_eq!(family(again.path(), &[]).0, Some(0));
     assert_eq!(files(again.path()), files(WRITTEN.path()));
@@ -191,7 +191,7 @@ fn unchanged_variants_are_not_generated_again() {
     let copy = copy();
     let (status, said) = family(copy.path(), &["--check"]);
     assert_eq!(status, Some(0), "{said}");
-    // Every generated variant runs a compiler for its certificate.
+    // The certificate of every generated variant needs a compiler.
     let place = copy.path().join("models");
     let mut command = eomgen();
     let command = command
@@ -230,7 +230,7 @@ fn comparison_names_each_difference() {
         assert!(said.contains(expected), "{expected}\n{said}");
     }
     assert_eq!(files(copy.path()), before, "--check wrote files");
-    // The comment is no change of the merged specification: the emitted files are as before.
+    // A comment does not change the merged specification, so the emitted files are unchanged.
     assert_eq!(family(copy.path(), &[]).0, Some(0));
     assert_eq!(family(copy.path(), &["--check"]).0, Some(0));
     let (now, then) = (files(&models), files(&WRITTEN.path().join("models")));
@@ -513,7 +513,7 @@ fn unchanged_family_of_two_thousand_is_compared_quickly() {
     std::fs::write(folder.path().join("family.toml"), text(1)).expect("written");
     let (status, said) = family(folder.path(), &[]);
     assert_eq!(status, Some(0), "{said}");
-    // The other variants are copies: only their hashes count.
+    // The other variants are copies; only their hashes are compared.
     let models = folder.path().join("models");
     let manifest = models.join("manifest.json");
     let document = std::fs::read_to_string(&manifest).expect("a manifest");
@@ -534,7 +534,7 @@ fn unchanged_family_of_two_thousand_is_compared_quickly() {
         }
     }
     std::fs::write(folder.path().join("family.toml"), text(COUNT)).expect("written");
-    // Writes the tables of all variants, without generating one.
+    // Writes the tables of all variants without generating a variant.
     let (status, said) = family(folder.path(), &[]);
     assert_eq!(status, Some(0), "{said}");
     assert!(said.contains("2 written"), "{said}");
@@ -544,7 +544,7 @@ fn unchanged_family_of_two_thousand_is_compared_quickly() {
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
 }
 
-/// Returns exit status and output of the program.
+/// Runs the program and returns exit status and output.
 fn said(arguments: &[&Path], more: &[&str]) -> (Option<i32>, String) {
     let output = eomgen()
         .args(arguments)
@@ -575,7 +575,7 @@ fn embedded_files_are_verified_and_faults_are_found() {
             && text.contains("hash: as certified"),
         "{text}"
     );
-    // A comment changes the hash only.
+    // An edited comment changes only the hash.
     edit(&rust, "/// Number of states", "/// Count of states");
     let (status, text) = verify(&rust, &[]);
     assert_eq!(status, Some(1), "{text}");
@@ -597,7 +597,7 @@ fn embedded_files_are_verified_and_faults_are_found() {
             .any(|check| check["name"] == "emitted_c" && check["passed"] == true)
     );
     assert_eq!(verify(&c, &["--cc", "cc -std=c99 -O0"]).0, Some(0));
-    // The default of a parameter that was set.
+    // The default of a parameter that `set` replaced is edited.
     edit(&c, "R(0.001)", "R(0.002)");
     let (status, text) = verify(&c, &[]);
     assert_eq!(status, Some(1), "{text}");
@@ -804,7 +804,7 @@ fn files_in_single_precision_are_verified_by_the_certificate_of_their_variant() 
     assert!(text.contains("the header is DIFFERENT"), "{text}");
 }
 
-/// A controller that is written once drives the same coordinate at orders 3 and 7.
+/// The same controller source drives the same coordinate at orders 3 and 7.
 #[test]
 fn controller_with_named_indices_serves_all_orders() {
     if Command::new("cc").arg("--version").output().is_err() {
@@ -849,7 +849,7 @@ pub(super) fn run(command: &mut Command) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
-/// Prints the sizes and one rate of two variants of one model.
+/// C program that prints the sizes and one rate of two variants of one model.
 const LINKED_C: &str = r#"
 #include "beam_1.h"
 #include "long_beam.h"

@@ -1,10 +1,11 @@
-//! One program for all orders of a family: the trait in Rust, tables of function pointers in C.
+//! Tests of one program for all orders of a family, with the trait in Rust and with tables of function pointers in C.
 
 use std::process::Command;
 
 use super::families::{WRITTEN, run};
 
-/// Moves each variant by the classical Runge-Kutta method, and prints hub, tip and energy as bits.
+/// Rust program that integrates each variant by the classical Runge-Kutta method and prints hub, tip and energy as
+/// bits.
 const IN_RUST: &str = r#"
 use models::Model;
 
@@ -150,7 +151,7 @@ fn one_solver_moves_all_orders_in_both_languages() {
         .arg(&program)
         .arg(&source));
     let in_rust = run(&mut Command::new(&program));
-    // Two surfaces of the play; order + 2 degrees of freedom; six parameters.
+    // Each variant has two switching surfaces (of the play), order + 2 degrees of freedom and six parameters.
     let ends: Vec<&str> = in_rust
         .lines()
         .map(|line| &line[line.len() - 5..])

@@ -1,11 +1,11 @@
-//! Names of emitted files: none is written twice, and no header replaces one of the system.
+//! Tests of the names of emitted files: no file is written twice, and no header has the name of a system header.
 
 use std::path::Path;
 use std::process::Command;
 
 use eomgen_tests::program::eomgen;
 
-/// Wheel with this name of the model.
+/// Returns the specification of a wheel with this model name.
 fn wheel(name: &str) -> String {
     format!(
         "[model]\nname = \"{name}\"\n[parameters]\nJ = {{ value = 2, unit = \"kg m^2\" }}\n\

@@ -1,4 +1,4 @@
-//! C in one header (`packaging = "header-only"`): family, certificate, `verify` and `identify`.
+//! Tests of header-only C (`packaging = "header-only"`): family, certificate, `verify` and `identify`.
 
 use std::path::Path;
 use std::process::Command;

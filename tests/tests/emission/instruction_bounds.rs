@@ -1,5 +1,5 @@
-//! Bounds of instructions and stack compared with counts on emulated microcontrollers (`instruction_counts.c`). Tests are
-//! skipped with a message if the emulator or the compiler is missing.
+//! Comparison of the bounds of instructions and stack with counts on emulated microcontrollers
+//! (`instruction_counts.c`). Tests are skipped with a message if the emulator or the compiler is missing.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -9,10 +9,10 @@ use eomgen_tests::models::project;
 use eomgen_tests::program::eomgen;
 use serde_json::Value;
 
-/// Recorded bounds and counts of the rates of all shipped machines; EOMGEN_REFRESH measures them.
+/// File with recorded bounds and counts of `rates` for all shipped machines; EOMGEN_REFRESH measures them again.
 const RECORDED: &str = "examples/bare_metal/bounds.txt";
 
-/// Machines that every run measures: angles, contacts with play, modes, quaternions.
+/// Machines that every test run measures: angles, contacts with play, modes, quaternions.
 const MACHINES: [&str; 4] = [
     "crane",
     "planetary_arm",
@@ -20,7 +20,7 @@ const MACHINES: [&str; 4] = [
     "shaft_and_disc",
 ];
 
-/// Cores with their boards and options.
+/// Processor cores with their emulated boards and compiler options.
 const CORES: [[&str; 3]; 2] = [
     [
         "cortex-m4",
@@ -45,9 +45,9 @@ const FUNCTIONS: [&str; 8] = [
 /// Bounds and largest counts of one function.
 struct Measured {
     function: &'static str,
-    /// Bounds: for all numbers, without subnormal ones, stack.
+    /// Bounds: instructions for all numbers, instructions without subnormal numbers, stack.
     bounds: Option<[u64; 3]>,
-    /// Largest counts: at states of usual size, at all states, stack.
+    /// Largest counts: instructions at states of typical magnitude, instructions at all states, stack.
     counts: [u64; 3],
 }
 
@@ -67,7 +67,7 @@ fn missing_tool() -> Option<&'static str> {
     missing.map(|(_, how)| how)
 }
 
-/// Returns true if the tools are there; otherwise reports the skip.
+/// Returns true if the tools are installed; otherwise reports the skip.
 fn has_tools() -> bool {
     if let Some(missing) = missing_tool() {
         skips::skip(&format!(
@@ -93,7 +93,7 @@ fn emit(machine: &str, folder: &Path) {
     assert!(output.expect("eomgen").status.success());
 }
 
-/// Bounds the functions of the emitted machine, and counts their instructions in the emulator.
+/// Computes the bounds of the functions of an emitted machine and counts their instructions in the emulator.
 fn measure(
     machine: &str,
     folder: &Path,
@@ -199,7 +199,8 @@ fn measure(
             .split(' ')
             .map(|word| u64::from_str_radix(word, 16).expect("digits"));
         let mut next = || words.next().expect("three numbers");
-        // A tick is 40 instructions; 80 calls of a function are compared with calls of one with a single instruction.
+        // A tick of the timer is 40 instructions. The ticks of 80 calls of a function are compared with 80 calls of a
+        // function of one instruction.
         let [usual, all] = [next(), next()].map(|ticks| ticks / 2 + 1);
         Measured {
             function,
@@ -218,7 +219,8 @@ fn assert_no_bound_is_exceeded(measured: &[Measured], case: &str) {
     } in measured
     {
         let Some([all, without_subnormals, stack]) = *bounds else {
-            // gcc replaces an array of zeros by a call of `memset`, which is no part of libgcc.
+            // gcc replaces the initialisation of an array with zeros by a call of `memset`, which is not part of
+            // libgcc.
             assert_eq!(*function, "prepare", "{case} has no bound of {function}");
             continue;
         };
@@ -235,7 +237,8 @@ fn assert_no_bound_is_exceeded(measured: &[Measured], case: &str) {
     }
 }
 
-/// Both cores, both precisions, two levels of optimisation; states of usual size, and with subnormal, infinite and undefined numbers.
+/// Cases: both cores, both precisions, two optimisation levels, states of typical magnitude, and states with subnormal,
+/// infinite and NaN numbers.
 #[test]
 fn emulated_counts_never_exceed_bounds() {
     if !has_tools() {
@@ -256,7 +259,7 @@ fn emulated_counts_never_exceed_bounds() {
     }
 }
 
-/// The table of docs/embedding.md, from the recorded measurement of all shipped machines.
+/// The table in docs/embedding.md must match the recorded measurement of all shipped machines.
 #[test]
 fn documented_ratios_are_those_of_the_recorded_bounds() {
     if std::env::var_os("EOMGEN_REFRESH").is_some() && has_tools() {
@@ -275,7 +278,7 @@ fn documented_ratios_are_those_of_the_recorded_bounds() {
     }
 }
 
-/// Returns the bounds and their ratios to the largest counts.
+/// Returns a table cell with the bounds and their ratios to the largest counts.
 fn cell(numbers: &[&str]) -> String {
     let numbers: Vec<f64> = numbers
         .iter()
@@ -340,7 +343,7 @@ fn measure_all_machines() -> String {
     text
 }
 
-/// A loop whose number of iterations depends on data has no bound, and the command fails.
+/// If the number of iterations of a loop depends on data, there is no bound and the command fails.
 #[test]
 fn loop_over_data_has_no_bound() {
     if !has_tools() {
@@ -383,7 +386,7 @@ fn loop_over_data_has_no_bound() {
     );
 }
 
-/// The certificate states the bounds, `verify` computes them again and rejects changed ones.
+/// The certificate contains the bounds. `verify` computes them again and rejects changed bounds.
 #[test]
 fn certificate_states_bounds_that_verify_repeats() {
     if !has_tools() {
@@ -443,7 +446,7 @@ fn certificate_states_bounds_that_verify_repeats() {
     let output = verify(&allowed);
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&output.stderr).contains("are not those of the certificate"));
-    // A certificate of somebody else must not run programs.
+    // A certificate from an untrusted source must not run programs.
     let mark = folder.path().join("mark");
     let other = text.replace(&command, &format!("touch {}", mark.display()));
     assert_ne!(other, text);

@@ -1,6 +1,5 @@
-//! Machine code against the interpreter: equal bits for every shipped specification and every
-//! feature, at ordinary points and at limits of the arithmetic. The sign and payload of NaN are not
-//! compared.
+//! Bit-for-bit comparison of machine code with the interpreter for every shipped specification and every language
+//! feature, at ordinary points and at limits of the arithmetic. The sign and payload of NaN are not compared.
 
 use std::cell::RefCell;
 
@@ -73,8 +72,8 @@ const OPERATIONS: [&str; 26] = [
     "Total",
 ];
 
-/// Returns the operation's name. A new operation does not compile until it is added here; add it to
-/// [`OPERATIONS`] as well.
+/// Returns the operation's name. If the compiler reports a new operation here, add it to this function and to
+/// [`OPERATIONS`].
 fn kind(op: &Op) -> &'static str {
     match op {
         Op::Add(..) => "Add",
@@ -107,14 +106,14 @@ fn kind(op: &Op) -> &'static str {
     }
 }
 
-/// A program as an interpreter and as machine code.
+/// Interpreter and machine code of one program.
 struct Pair {
     name: String,
     interpreted: Evaluator,
     compiled: Evaluator,
 }
 
-/// Time, state and inputs of a random point.
+/// Random time, state and inputs.
 struct RandomPoint {
     t: f64,
     state: Vec<f64>,
@@ -188,7 +187,7 @@ impl Pair {
     }
 }
 
-/// Returns the bits, equal for all NaN.
+/// Returns the bits of a number; all NaNs have the same result.
 fn bits(number: f64) -> u64 {
     if number.is_nan() {
         f64::NAN.to_bits()
@@ -233,7 +232,7 @@ fn program(model: &Model, order: usize) -> Option<Program> {
 
 fn compare(name: &str, model: &Model, order: usize) {
     let Some(program) = program(model, order) else {
-        // Some models need a mode; other tests check the error.
+        // Some models cannot be derived without a mode; other tests check the error.
         assert_eq!(order, 0, "{name} cannot be derived");
         return;
     };
@@ -313,8 +312,8 @@ fn general_solver_takes_same_steps_with_machine_code() {
     }
 }
 
-/// Returns a model with a sum over modes of an integral that needs quadrature. No other
-/// specification has one.
+/// Returns a model with a sum over modes of an integral that needs quadrature. No other specification contains such a
+/// sum.
 fn tapered_sum_model() -> Model {
     let path = project().join("tests/features/exponential_taper.toml");
     let text = std::fs::read_to_string(path).expect("the feature");

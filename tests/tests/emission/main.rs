@@ -1,4 +1,5 @@
-//! Emitted code: the bits of the interpreter, single precision, microcontrollers, build scripts.
+//! Tests of emitted code: bit-for-bit comparison with the interpreter, single precision, microcontrollers, build
+//! scripts.
 
 mod bare_metal;
 mod bare_metal_gain;

@@ -1,5 +1,5 @@
-//! Emitted C against MISRA C:2012, as far as the add-on of cppcheck checks it: the required and mandatory rules that it
-//! reports are those of the list of deviations in the documentation. Skipped with a message without cppcheck.
+//! Test of emitted C for compliance with MISRA C:2012 with the add-on of cppcheck. The reported required and mandatory
+//! rules must equal the documented list of deviations. Skipped with a message without cppcheck.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -8,12 +8,12 @@ use std::process::Command;
 use eomgen_tests::models::project;
 use eomgen_tests::program::eomgen;
 
-/// Advisory rules, whose reports need no deviation.
+/// Advisory rules. Reports of these rules need no documented deviation.
 const ADVISORY: &str = "1.2 2.3 2.4 2.5 2.6 2.7 4.2 5.9 8.7 8.9 8.11 8.13 10.5 11.4 11.5 12.1 12.3 12.4 13.3 13.4 15.1 \
                         15.4 15.5 17.5 17.8 18.4 18.5 19.2 20.1 20.5 20.10 21.12";
 
-/// Specifications with their options of `generate`: fields and all additional functions, regimes, sums of elementary
-/// functions, controllers.
+/// Specifications with options of `generate`. They cover fields with all additional functions, regimes, sums of
+/// elementary functions, and controllers.
 const MODELS: [(&str, &[&str]); 6] = [
     (
         "model-spec/models/planetary_arm.toml",
@@ -91,7 +91,7 @@ fn required_rules_that_emitted_c_breaks_are_the_listed_deviations() {
     );
 }
 
-/// Returns the rules that a file breaks, or `None` if cppcheck does not run.
+/// Returns the rules that a file violates; `None` if cppcheck is not installed.
 fn broken_rules(file: &Path, options: &[&str]) -> Option<BTreeSet<String>> {
     let output = Command::new("cppcheck")
         .args(["--quiet", "--std=c99", "--enable=style", "--addon=misra"])

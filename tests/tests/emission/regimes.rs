@@ -1,5 +1,5 @@
-//! Kernels of regimes give the bits of the general rates at every state in their regime, and extend
-//! smoothly beyond it.
+//! Tests of regime kernels: at every state in the regime they are bit-identical to the general rates, and they extend
+//! smoothly beyond the regime.
 
 use proptest::prelude::*;
 
@@ -13,7 +13,7 @@ mod arm_of_nine_modes {
     eomgen::model! { spec = "../model-spec/models/planetary_arm.toml", order = 9, with = [regimes] }
 }
 
-/// Other switching functions, and selections caused by the derivative of a maximum.
+/// Model with other switching functions, and with selections from the derivative of a maximum.
 mod switches {
     eomgen::model! {
         with = [regimes],
@@ -48,7 +48,7 @@ fn bits<const N: usize>(numbers: &[f64; N]) -> [u64; N] {
     numbers.map(f64::to_bits)
 }
 
-/// Returns the rates by the kernel of a regime known at run time, if it is in the list.
+/// Returns the rates of the kernel whose regime number, known only at run time, is in the list.
 macro_rules! in_regime {
     ($module:ident, $regime:expr, $t:expr, $state:expr, $coefficients:expr, [$($known:literal)*]) => {{
         let mut rates = [f64::NAN; $module::STATES];
@@ -87,7 +87,7 @@ macro_rules! arms {
                 prop_assert_eq!(found.map(|rates| bits(&rates)), Some(bits(&expected)));
             }
 
-            /// The regime with both meshes inside the backlash must not depend on the backlash.
+            /// The kernel of the regime with both meshes inside the backlash must not depend on the backlash.
             #[test]
             fn $beyond(
                 numbers in prop::collection::vec(-1.0..1.0_f64, $module::STATES),

@@ -1,4 +1,5 @@
-//! Quantities with the names of the emitted source compile: every name in it is free or reserved.
+//! Test that quantities may have names that appear in the emitted source: each such name compiles or is rejected as
+//! reserved.
 
 use std::collections::BTreeSet;
 use std::process::Command;
@@ -19,7 +20,7 @@ const OUTPUTS: [Output; 7] = [
     Output::Regimes,
 ];
 
-/// Rotor with a definition of each name, which becomes a variable of the functions.
+/// Returns a rotor with one definition for each name. Definitions are variables in the emitted functions.
 fn rotor(names: &[&str]) -> String {
     let list = |line: &dyn Fn(usize, &str) -> String| -> String {
         let lines = names.iter().enumerate();
@@ -60,7 +61,7 @@ fn definitions_with_names_of_the_emitted_rust_compile() {
     let found = words(&source)
         .into_iter()
         .filter(|word| !own.contains(word));
-    // Keywords and functions of the language of specifications are rejected there.
+    // Keywords and functions of the specification language are rejected, so they are excluded.
     let names: Vec<&str> = found.filter(|name| emit(&[*name]).is_some()).collect();
     for expected in ["REGIME", "T", "STATES", "Scalar", "positive", "rates"] {
         assert!(names.contains(&expected), "{expected}");

@@ -1,4 +1,4 @@
-//! Macro, build script and command line give the same bits of emitted code and add no dependencies.
+//! Test that macro, build script and command line give code with bit-identical results and add no dependencies.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -15,7 +15,7 @@ const SEED: u64 = 0x5eed_0400;
 
 const STATES_PER_REGIME: usize = 20;
 
-/// Bits of a time and a state, then of the results there.
+/// Bits of a time and a state, then of the results.
 type Bits = Vec<u64>;
 
 fn points() -> Vec<(f64, [f64; 14])> {

@@ -1,4 +1,4 @@
-//! `generate --set` and `validate --set`: default values of parameters in emitted code.
+//! Tests of `generate --set` and `validate --set`: default values of parameters in emitted code.
 
 use eomgen_tests::models::path;
 use eomgen_tests::program::eomgen;
@@ -34,13 +34,13 @@ fn emitted_defaults_are_those_of_set() {
         .zip(changed.lines())
         .filter(|(a, b)| a != b)
         .collect();
-    // The default, and the hash in the identity.
+    // Only two lines differ: the hash in the identity, and the default value.
     let [(_, identity), (_, default)] = differing[..] else {
         panic!("{differing:?}")
     };
     assert!(identity.contains("IDENTITY"), "{identity}");
     assert_eq!(default.trim(), "a: 0.45,");
-    // The same number in another form gives the same bytes.
+    // The same number in another notation gives the same bytes.
     assert_eq!(source(&["--set", "a=0.45"]), changed);
 }
 

@@ -1,4 +1,4 @@
-//! Emitted code in `f32` against double precision with a bound of the accumulated `f32` rounding.
+//! Comparison of emitted code in `f32` with double precision, within a bound of the accumulated `f32` rounding errors.
 
 #[path = "../../requested/tests/requested/rounded.rs"]
 mod rounded;
@@ -7,18 +7,18 @@ use proptest::prelude::*;
 
 use rounded::Rounded;
 
-/// Tolerance of the first-order bound: products of two roundings and the rounding of double
-/// precision are about 1e-7 of the first order.
+/// Tolerance relative to the first-order bound. Products of two rounding errors, and rounding errors of double
+/// precision, are about 1e-7 of the bound.
 const FIRST_ORDER: f64 = 1.001;
 
-/// Acceleration of the sun by each of the motor's terms, in m/s^2; at rest they can cancel.
+/// Acceleration of the sun due to each of the motor's terms, in m/s^2. At rest the terms can cancel.
 const MOTOR: f64 = 100.0;
 
 /// Number in double precision with a bound of its error in single precision.
 type Single = Rounded<24>;
 
-/// Returns the error of an elementary function beyond the rounding of its result: at most two units in the last
-/// place together.
+/// Returns the error of an elementary function in addition to the rounding of its result. The sum of both is at most
+/// two units in the last place.
 fn function_error(value: f64) -> f64 {
     3.0 * value.abs() / f64::from(1 << 24)
 }
@@ -52,8 +52,8 @@ macro_rules! agrees {
         }
 
         proptest! {
-            /// Modes decrease with their number, as in motion. Deflections are far from the edge of
-            /// the backlash, so both precisions see the same side.
+            /// Amplitudes of modes decrease with the mode number, as in a real motion. Deflections are far from the
+            /// edge of the backlash, so both precisions see the same side.
             #[test]
             fn $test(
                 numbers in prop::collection::vec(-1.0..1.0_f32, $module::STATES),
@@ -104,7 +104,7 @@ fn assert_within_bounds(found: &[f32], expected: &[Single]) -> Result<(), TestCa
     Ok(())
 }
 
-/// Asserts that the bounds are sharp: at most 1e-4 of the largest acceleration.
+/// Asserts that the bounds are tight: at most 1e-4 of the largest acceleration.
 fn assert_bounds_are_sharp(rates: &[Single]) -> Result<(), TestCaseError> {
     let sizes = rates.iter().map(|rate| rate.number.abs());
     let largest = sizes.fold(MOTOR, f64::max);

@@ -1,4 +1,4 @@
-//! `generate --with trace`: lines of the source with unit and terms.
+//! Tests of `generate --with trace`: lines of the source with units and terms.
 
 use eomgen_tests::models::path;
 use eomgen_tests::program::eomgen;
@@ -34,7 +34,7 @@ fn trace_names_the_line_of_every_value() {
                 rates.push(entry.clone());
             }
         }
-        // The carrier's acceleration has the inertia of all but the sun, all springs and both dampers.
+        // The carrier's acceleration contains all inertias except the sun's, all springs and both dampers.
         let [rate] = &rates[..] else {
             panic!("{rates:?}")
         };

@@ -1,4 +1,4 @@
-//! Functional mock-up units: certificate, `verify`, and seeded faults.
+//! Tests of functional mock-up units: certificate, `verify`, and seeded faults.
 
 use std::path::Path;
 use std::process::Command;

@@ -1,5 +1,5 @@
-//! Certificates of all shipped specifications: all checks run and pass, and a fault fails its
-//! check.
+//! Tests of the certificates of all shipped specifications: all checks run and pass, and each seeded fault fails the
+//! corresponding check.
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::program::lowering::lower;
@@ -98,7 +98,7 @@ fn assert_checked_in(certificate: &Certificate) {
             skipped,
         )
     };
-    // The certificate in `generated` may lack checks added since the last `generate --all`.
+    // Checks that were added after the last `generate --all` may be missing in the certificate in `generated`.
     for (found, skipped) in found["checks"].as_array().expect("checks").iter().map(made) {
         let mut checks = certificate.checks.iter();
         let known = checks.any(|check| check.name == found && check.skipped.is_some() == skipped);
@@ -180,14 +180,14 @@ fn two_link_arm_passes_rigid_and_flexible() {
     ];
     assert_passes(&rigid, &may_skip);
     assert_eq!(count_checks(&rigid, "reference"), 1);
-    // Order 16 takes half a minute and has the loops of order 8.
+    // Order 16 takes half a minute and has the same loops as order 8, so it is omitted.
     for order in [1, 4, 8] {
         let may_skip = ["guards", "regime_kernels", "exact_derivative", "reference"];
         assert_passes(&certify_shipped("two_link_arm", order), &may_skip);
     }
 }
 
-/// Faults in emitted source: text, replacement, checks that must fail.
+/// Seeded faults in emitted source: text, replacement, names of the checks that must fail.
 const FAULTS: [(&str, &str, &[&str]); 4] = [
     (
         "        F::single(self)\n",

@@ -1,4 +1,4 @@
-//! Contents of the certificate of a user's specification, with all requestable outputs.
+//! Tests of the content of a certificate of a user's specification with all outputs that can be requested.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use eomgen_model_spec::source::sha256;
 use eomgen_tests::program::{run, run_accepted, text};
 use serde_json::Value;
 
-/// A lever that pushes a ram through a joint with play.
+/// Lever that pushes a ram through a joint with play.
 const LEVER: &str = r#"
 [model]
 name = "stamping_lever"
@@ -47,7 +47,7 @@ motor = { on = "theta", value = "u" }
 gap = { value = "gap", unit = "m" }
 "#;
 
-/// All requestable outputs except regimes, and their checks.
+/// All outputs that can be requested, except regimes.
 const REQUESTED: &str =
     "bias_forces,inverse_dynamics,guard_rates,jacobians,products,linearisation,lanes";
 const CHECKS: [&str; 16] = [

@@ -1,5 +1,5 @@
-//! The named coefficients a_01 and so on in the arm's specification: equal to the hand-written ones
-//! of Eq. (22), and sufficient to assemble the equations.
+//! Tests of the named coefficients a_01 .. in the arm's specification: they equal the hand-written coefficients of Eq.
+//! (22) and are sufficient to assemble the equations.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_tests::models::{load, samples, variant};
@@ -7,8 +7,7 @@ use eomgen_validate::references::planetary_arm::equation_22::{Coefficients, Mode
 use eomgen_validate::references::planetary_arm::parameters::PlanetaryArmParameters;
 use eomgen_validate::sampler::Sample;
 
-/// Maximum relative deviation. Both sides are tens of roundings away from the parameters, and a_16
-/// loses a digit by cancellation.
+/// Maximum relative deviation. Both sides have the errors of tens of roundings, and a_16 loses a digit by cancellation.
 const TOLERANCE: f64 = 1e-12;
 
 const ORDERS: [usize; 3] = [1, 4, 16];
@@ -35,7 +34,7 @@ impl NamedCoefficients {
         }
     }
 
-    /// Returns the coefficients at a sample by name: one number, one per mode, or modes by modes.
+    /// Returns the coefficients at a sample by name: a single number, one number per mode, or a matrix of modes.
     fn coefficients_at(&mut self, sample: &Sample) -> impl Fn(&str) -> Vec<f64> + use<> {
         let point = Point {
             t: sample.time,
@@ -59,7 +58,7 @@ impl NamedCoefficients {
     }
 }
 
-/// Returns the hand-written coefficient with that name in the specification; q denotes the modes.
+/// Returns the hand-written coefficient that has the name `name` in the specification; q in a name denotes the modes.
 fn hand_written(coefficients: &Coefficients, name: &str, t: f64) -> Option<Vec<f64>> {
     let c = coefficients;
     let one = |value: f64| Some(vec![value]);
@@ -119,7 +118,7 @@ fn named_coefficients_match_equation_22() {
     }
 }
 
-/// Factors of the coefficients: the paper's f_k and f_c, and the modes.
+/// Quantities that the coefficients multiply: the paper's f_k and f_c, and the modes.
 struct Quantities {
     rates: [f64; 3],
     springs: [f64; 2],
@@ -168,7 +167,7 @@ impl Quantities {
     }
 }
 
-/// Returns the terms of every row of Eq. (22), divided by the factor of the row's acceleration.
+/// Returns the terms of every row of Eq. (22), divided by the coefficient of the row's acceleration.
 fn rows(a: &impl Fn(&str) -> Vec<f64>, by: &Quantities) -> Vec<Vec<f64>> {
     let one = |name: &str| a(name)[0];
     let [x_sp, x_pr, x_c] = by.rates;

@@ -1,7 +1,6 @@
-//! Inverse dynamics of rigid bodies, computed from frame to frame, against the oracle's mass matrix
-//! and forces. The random trees contain hinges, slides, multiple turns of a frame, oblique axes,
-//! angles that depend on several coordinates, on time or on prescribed motion, bodies without mass,
-//! and additional energies.
+//! Comparison of the recursive inverse dynamics of rigid bodies with the oracle's mass matrix and forces. The random
+//! trees contain hinges, slides, multiple rotations of a frame, oblique axes, bodies without mass, and additional
+//! energies. Angles can depend on several coordinates, on time or on prescribed motion.
 
 use std::fmt::Write;
 
@@ -31,7 +30,7 @@ fn pick_text<'t>(random: &mut Random, texts: &[&'t str]) -> &'t str {
     random.pick(texts).copied().unwrap_or_default()
 }
 
-/// Returns a rotation of frame `i`, driven by coordinate `i` unless that one slides.
+/// Returns a rotation of frame `i`. Its angle is coordinate `i`, unless this coordinate is a slide.
 fn rotation(random: &mut Random, i: usize, slides: bool) -> String {
     let axes = ["x", "y", "z"];
     let before = i.saturating_sub(1).max(1);
@@ -133,7 +132,7 @@ fn tree(random: &mut Random) -> String {
     text += &bodies;
     text += "[kinetic]\n";
     for i in 1..=COORDINATES {
-        // Gives every coordinate inertia, for any tree.
+        // An additional term gives every coordinate inertia in any tree.
         _ = writeln!(
             text,
             "rotor_{i} = \"1/2*K*(1 + cos(q_{i})^2)*dot(q_{i})^2\""
@@ -201,7 +200,7 @@ fn inverse_dynamics_of_random_trees_matches_oracle() {
         all_rates += rates;
         all_inverse += inverse;
     }
-    // The quotient would be 0.71 with mass matrices or sweeps.
+    // If inverse dynamics used mass matrices, or one sweep per coordinate, the ratio would be 0.71.
     assert!(2 * all_inverse < all_rates, "{all_inverse} of {all_rates}");
 }
 

@@ -1,4 +1,4 @@
-//! Classification of models as linear, piecewise linear or nonlinear.
+//! Tests of the classification of models as linear, piecewise linear or nonlinear.
 
 use eomgen_codegen::mechanics::equations::derive;
 use eomgen_codegen::mechanics::linearity::{Linearity, linearity};

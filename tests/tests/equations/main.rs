@@ -1,4 +1,4 @@
-//! Derived equations, coefficients and certificates against independent computations.
+//! Comparison of derived equations, coefficients and certificates with independent computations.
 
 mod certificates;
 mod certified;

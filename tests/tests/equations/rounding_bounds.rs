@@ -1,5 +1,5 @@
-//! Bounds of rounding errors: no error of a shipped or random machine at random points exceeds its bound, and missing
-//! bounds have a reason.
+//! Tests of the bounds of rounding errors: no error of a shipped or random machine at random points exceeds the bound,
+//! and missing bounds have a reason.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -60,7 +60,7 @@ fn assert_bounded(program: &Program, ranges: &VariableRanges, count: usize) -> V
                 .draw(&mut random)
                 .expect("the bits of the evaluator");
         }
-        // A single point may be on both sides of a jump.
+        // The computed and the exact value of a point may be on different sides of a jump.
         assert!(
             count == 1 || sampler.compared() > 0,
             "{}: no point compared",
@@ -118,7 +118,7 @@ fn errors_of_shipped_machines_stay_within_their_bounds() {
     }
 }
 
-/// Operation of a program by name.
+/// Name of an operation, and a function that recognises it.
 type Kind = (&'static str, fn(&Op) -> bool);
 
 const OPERATIONS: [Kind; 11] = [
@@ -181,7 +181,7 @@ fn features_cover_every_operation() {
             let own = OPERATIONS.iter().filter(|(_, is_kind)| is_kind(op));
             found.extend(own.map(|(name, _)| *name));
         }
-        // A state at which all functions are defined.
+        // All functions are defined at this state.
         let mut ranges = VariableRanges::from_model(&model, &program).expect("values");
         let near: Vec<f64> = (0..program.states() + program.inputs.len())
             .map(|place| 0.01 * (1.0 + (place as f64 * 0.37).fract()))
@@ -207,7 +207,7 @@ fn functions_of(program: &Program) -> Vec<String> {
     functions.collect()
 }
 
-/// Draws an expression of x, y and numbers, defined for |x|, |y| <= 1.
+/// Draws a random expression of x, y and numbers that is defined for |x|, |y| <= 1.
 fn draw_expression(random: &mut Random, depth: usize) -> String {
     const LEAVES: [&str; 4] = ["x/d", "y/d", "0.7", "1.3"];
     const UNARY: [&str; 17] = [

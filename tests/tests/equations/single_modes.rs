@@ -1,4 +1,4 @@
-//! Feedback of single modes against the rates of the machine without feedback.
+//! Comparison of the feedback of single modes with the rates of the machine without feedback.
 
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_compiled_model::{CompiledModel, Orders};

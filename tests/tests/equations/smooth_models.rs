@@ -1,7 +1,7 @@
-//! Certificates of random smooth models: a correct model must pass, and a model with a relative
-//! error of 1e-7 in a single term must fail.
+//! Tests of certificates of random smooth models: a correct model must pass, and a model with a relative error of 1e-7
+//! in a single term must fail.
 //!
-//! By default a few models run. For more, or another seed:
+//! By default only a few models are tested. To test more models, or to use another seed, run:
 //!
 //! ```console
 //! $ EOMGEN_SMOOTH_MODELS=300 EOMGEN_SMOOTH_SEED=7 \
@@ -20,7 +20,7 @@ fn number(name: &str, absent: u64) -> u64 {
     given.map_or(absent, |text| text.parse().expect("a whole number"))
 }
 
-/// Returns true if the initial state has a positive definite mass matrix and finite rates.
+/// Returns true if the mass matrix is positive definite and the rates are finite at the initial state.
 fn has_valid_initial_state(model: &Model) -> bool {
     let mut evaluator = variant(model, 0).evaluator;
     let state = model.initial_state(&[]).expect("a state");
@@ -116,9 +116,8 @@ fn requested_outputs_of_correct_models_pass() {
     );
 }
 
-/// A term can be so small compared with its row, at every state, that 1e-7 of it is within the
-/// row's rounding. A relative error of 1e-3 in such a term must be detected, and such terms must be
-/// rare.
+/// If a term is small compared with its row at every state, 1e-7 of the term can be below the row's rounding error. In
+/// such a term a relative error of 1e-3 must be detected, and such terms must be rare.
 #[test]
 fn relative_error_of_1e_7_in_a_term_is_detected() {
     let (count, seed) = (

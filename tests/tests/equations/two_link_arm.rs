@@ -1,12 +1,11 @@
-//! Energy conservation of the two-link flexible arm along a motion; certificates only check single
+//! Test of energy conservation of the two-link flexible arm along a motion, because certificates check only single
 //! states.
 
 use eomgen_tests::models::load;
 use eomgen_tests::motions::{TestMotion, grid};
 
-/// Releases the arm from the horizontal without friction and torque for half a second; both links
-/// swing and bend. The relative error of a step is 1e-11 of each state, so about a thousand steps
-/// may lose 1e-8 of the exchanged energy.
+/// The arm falls from the horizontal without friction and torque for half a second; both links swing and bend. Each
+/// step has a relative error of 1e-11, so the error after about a thousand steps may be 1e-8 of the exchanged energy.
 #[test]
 fn frictionless_fall_conserves_energy() {
     for order in [0, 1, 3] {

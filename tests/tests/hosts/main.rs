@@ -1,5 +1,5 @@
-//! Hosts of emitted code and of the engine. In one binary they run in parallel: each waits for
-//! compilers, installers, browsers or schedulers.
+//! Tests of the hosts of emitted code and of the engine. They are in one binary to run in parallel, because each test
+//! waits for compilers, installers, browsers or schedulers.
 
 mod acados;
 mod c99;

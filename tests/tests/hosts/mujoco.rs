@@ -1,6 +1,5 @@
-//! Identification in MuJoCo and discovery on the same records: `examples/measured/identify.py` runs
-//! and its table agrees with the values of the simulated stage. Skipped with a message if MuJoCo is
-//! missing.
+//! Test of identification in MuJoCo and discovery with the same records: `examples/measured/identify.py` runs, and its
+//! table agrees with the parameters of the simulated stage. Skipped with a message if MuJoCo is missing.
 
 use std::process::{Command, Output};
 
@@ -10,7 +9,7 @@ use eomgen_tests::program::{self, text};
 const NO_PYTHON: &str = "MuJoCo was not compared with discovery: python3 is missing";
 const NO_TOOLBOX: &str = "MuJoCo was not compared with discovery: its toolbox sysid is missing \
                           (pip install 'mujoco[sysid]')";
-/// RMS of the noise in the records, mm.
+/// RMS of the noise in the records, in mm.
 const NOISE: f64 = 0.02;
 
 fn run(options: &[&str]) -> Option<Output> {
@@ -28,7 +27,7 @@ fn run(options: &[&str]) -> Option<Output> {
     output
 }
 
-/// Cells of a table row.
+/// Returns the cells of a table row.
 fn cells<'a>(table: &'a str, title: &str) -> Vec<&'a str> {
     let start = format!("| {title} |");
     let row = table.lines().find(|line| line.starts_with(&start));
@@ -46,7 +45,7 @@ fn half_width(cell: &str) -> f64 {
 
 #[test]
 fn missing_toolbox_is_an_error_with_the_command_that_installs_it() {
-    // Without installed packages, whatever this machine has.
+    // The options `-I -S` exclude all installed packages of this machine.
     let Some(output) = run(&["-I", "-S"]) else {
         return;
     };

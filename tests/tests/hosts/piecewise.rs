@@ -1,5 +1,5 @@
-//! Piecewise functions and the reciprocal of a pivot at zeros, infinities, NaN and edges: one result in the
-//! interpreter, machine code, WebAssembly, C and Rust, in both precisions.
+//! Test that piecewise functions and the reciprocal of a pivot at zeros, infinities, NaN and thresholds have the same
+//! results in the interpreter, machine code, WebAssembly, C and Rust, in both precisions.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -18,7 +18,7 @@ mod piecewise_cases;
 
 use piecewise_cases::{OF_DEFLECTION, OF_ONE_NUMBER};
 
-/// Mass is the coordinate, so that the acceleration is the reciprocal of a pivot that is the coordinate.
+/// The mass is the coordinate. Therefore the acceleration is the reciprocal of a pivot that equals the coordinate.
 const MODEL: &str = r#"
 [model]
 name = "edges"
@@ -97,7 +97,7 @@ fn program() -> Program {
     variant.expect("the model can be derived").program
 }
 
-/// Compares deadzone, contact, above and reciprocal of all cases with the tables.
+/// Compares deadzone, contact, above and the reciprocal with the tables of expected values, for all cases.
 fn assert_values(backend: &str, found: &[[f64; 4]]) {
     assert_eq!(found.len(), arguments().len(), "{backend}");
     let check = |name: &str, at: &[f64], found: f64, expected: f64| {
@@ -165,7 +165,7 @@ fn web_assembly_has_the_tabulated_values() {
         &cases,
         counts,
     );
-    // The defaults, then for each case: validity, rates, observables, guards.
+    // The results are the default parameters, then for each case validity, rates, observables and guards.
     let rows = results[2..].chunks(3 + observables + guards);
     let found: Vec<[f64; 4]> = rows.map(|row| [row[3], row[4], row[5], row[2]]).collect();
     assert_values("WebAssembly", &found);

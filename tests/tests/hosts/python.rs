@@ -1,5 +1,5 @@
-//! The Python package: installed by the two commands of its README into a virtual environment, then
-//! its tests and notebook are run. Skipped with a message if Python or the packages are missing.
+//! Test of the Python package. The two commands of its README install it into a virtual environment, then its tests and
+//! its notebook are run. Skipped with a message if Python or the packages are missing.
 //!
 //! The commands need a Unix shell.
 #![cfg(unix)]
@@ -38,7 +38,7 @@ fn missing_tool(folder: &Path) -> Option<&'static str> {
     (!works(&registry)).then_some("a registry of Python packages")
 }
 
-/// Returns the commands of the README's first console block for an environment in `folder`.
+/// Returns the commands of the README's first console block, for a virtual environment in `folder`.
 fn installation(folder: &Path) -> Vec<String> {
     let page = std::fs::read_to_string(project().join("python/README.md")).expect("a page");
     let (_, rest) = page.split_once("```console\n").expect("a block");
@@ -62,7 +62,7 @@ fn package_installs_by_documented_commands_and_passes_its_tests() {
     let commands = installation(folder.path());
     assert_eq!(commands.len(), 2, "{commands:?}");
     let installed = commands.join("\n");
-    // Runs in another folder, so that Python imports the installed package.
+    // The command runs in another folder, so that Python imports the installed package.
     let imported = "cd / && python -c 'import eomgen; print(eomgen.load.__doc__)'";
     let output = run_shell(&format!("{installed}\n{imported}"));
     let shown = |output: &Output| text(&output.stdout) + &text(&output.stderr);
@@ -74,8 +74,7 @@ fn package_installs_by_documented_commands_and_passes_its_tests() {
     assert!(output.status.success(), "{}", shown(&output));
     assert!(report.contains(" passed"), "{report}");
     for line in report.lines() {
-        // Split so that the search for this word in the sources does not match; tests report skips
-        // by `skips`.
+        // The word is split to avoid a match when the sources are searched for it; tests report skips by `skips`.
         if let Some(skipped) = line.strip_prefix(concat!("SKIP", "PED ")) {
             skips::skip(&format!("a test of the Python package: {skipped}"));
         }

@@ -1,6 +1,6 @@
-//! `eomgen sweep --engine slurm` on a cluster of two nodes on this machine. One node is killed with
-//! its jobs during the sweep; the merged table must equal that of one machine byte for byte.
-//! Skipped with a message if Slurm is not installed.
+//! Test of `eomgen sweep --engine slurm` on a cluster of two nodes on this machine. One node is killed with its jobs
+//! during the sweep. The merged table must be byte-identical to the table of a single process. Skipped with a message
+//! if Slurm is not installed.
 #![cfg(target_os = "linux")]
 
 use std::fs;
@@ -33,7 +33,7 @@ damper = "1/2*c*dot(x)^2"
 drive = { on = "x", value = "F*sin(omega*t)" }
 "#;
 
-/// Options of a sweep of some seconds, so that a kill falls between the first and the last point.
+/// Options of a sweep that takes some seconds, long enough for a kill between the first and the last point.
 const SWEEP: [&str; 10] = [
     "--vary",
     "c=0.4:1:10",
@@ -49,7 +49,7 @@ const SWEEP: [&str; 10] = [
 
 const LIMIT: Duration = Duration::from_secs(180);
 
-/// Two nodes, their controller and the authentication daemon; ended on drop.
+/// Cluster of two nodes with their controller and the authentication daemon. Dropping it stops all processes.
 struct Cluster {
     folder: tempfile::TempDir,
     daemons: Vec<Child>,
@@ -176,14 +176,14 @@ impl Cluster {
         found
     }
 
-    /// Kills a node as a power loss does: first its supervisors, then its jobs. Returns the number
-    /// of job processes.
+    /// Kills a node as a power failure would: first the supervisors of the jobs, then the jobs. Returns the number of
+    /// job processes.
     fn kill(&self, node: &str) -> usize {
         let jobs = self.processes(&format!("SLURMD_NODENAME={node}"));
         let watching = jobs.iter().filter_map(|job| job_supervisor(job)).collect();
         let daemon = self.processes(&format!("{NODE}={node}"));
         let all = [daemon, watching, jobs.clone()].concat();
-        // Processes may have ended already.
+        // The status is ignored, because processes may have ended already.
         let mut command = Command::new("kill");
         command
             .arg("-9")
@@ -204,7 +204,7 @@ fn job_supervisor(job: &str) -> Option<String> {
     name.starts_with("slurmstepd").then_some(parent)
 }
 
-/// Environment variable that identifies a node's daemons; its jobs have a variable of Slurm.
+/// Environment variable that identifies a node's daemons. Jobs of the node are identified by a variable of Slurm.
 const NODE: &str = "EOMGEN_TEST_NODE";
 
 impl Drop for Cluster {
@@ -256,7 +256,7 @@ fn sweep_survives_a_lost_node() {
         return;
     }
     let cluster = Cluster::start();
-    // A path that needs quoting in a shell.
+    // The path needs quoting in a shell.
     let place = cluster.at("it's a $place");
     fs::create_dir(&place).expect("a folder");
     fs::write(place.join("oscillator.toml"), OSCILLATOR).expect("a specification");
@@ -281,7 +281,7 @@ fn sweep_survives_a_lost_node() {
     assert!(cluster.kill("n2") > 0, "nothing ran on the node");
     assert!(parts(&spread) < parts(&alone), "killed too late");
     cluster.wait("the merge", |cluster| {
-        // Slurm would hold the tasks of a lost node for two minutes.
+        // Slurm would delay the tasks of a failed node by two minutes, so they are released.
         for line in cluster
             .ask("squeue", &["-h", "-r", "-t", "PD", "-o", "%i %r"])
             .lines()

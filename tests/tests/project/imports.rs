@@ -282,7 +282,9 @@ fn folders_of_a_crate_import_in_one_direction() {
 #[test]
 fn circles_of_files_are_few_and_documented() {
     let page = std::fs::read_to_string(project().join("docs/architecture.md")).expect("the page");
-    let (_, section) = page.split_once("### Import cycles between files").expect("a section");
+    let (_, section) = page
+        .split_once("### Import cycles between files")
+        .expect("a section");
     let section = section.split("\n#").next().unwrap_or(section);
     let items: Vec<&str> = section.split("\n- ").skip(1).collect();
     let mut found = 0;

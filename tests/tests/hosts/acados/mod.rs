@@ -1,7 +1,7 @@
-//! The model emitted for acados in acados: the motion of its integrators and of its optimal control is that of
-//! `simulate`. Skipped with a message if no package of acados installs.
+//! Tests of models emitted for acados: motions of the integrators and of the optimal control of acados equal motions of
+//! `simulate`. Skipped with a message if no package of acados can be installed.
 //!
-//! The package keeps its files in other folders than acados expects; the tests create links.
+//! The files of the package are not in the folders that acados expects, so the tests create links.
 #![cfg(unix)]
 
 use std::os::unix::fs::symlink;
@@ -116,7 +116,7 @@ fn motions_and_optimal_control_in_acados_match_simulate() {
     let Some(acados) = Acados::install(folder) else {
         return;
     };
-    // Two orders of one model and another model, in one process.
+    // One process loads two orders of one model and another model.
     let cases = [
         ("furuta_pendulum", "0", "ERK"),
         ("hub_beam_tip_mass", "2", "IRK"),

@@ -1,4 +1,4 @@
-//! `eomgen generate --target c99`: written files, rejected options, and the documented example.
+//! Tests of `eomgen generate --target c99`: written files, rejected options, and the documented example.
 
 use std::path::Path;
 use std::process::{Command, Output};

@@ -1,5 +1,5 @@
-//! Units, initial state and ranges of emitted C and Rust: those of the specification, and absent from programs that do
-//! not use them.
+//! Tests of units, initial state and ranges in emitted C and Rust: they equal the specification, and programs that do
+//! not use them do not contain them.
 
 use std::path::Path;
 use std::process::Command;
@@ -9,7 +9,7 @@ use eomgen_codegen::rust::{self, Packaging};
 
 use super::{WARNINGS, has_compilers, program, run};
 
-/// Motor with a current, in units that are not coherent, and a beam of one mode.
+/// Motor with a current, in units that are not coherent, and a beam with one mode.
 const MOTOR: &str = r#"
 [model]
 name = "motor"
@@ -47,7 +47,7 @@ drive = { on = "turn", value = "k*i + v" }
 tip = "l*turn + at(w, l)"
 "#;
 
-/// Lines of both programs: units, then numbers.
+/// Expected lines of both programs: units, then numbers.
 const EXPECTED: &str = "\
 state rad m rad/s m/s A
 input V N m
@@ -117,7 +117,7 @@ fn write_c(folder: &Path, main: &str) {
     std::fs::write(folder.join("main.c"), main).expect("written");
 }
 
-/// Compiles `main.c` with the options, and links only what it uses.
+/// Compiles `main.c` with the options and links only functions and data that it uses.
 fn link(folder: &Path, options: &[&str]) {
     run(Command::new("cc")
         .current_dir(folder)

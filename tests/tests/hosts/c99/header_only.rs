@@ -1,5 +1,5 @@
-//! One header with the functions (`--packaging header-only`): the bits of the source file with its header, in programs
-//! of several files in C and C++, without warnings.
+//! Tests of header-only C (`--packaging header-only`): results are bit-identical to the source file with its header, in
+//! programs of several files in C and C++, and there are no warnings.
 
 use std::path::Path;
 use std::process::Command;
@@ -12,7 +12,7 @@ use eomgen_tests::models::load;
 use super::hostile::pendulum;
 use super::{Compiled, WARNINGS, has_compilers, program, run, run_c_driver, supported_outputs};
 
-/// Writes the header, and `NAME.c` as the file of a user that compiles the functions.
+/// Writes the header, and `NAME.c`, a user's file that compiles the functions.
 fn write_header_only(program: &Program, folder: &Path) {
     let name = &program.name;
     let header = c::emit_header_only(program, Real::Double).expect("emitted");
@@ -29,7 +29,7 @@ fn write_two_files(program: &Program, folder: &Path) {
     std::fs::write(folder.join(format!("{name}.c")), files.source).expect("written");
 }
 
-/// Compiles a file with all warnings of the documentation as errors.
+/// Compiles a file with all documented warnings as errors.
 fn compile(folder: &Path, language: [&str; 2], arguments: &[&str]) {
     let [compiler, standard] = language;
     run(Command::new(compiler)
@@ -63,7 +63,8 @@ fn header_with_the_functions_has_the_bits_of_two_files() {
     }
 }
 
-/// Two files call the functions that a third one, in C or C++, contains. Macros of the callers have names of the header.
+/// Two files call functions that a third file, in C or C++, compiles. The callers define macros with names of the
+/// header.
 #[test]
 fn several_files_in_c_and_cpp_share_the_functions() {
     if !has_compilers() {

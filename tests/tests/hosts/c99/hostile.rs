@@ -1,4 +1,4 @@
-//! Names that are C keywords or collide, and texts that would end a comment.
+//! Tests of names that are C keywords or collide, and of texts that would end a comment.
 
 use std::process::Command;
 
@@ -113,7 +113,7 @@ fn keywords_of_c_and_rust_are_rejected_with_line() {
     }
 }
 
-/// Two integrators of an input each, with these names.
+/// Returns two controllers with these names, each of which integrates an input.
 fn controllers(first: &str, second: &str) -> String {
     let controller = |name: &str, input: &str| {
         format!(
@@ -145,7 +145,7 @@ fn controllers_with_a_common_name_in_c_are_rejected() {
     }
 }
 
-/// In Rust each controller has a module, so that their items cannot collide.
+/// In Rust, each controller has a module of its own, so that names cannot collide.
 #[test]
 fn controllers_with_similar_names_compile() {
     if !has_compilers() {

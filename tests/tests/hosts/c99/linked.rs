@@ -1,5 +1,5 @@
-//! Coexistence of emitted C: two models in one program, a shared library loaded twice, several
-//! threads, and no writable static data.
+//! Tests of several instances of emitted C in one process: two models in one program, a shared library that is loaded
+//! twice, several threads. Emitted C has no writable static data.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -47,7 +47,7 @@ fn models_libraries_and_threads_are_independent() {
     assert_eq!(said, "the same\n");
 }
 
-/// `nm` must list no initialised or uninitialised data.
+/// `nm` must list neither initialised nor uninitialised data.
 #[test]
 fn emitted_c_has_no_writable_static_data() {
     if !has_compilers() {
@@ -71,8 +71,8 @@ fn emitted_c_has_no_writable_static_data() {
     }
 }
 
-/// Model whose names are macros of standard headers: parameters, an input, coordinates, a state, definitions, energies and
-/// observables.
+/// Returns a model whose names are macros of standard headers: parameters, an input, coordinates, a state, definitions,
+/// energies and observables.
 fn model_of_macros(names: &[&str; 9]) -> String {
     let [
         parameter,
@@ -146,8 +146,8 @@ const STANDARD_HEADERS: &str = "#include <complex.h>\n#include <errno.h>\n#inclu
 const MACRO_USER: &str = "int main(void) {\n    const double complex z = 2.0 * I;\n    \
     return cimag(z) == 2.0 && isinf(INFINITY) && isnan(NAN) && EOF < 0 && M_PI > 3.0 && EDOM > 0 ? 0 : 1;\n}\n";
 
-/// Names of a model compile if the caller includes headers with macros of these names, before or after the emitted code,
-/// and the macros remain.
+/// Names of a model compile if the caller includes headers with macros of the same names, before or after the emitted
+/// code. The macros remain defined.
 #[test]
 fn names_of_standard_macros_compile_in_all_packagings() {
     if !has_compilers() {
@@ -184,7 +184,8 @@ fn names_of_standard_macros_compile_in_all_packagings() {
     }
 }
 
-/// All macros without arguments of the standard headers are hidden, as the compiler lists them.
+/// The compiler lists all macros without arguments of the standard headers; each must be hidden while the emitted code
+/// is compiled.
 #[test]
 fn each_macro_of_the_standard_headers_is_hidden() {
     if !has_compilers() {

@@ -1,6 +1,6 @@
-//! The emitted C against the emitted Rust, both compiled: equal bits of every output at equal
-//! states, some of them infinite or NaN. Covers every shipped model, every language feature, and
-//! names and texts with a meaning in C. Skipped with a message if there is no C compiler.
+//! Bit-for-bit comparison of compiled emitted C with compiled emitted Rust: every output at equal states, some of them
+//! infinite or NaN. The tests cover every shipped model, every language feature, and names and texts with a meaning in
+//! C. Skipped with a message if there is no C compiler.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -79,8 +79,8 @@ fn compile_as_cpp(program: &Program, precisions: &[&str], folder: &Path) {
 #[derive(Clone, Copy)]
 enum Compiled {
     Optimised,
-    /// Undefined behaviour of C, such as converting NaN to an integer, ends the driver. Not
-    /// optimised: optimisation would make compilation five times as long.
+    /// Undefined behaviour of C, such as converting NaN to an integer, stops the driver. The driver is not optimised,
+    /// because optimisation would make compilation five times as long.
     Trapping,
 }
 
@@ -209,7 +209,7 @@ fn compile_rust_driver(
     executable
 }
 
-/// Returns whether forces and regimes were requested, and whether derivatives were.
+/// Returns two flags: whether forces and regimes were requested, and whether derivatives were requested.
 fn has_requested(program: &Program) -> [bool; 2] {
     let kinds = &program.outputs.kinds;
     [Output::Regimes, Output::Products].map(|output| kinds.contains(&output))
@@ -244,8 +244,8 @@ fn compare_precisions(program: &Program, precisions: &[&str], compiled: Compiled
     }
 }
 
-/// Compares a specification: at `order` with all requestable outputs in these precisions, at other
-/// orders without.
+/// Compares a specification in these precisions: at `order` with all outputs that can be requested, at other orders
+/// without additional outputs.
 fn compare_file(
     path: PathBuf,
     with: usize,
@@ -261,7 +261,7 @@ fn compare_file(
         let orders = vec![with; model.fields.len()];
         Variant::derive_with(&model, &orders, outputs)
     };
-    // A sum that weights squares of mode shapes by the state has no derivatives.
+    // A sum whose weights of squared mode shapes depend on the state has no emitted derivatives.
     let forces = [
         Output::BiasForces,
         Output::InverseDynamics,

@@ -1,4 +1,5 @@
-//! The emitted C in other dialects, with the same bits, and with reordered sums, with the same values within rounding.
+//! Tests of emitted C in other dialects (bit-identical results) and with reordered sums (equal results to within
+//! rounding).
 
 use std::fmt::Write;
 use std::path::Path;
@@ -32,7 +33,7 @@ const FUNCTIONS: [&str; 17] = [
 /// a turn.
 const BOUND: f64 = 1e-12;
 
-/// Program that prints every observable on a grid over the square.
+/// C program that prints every observable on a grid of x and y.
 const MAIN: &str = "\
 #include \"each.h\"
 #include <stdio.h>
@@ -55,7 +56,7 @@ int main(void) {
 }
 ";
 
-/// Compiles the program with `compiler` and these flags, in the folder of its files.
+/// Compiles the program with `compiler` and these flags in `folder`, and runs it.
 fn compile(compiler: &str, flags: &[&str], folder: &Path) -> Output {
     let mut command = Command::new(compiler);
     command.current_dir(folder).args(flags);
@@ -122,7 +123,7 @@ fn reordered_sums_preserve_values() {
     }
 }
 
-/// gcc fuses products and sums in these dialects if the processor has the operation.
+/// In these dialects, gcc would fuse products and sums if the processor has a fused multiply-add.
 #[test]
 fn dialects_of_gnu_c_and_cpp_preserve_bits() {
     if !has_compilers() {

@@ -1,4 +1,4 @@
-//! The functions emitted for CasADi, called by CasADi: rates bit for bit, Jacobians against finite
+//! Tests of the functions emitted for CasADi, called by CasADi: rates are compared bit for bit, Jacobians with finite
 //! differences. Skipped with a message if CasADi is missing.
 //!
 //! The tests create Unix symbolic links.
@@ -102,7 +102,7 @@ fn casadi_matches_emitted_functions() {
         check(name, order, &[], "-O1", folder.path());
         check(name, order, &[Output::Hessians], "-O1", folder.path());
     }
-    // The optimisation of its second derivatives takes 24 s.
+    // With optimisation, the compilation of the second derivatives would take 24 s.
     check("two_link_arm", 1, &[Output::Hessians], "-O0", folder.path());
 }
 
@@ -124,8 +124,7 @@ fn with_is_rejected_for_casadi() {
     }
 }
 
-/// Runs the commands at the head of an example in a temporary folder; returns the output of the
-/// last.
+/// Runs the commands in the header comment of an example in a temporary folder; returns the output of the last command.
 fn run_example(name: &str) -> String {
     let project = eomgen_tests::models::project();
     let page = std::fs::read_to_string(project.join("examples/with_casadi").join(name));

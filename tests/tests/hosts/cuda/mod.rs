@@ -1,5 +1,6 @@
-//! Headers of CUDA C++, compiled by NVRTC for every shipped model in both precisions, without a device. The compiler's code must
-//! not fuse products and sums, which would change bits. Skipped with a message if NVRTC is missing.
+//! Tests of CUDA C++ headers, compiled by NVRTC for every shipped model in both precisions, without a device. The
+//! compiled code must not fuse products and sums, because results would then not be bit-identical. Skipped with a
+//! message if NVRTC is missing.
 
 use std::collections::BTreeSet;
 use std::process::Command;
@@ -11,7 +12,7 @@ use eomgen_tests::models::{load, project, shipped_specifications};
 
 const SCRIPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hosts/cuda/compile.py");
 
-/// Functions in addition to those of every variant.
+/// Additional functions to emit.
 const OUTPUTS: [Output; 5] = [
     Output::BiasForces,
     Output::InverseDynamics,
@@ -101,7 +102,8 @@ fn nvrtc_compiles_shipped_models_without_fused_operations() {
     }
 }
 
-/// The host's part of the example compiles without warnings. With `nvcc` the example is built and run: all bits agree.
+/// The host code of the example must compile without warnings. If `nvcc` is installed, the example is built and run,
+/// and all results must be bit-identical.
 #[test]
 fn example_advances_arms_on_host_and_device() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,6 +1,6 @@
-//! Functional mock-up units: the same specification gives the same bytes, FMPy validates them and simulates both kinds
-//! like `simulate`, also through rest, impacts, corners and constraints, CasADi's `DaeBuilder` differentiates them, and
-//! invalid calls return an error status.
+//! Tests of functional mock-up units. The same specification gives the same bytes. FMPy validates the units, and
+//! simulations of both kinds agree with `simulate`, also with sticking, impacts, corners and constraints. CasADi's
+//! `DaeBuilder` differentiates the units. Invalid calls return an error status.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -32,7 +32,7 @@ fn succeeds(command: &mut Command) -> bool {
     command.output().is_ok_and(|output| output.status.success())
 }
 
-/// Returns true if there is a Python with these packages; otherwise reports the skip.
+/// Returns true if a Python with these packages is installed; otherwise reports the skip.
 fn is_available(packages: &str, what: &str) -> bool {
     let python = succeeds(Command::new("python3").args(["-c", &format!("import {packages}")]));
     if !python {
@@ -105,7 +105,7 @@ fn units_rest_bounce_and_start_on_constraints_like_simulate() {
         (own.join("mass_step.toml"), "3", "1e-5"),
         (own.join("puck.toml"), "3", "1e-5"),
         (own.join("tabulated.toml"), "0.1", "1e-5"),
-        // It comes to rest after 4.06 s; impacts multiply small differences.
+        // The ball comes to rest after 4.06 s. Impacts amplify small differences.
         (examples.join("bouncing_ball.toml"), "5", "1e-4"),
         (examples.join("box_with_friction.toml"), "1.5", "1e-3"),
     ] {
@@ -172,7 +172,7 @@ fn units_sample_controllers_like_simulate() {
     let spec = project().join("tests/tests/hosts/fmi/units/sampled_block.toml");
     let (text, table) = (spec.to_string_lossy(), folder.path().join("sampled.csv"));
     let table = table.to_string_lossy();
-    // Steps of 20 ms end at samples and between them; those of 37 ms mostly between.
+    // Steps of 20 ms end at samples of the controllers and between them; steps of 37 ms end mostly between samples.
     for interval in ["0.02", "0.037"] {
         let simulate = ["simulate", &text, "--until", "1.48", "--input", "r=0.2"];
         let rows = ["--interval", interval, "--out", &table];
@@ -257,7 +257,7 @@ fn units_contain_settings_and_extended_specifications() {
     }
 }
 
-/// Copies the program without the library of units, as an installation may be.
+/// The copy of the program has no library for units, as in an incomplete installation.
 #[test]
 fn missing_library_is_reported_with_its_cure() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,6 +1,5 @@
-//! The WebAssembly module of a page against the interpreter: equal bits of rates, observables and
-//! guards at random states, in every regime, at non-finite numbers, for shipped models and every
-//! language feature.
+//! Bit-for-bit comparison of the WebAssembly module of a page with the interpreter: rates, observables and guards at
+//! random states in every regime and at non-finite numbers, for shipped models and every language feature.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -11,7 +10,7 @@ use eomgen_codegen::wasm;
 use eomgen_model_spec::model::Model;
 use eomgen_tests::models::{project, samples, shipped_specifications, variant};
 
-/// Returns true if node can run modules; otherwise reports the skip.
+/// Returns true if node is installed; otherwise reports the skip.
 pub fn node() -> bool {
     let found = Command::new("node").arg("--version").output();
     let there = found.is_ok_and(|output| output.status.success());
@@ -77,7 +76,7 @@ fn interpret(evaluator: &mut Evaluator, case: &Case) -> Vec<f64> {
     [vec![usable], rates, observables, guards].concat()
 }
 
-/// Returns the module's parameters before any write, then its results for all cases.
+/// Returns the module's initial parameters, then its results for all cases.
 pub fn run_module(module: &[u8], cases: &[Case], counts: [usize; 5]) -> Vec<f64> {
     let folder = tempfile::tempdir().expect("a folder");
     let numbers = cases.iter().flat_map(|case| {
@@ -106,7 +105,7 @@ pub fn run_module(module: &[u8], cases: &[Case], counts: [usize; 5]) -> Vec<f64>
     numbers.map(number).collect()
 }
 
-/// Compares a specification at one order; returns the number of finite numbers compared.
+/// Compares a specification at one order; returns the number of compared finite numbers.
 fn compare(path: &Path, order: Option<usize>) -> usize {
     let model = eomgen_model_spec::load(path).expect("it loads").model;
     let order = order.or_else(|| model.fields.first().map(|field| field.order));

@@ -1,5 +1,5 @@
-//! Pages in an offline browser: they open without an error, move, react to a slider and fit their
-//! window, in light and dark colours. A small script controls the browser.
+//! Tests of pages in an offline browser: pages open without an error, move, react to a slider and fit the window, in
+//! light and dark colours. A small script controls the browser.
 
 use std::path::Path;
 use std::process::Command;
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::{drawn_example, write_page};
 
-/// Returns the browser, if it and node exist; otherwise reports the skip.
+/// Returns the command of the browser if the browser and node are installed; otherwise reports the skip.
 pub fn browser() -> Option<&'static str> {
     let runs = |name: &str| {
         let found = Command::new(name).arg("--version").output();
@@ -29,7 +29,7 @@ pub struct BrowserSettings {
     pub width: u32,
     pub dark: bool,
     pub still: bool,
-    /// True if scripts of the page run.
+    /// True if the browser runs scripts of the page.
     pub scripts: bool,
 }
 
@@ -40,7 +40,7 @@ pub const WIDE_WINDOW: BrowserSettings = BrowserSettings {
     scripts: true,
 };
 
-/// Returns the observations of the probe on a page.
+/// Opens a page in the browser and returns the observations of the script.
 pub fn run_probe(browser: &str, page: &Path, look: BrowserSettings) -> Value {
     run_probe_script("probe.js", browser, page, look)
 }
@@ -70,7 +70,7 @@ pub fn run_probe_script(probe: &str, browser: &str, page: &Path, look: BrowserSe
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
-/// Asserts the common properties of animated pages.
+/// Asserts the properties that all animated pages have.
 fn assert_moves(seen: &Value) {
     assert_eq!(seen["errors"], serde_json::json!([]), "{seen}");
     assert_eq!(seen["excess"], 0, "wider than its window: {seen}");

@@ -1,4 +1,4 @@
-//! Output and rejected options of `eomgen page`.
+//! Tests of the output and the rejected options of `eomgen page`.
 
 use eomgen_tests::models::path;
 use eomgen_tests::program::{run_accepted, run_rejected};

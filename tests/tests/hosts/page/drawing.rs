@@ -1,5 +1,5 @@
-//! Specifications with a drawing: they match the schema, and the drawing does not affect derivation
-//! or emitted code.
+//! Tests of specifications with a drawing: they match the schema, and the drawing does not affect derivation or emitted
+//! code.
 
 use eomgen_codegen::rust::{Packaging, emit};
 use eomgen_codegen::variant::Variant;

@@ -1,4 +1,4 @@
-//! Exported models: their bytes, and programs that compute the same bits as before.
+//! Tests of exported models: exported bytes are reproducible, and imported programs compute bit-identical results.
 
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};

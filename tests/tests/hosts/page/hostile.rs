@@ -1,4 +1,4 @@
-//! Texts that would end or begin a script, very large and small numbers, extreme orders, and a
+//! Tests of pages with texts that would end or begin a script, very large and small numbers, extreme orders, and a
 //! model without coordinates.
 
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! Inputs of interactive pages: an input has one control, whose rates follow from its signal.
+//! Tests of the inputs of interactive pages: each input has one control, and its rates are computed from its signal.
 
 use eomgen_tests::models::{path, project};
 use eomgen_tests::program::run_accepted;
@@ -43,7 +43,7 @@ fn machine_at_rest_starts_with_a_sine() {
     assert!(!moving.contains("<option value=\"sine\" selected>"));
 }
 
-/// A crane that starts with a slow turn of its jib, not one of several turns per second.
+/// The page of a crane opens with a slow rotation of the jib, not with several turns per second.
 #[test]
 fn prescribed_motion_starts_slowly() {
     let spec = project().join("examples/recipes/slewing_crane.toml");
@@ -57,7 +57,7 @@ fn prescribed_motion_starts_slowly() {
     assert_eq!([field("change"), field("period")], [0.314159, 10.0]);
 }
 
-/// Returns the number of mentions in the script.
+/// Returns the number of occurrences in the script.
 fn script_mentions(page: &str) -> usize {
     let script = page.rsplit("<script>").next().unwrap_or_default();
     script.matches("data-signal").count()

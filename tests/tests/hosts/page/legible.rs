@@ -1,6 +1,6 @@
-//! Legibility of the tour, of the reports and of interactive pages: no lettering below 11 px in any window, no
-//! names of the program in prose, no cut commands and numbers, no columns of single words, dots of rates above their letters, and
-//! figures in the colours of the page.
+//! Tests of the legibility of the tour, of reports and of interactive pages. No text is smaller than 11 px in any
+//! window. No names of the program appear in prose. No commands and numbers are cut, no column consists of single
+//! words, dots of rates are above their letters, and figures have the colours of the page.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use super::browser::{BrowserSettings, WIDE_WINDOW, browser, run_probe_script};
 use super::{drawn_example, write_page};
 
-/// Smallest lettering, px.
+/// Smallest font size, in px.
 const SMALLEST: f64 = 11.0;
 
 const NARROW_DARK: BrowserSettings = BrowserSettings {
@@ -27,14 +27,14 @@ const MEDIUM: BrowserSettings = BrowserSettings {
     ..WIDE_WINDOW
 };
 
-/// Asserts the legibility of a page, narrow and dark, and medium and wide and light.
+/// Asserts the legibility of a page: narrow in dark colours, medium and wide in light colours.
 fn assert_legible(browser: &str, page: &Path) {
     for look in [NARROW_DARK, MEDIUM, WIDE_WINDOW] {
         let seen = run_probe_script("legible.js", browser, page, look);
         assert_eq!(seen["errors"], json!([]), "{seen}");
         assert_eq!(seen["excess"], 0, "wider than its window: {seen}");
         let size = seen["smallest"].as_f64().expect("a number");
-        // Scaled figures have rounded sizes.
+        // Font sizes in scaled figures are rounded.
         assert!(size > SMALLEST - 0.05, "{seen}");
         for key in ["identifiers", "cut", "fields", "columns", "dots"] {
             assert_eq!(seen[key], json!([]), "{key}: {seen}");
@@ -120,7 +120,7 @@ fn reports_are_legible_and_name_their_records() {
     }
 }
 
-/// Returns what the functions for pictures on a canvas print for an expression.
+/// Evaluates an expression with the page's canvas functions and returns the printed text.
 fn run_on_canvas(expression: &str) -> String {
     let read = |file: &str| std::fs::read_to_string(project().join(file)).expect("a script");
     let script = [
@@ -198,7 +198,7 @@ fn fast_machine_starts_in_slow_motion() {
         let (value, _) = value.split_once('"').expect("its end");
         value.parse::<f64>().expect("a number")
     };
-    // Its natural frequency is about 20 kHz.
+    // The natural frequency of the resonator is about 20 kHz.
     let resonator = speed(&project().join("examples/recipes/mems_resonator.toml"));
     assert!((-5.0..-4.0).contains(&resonator), "{resonator}");
     assert_eq!(speed(&path("crane")), 0.0);
@@ -250,7 +250,7 @@ fn field_without_drawing_has_its_shapes() {
         .iter()
         .map(|row| row[0].as_f64().expect("a number"))
         .collect();
-    // The first clamped-free mode is 0 at its clamp and grows to its end.
+    // The first clamped-free mode is 0 at the clamp and increases towards the free end.
     assert!(
         first[0].abs() < 1e-12 && first.is_sorted() && first[rows.len() - 1] > 1.0,
         "{first:?}"

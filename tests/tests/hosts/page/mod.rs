@@ -1,5 +1,5 @@
-//! `eomgen page`: bits of its WebAssembly module, the pages in a browser, rejected options, and the
-//! interactive report of `discover`, and the legibility of all pages.
+//! Tests of `eomgen page`: results of the WebAssembly module, pages in a browser, rejected options, the interactive
+//! report of `discover`, and the legibility of all pages.
 
 pub(super) mod bits;
 mod browser;

@@ -1,5 +1,6 @@
-//! The motion of a page against `simulate`: shipped models and examples with rest, impacts, contact friction, constraints
-//! and corners, random machines, inputs over time, changed parameters, and motions that end.
+//! Comparison of the motion of a page with `simulate`: shipped models and examples with sticking, impacts, contact
+//! friction, constraints and corners, random machines, inputs over time, changed parameters, and motions that end
+//! early.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -19,7 +20,7 @@ const REFERENCE_TOLERANCE: f64 = 1e-11;
 /// Number of compared samples.
 const SAMPLES: usize = 20;
 
-/// Moves a page to the times with these signals and other requests.
+/// Simulates with the engine of a page; `asked` contains the times, the signals and other requests.
 pub(super) fn move_page(spec: &Path, asked: &Value) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let output = Command::new("node")
@@ -107,7 +108,7 @@ fn compare(name: &str, shown: &Value, run: &Instance<'_>, motion: &Motion, toler
     }
 }
 
-/// Compares the page of a specification with `simulate`; returns the number of its events.
+/// Compares the page of a specification with `simulate`; returns the number of events.
 pub(super) fn compare_page(spec: &Path, until: f64, tolerance: f64) -> usize {
     let name = spec.display().to_string();
     let compiled = CompiledModel::load(spec, Orders::Declared).expect("it loads");
@@ -178,7 +179,7 @@ fn constrained_motions_match_simulate() {
         ("constrained/bicycle.toml", 2.0),
         ("constrained/rolling_disc.toml", 2.0),
         ("constrained/squeezing_mechanism.toml", 0.02),
-        // Its motion amplifies differences a million times in 0.5 s.
+        // This motion amplifies differences by a factor of a million in 0.5 s.
         ("constrained/flexible_coupler.toml", 0.05),
     ] {
         compare_page(&example(name), until, 1e-4);
@@ -301,7 +302,8 @@ fn inputs_over_time_move_the_page() {
     let spec = folder.path().join("cart.toml");
     std::fs::write(&spec, &text).expect("written");
     let times = times(4.0);
-    // A sine about 0.1 m of 0.2 m with its rate, and a step of the force from 1 N by 3 N.
+    // The signals are a sine with mean 0.1 m and amplitude 0.2 m, with its rate, and a step of the force from 1 N by 3
+    // N.
     let signals = [
         [0.0, 1.0, 2.0, 1.0, 0.1, 0.2, 1.6, 1.0],
         [3.0, -1.0, -1.0, 2.0, 1.0, 3.0, 1.0, 0.5],
@@ -322,7 +324,7 @@ fn inputs_over_time_move_the_page() {
     }
 }
 
-/// The signals of `inputs_over_time_move_the_page`, written again.
+/// Independent implementation of the signals of `inputs_over_time_move_the_page`.
 #[derive(Debug)]
 struct Signals;
 

@@ -1,6 +1,5 @@
-//! The report of `discover`: its residuals match the search, it opens without an error in a browser
-//! and reacts to its slider, texts of a dataset are escaped, and a report without effects states
-//! that.
+//! Tests of the report of `discover`. Residuals match the search, and the report opens without an error in a browser
+//! and reacts to its slider. Texts of a dataset are escaped. A report without effects says so in a sentence.
 
 use std::process::Command;
 
@@ -14,7 +13,7 @@ use super::browser::{BrowserSettings, WIDE_WINDOW, browser, run_probe_script};
 /// Text that would end or begin a script.
 const HOSTILE: &str = "</script></title><img src=x onerror=alert(1)><!--";
 
-/// Dry friction of the stage, N.
+/// Dry friction of the stage, in N.
 const FRICTION: f64 = 3.0;
 
 /// Runs `command` on a stage with hidden friction and a hostile title; returns the document.
@@ -63,14 +62,14 @@ fn report_slider_moves_found_friction() {
         page.contains("Found: Coulomb friction on <span class=\"word\"><math><mi>q</mi></math>,</span> <math><msub><mi>T</mi><mi>c</mi></msub></math> = "),
         "the page does not print the verdict"
     );
-    // The engine has 350 kB.
+    // The engine alone is about 350 kB.
     assert!(page.len() < 900_000, "{} bytes", page.len());
     let gap = |when: &str| {
         let gap = &document["gap"]["q"][when]["test"];
         gap.as_f64().expect("a number")
     };
     if node() {
-        // The fit and the page integrate with different steps; their errors are a small part of the
+        // The fit and the page integrate with different steps. The errors of the steps are small compared with the
         // noise and hardly change the RMS.
         let found = residual_on_page(&measured, "found");
         assert!(
@@ -78,8 +77,8 @@ fn report_slider_moves_found_friction() {
             "{found} {}",
             gap("after")
         );
-        // Without friction the residual is larger, but smaller than before the search: the other
-        // parameters were fitted together with the friction.
+        // Without friction the residual is larger, but smaller than before the search, because the other parameters
+        // were fitted together with the friction.
         let without = residual_on_page(&measured, "0");
         assert!(without > 5.0 * found, "{without} {found}");
     }

@@ -1,4 +1,4 @@
-//! Sampled controllers on a page against `simulate`.
+//! Comparison of sampled controllers on a page with `simulate`.
 
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ fn controllers_with_delay_and_steps_match_simulate() {
     );
 }
 
-/// The reference of the page's controllers.
+/// Reference signal of the page's controllers.
 #[derive(Debug)]
 struct Sine;
 
@@ -40,7 +40,7 @@ impl InputFunction for Sine {
 /// Signal of `r` in [`Sine`].
 const SINE: [f64; 8] = [0.0, -1.0, -1.0, 1.0, 0.1, 0.2, 1.6, 1.0];
 
-/// Time at which the period changes, s: a sample of the first controller.
+/// Time at which the period changes, in s; the first controller has a sample at this time.
 const CHANGE: f64 = 0.72;
 
 #[test]
