@@ -1,5 +1,5 @@
-//! Chains of rods that hit walls, in coordinates with constraints and in angles: the same impacts, each logged with its
-//! jump, and no sample beyond a wall.
+//! Tests of chains of rods that hit walls, in Cartesian coordinates with constraints and in angles. Both give the same
+//! impacts, each impact is logged with its jump, and no sample is beyond a wall.
 
 use eomgen_compiled_model::{CompiledModel, EventKind, Motion, Orders, Request, Solver};
 use eomgen_sim::ode::SurfaceMode;
@@ -15,7 +15,7 @@ struct Chain {
     masses: Vec<f64>,
     /// Initial angles from the vertical, rad.
     angles: Vec<f64>,
-    /// Distances of the walls before the last mass at the start, m.
+    /// Initial distances between the last mass and the walls, in m.
     gaps: [f64; 2],
     restitution: f64,
 }
@@ -51,7 +51,7 @@ impl Chain {
             .collect()
     }
 
-    /// Returns the machine in coordinates x, y of each mass with constraints, or in the angles of the rods.
+    /// Compiles the machine in coordinates x, y of each mass with constraints, or in the angles of the rods.
     fn compile(&self, has_constraints: bool) -> CompiledModel {
         let positions = self.positions();
         let last = positions.len() - 1;
@@ -142,7 +142,7 @@ fn simulate(model: &CompiledModel, solver: Solver, tolerance: f64) -> Motion {
     motion
 }
 
-/// Returns the time and the kind of the events that are not losses of contact.
+/// Returns time and kind of all events except losses of contact.
 fn hits(motion: &Motion, degrees: usize) -> Vec<(f64, String)> {
     let log = motion.event_log(degrees);
     let hits = log

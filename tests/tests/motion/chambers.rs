@@ -1,5 +1,5 @@
-//! Flow through an orifice between two chambers: the rates are continuous where the pressures agree, and
-//! infinitely stiff there.
+//! Tests of flow through an orifice between two chambers. At equal pressures the rates are continuous and their
+//! derivative is infinite.
 
 use eomgen_compiled_model::{CompiledModel, Orders, Solver};
 
@@ -25,10 +25,10 @@ k = "1/2*k*x^2"
 piston = { on = "x", value = "A*(p_1 - p_2)" }
 "#;
 
-/// Largest magnitudes of position, speed and pressures.
+/// Largest magnitudes of position, speed and pressures in the motion.
 const SIZES: [f64; 4] = [0.1, 0.06, 4000.0, 4000.0];
 
-/// The state at 5 s by SciPy (Radau at 1e-9, absolute 1e-12 m and 1e-7 Pa).
+/// State at 5 s from SciPy (Radau with the relative tolerance 1e-9 and absolute tolerances 1e-12 m and 1e-7 Pa).
 const AT_5_S: [f64; 4] = [-4.52924660e-5, -8.49338904e-4, 500.360692, 499.639308];
 
 fn assert_agrees_with_scipy(flow: &str, solver: Solver) {
@@ -51,7 +51,7 @@ fn assert_agrees_with_scipy(flow: &str, solver: Solver) {
     }
 }
 
-/// The difference of the pressures passes 0 within their rounding twice in each oscillation.
+/// Twice in each oscillation, the difference of the pressures crosses 0 and is comparable with their rounding errors.
 #[test]
 fn flow_between_chambers_passes_equal_pressures() {
     let flows = [
@@ -64,7 +64,7 @@ fn flow_between_chambers_passes_equal_pressures() {
     assert_agrees_with_scipy(flows[0], Solver::Auto);
 }
 
-/// A tank fills from a reservoir and leaks through an orifice: 2 s ds/dt = k (a - s/3) for s = sqrt(q).
+/// Tank that is filled from a reservoir and leaks through an orifice. With s = sqrt(q): 2 s ds/dt = k (a - s/3).
 const TANK: &str = r#"
 [model]
 name = "tank"

@@ -1,5 +1,5 @@
-//! Machines with constraints: motions against published figures and against independent
-//! coordinates, drift, initial states, and the number of operations per mode.
+//! Tests of machines with constraints: comparison of motions with published values and with independent coordinates,
+//! drift, initial states, and the number of operations per mode.
 
 use std::cell::RefCell;
 use std::path::Path;
@@ -65,7 +65,7 @@ fn simulation_error(model: &CompiledModel) -> String {
     }
 }
 
-/// Seven bodies in three loops. The end state is published in the Test Set for IVP Solvers.
+/// Seven bodies in three loops. The final state is published in the Test Set for IVP Solvers.
 #[test]
 fn squeezing_mechanism_reaches_published_end_state() {
     let model = compile_feature("squeezing_mechanism", Orders::Declared);
@@ -180,7 +180,7 @@ fn initial_state_is_projected_onto_constraints_with_a_note() {
         ),
         (0.1, "m")
     );
-    // With equal masses the projection gives the nearest point of the circle.
+    // With equal masses, the projection gives the point of the circle that is nearest to the initial position.
     assert!((start[1] / start[0] - 0.1 / 0.7).abs() < 1e-3);
 }
 
@@ -197,7 +197,7 @@ fn unsatisfiable_constraints_are_named() {
     let never = derivation_error("x^2 + y^2 + l^2");
     assert!(never.contains("`rod` is never zero"), "{never}");
     assert!(never.contains("is at least 4.900e-1 m^2"), "{never}");
-    // The bounds of the terms do not exclude a zero here.
+    // Interval bounds of the terms do not exclude a zero of this constraint.
     let never = derivation_error("x^2 + y^2 + l*x + l^2");
     assert!(
         never.contains("`rod` stays at") || never.contains("`rod` has no effect"),
@@ -228,7 +228,7 @@ fn contradictory_constraints_are_rejected_with_location() {
         // Linear constraints are dependent in every configuration, so they are detected
         // symbolically.
         ("x - l", "2*x - 3*l", "`again` contradicts `rod`"),
-        // Circles without a common point: their distance is least between them.
+        // Circles without a common point: the least squares solution is between them.
         (
             "x^2 + y^2 - l^2",
             "(x - 3*l)^2 + y^2 - l^2",
@@ -250,7 +250,7 @@ fn contradictory_constraints_are_rejected_with_location() {
 fn singular_initial_states_are_noted() {
     for (start, constraints) in [
         ("initial = 0", "x^2 + y^2 - l^2"),
-        // The curve crosses itself at (l, 0).
+        // The curve of the constraint intersects itself at (l, 0).
         ("initial = \"l\"", "(x - l)^2*x - y^2*l"),
     ] {
         let text = ROD
@@ -326,8 +326,8 @@ fn folding_linkage_stops_and_names_constraints() {
                 "{}",
                 stopped.reason
             );
-            // By conservation of energy, the cranks fall like a single pendulum. The time to fold
-            // is the integral of 1/rate, substituted so that the integrand is smooth.
+            // By conservation of energy, the cranks fall like a single pendulum. The time until the linkage is flat is
+            // the integral of 1/rate, with a substitution that makes the integrand smooth.
             let (g, a) = (9.81_f64, 0.3_f64);
             let count = 2000;
             let flat: f64 = (0..count)
@@ -346,7 +346,7 @@ fn folding_linkage_stops_and_names_constraints() {
     }
 }
 
-/// Returns two cranks that a rod of the length of their ground connects, as one constraint.
+/// Returns two cranks connected by a rod that is as long as the distance of their bearings; the rod is one constraint.
 fn cranks_with_a_rod(angle: &str, rate: f64) -> String {
     format!(
         r#"
@@ -369,8 +369,8 @@ rod = {{ zero = "(dot(rod, rod) - d^2)/d" }}
     )
 }
 
-/// Rounding separates the angles at the flat position, so that the constraint keeps its rank there
-/// and turns fast.
+/// At the flat position, rounding errors make the angles differ, so that the constraint keeps its rank and its gradient
+/// rotates fast.
 #[test]
 fn rod_between_cranks_stops_motion_at_its_fold_at_any_tolerance() {
     for rate in [-0.5, 1.0, 3.0, 8.0] {
@@ -452,9 +452,8 @@ fn folded_position_has_no_motion_and_no_linearisation() {
     assert!(run.linearise(point).is_ok());
 }
 
-/// The speed is high enough to step over the flat position; two such linkages fold at the same
-/// time.
-/// Parallelogram whose links turn without forces, so that steps grow until the fold.
+/// The speed is so high that a step could skip the flat position. In the second case two linkages are flat at the same
+/// time. Parallelogram whose links turn without forces, so that step sizes increase until the linkage is flat.
 const FREE_PARALLELOGRAM: &str = r#"
 [model]
 name = "fold"
@@ -546,8 +545,8 @@ fn fold_stops_motion_for_any_sampling_and_solver() {
     }
 }
 
-/// Slider-crank with crank and rod of equal length: with the slider at the crank's bearing, the
-/// mechanism can rotate about it.
+/// Slider-crank with crank and rod of equal length. If the slider is at the crank's bearing, crank and rod can rotate
+/// about the bearing together.
 const SLIDER: &str = r#"
 [model]
 name = "slider"
@@ -572,7 +571,7 @@ along = { zero = "r*cos(phi) + r*cos(psi) - x" }
 across = { zero = "r*sin(phi) + r*sin(psi)" }
 "#;
 
-/// Four-bar linkage with two adjacent bars of one length and two of another.
+/// Four-bar linkage (kite) with two adjacent bars of one length and two of another length.
 const KITE: &str = r#"
 [model]
 name = "kite"
@@ -657,7 +656,7 @@ fn duplicate_linkage(text: &str) -> String {
     copied
 }
 
-/// A platform on two rods, and a rotating rod: their constraints never lose rank.
+/// The constraints of a platform on two rods and of a rotating rod never lose rank.
 #[test]
 fn rotating_rod_is_not_stopped() {
     let model = compile_changed(
@@ -757,14 +756,14 @@ fn rolling_disc_conserves_energy_and_sleigh_straightens() {
         )
         .unwrap();
     let (first, last) = (&motion.trajectory.states[0], &motion.trajectory.states[1]);
-    // Finally all energy is kinetic, along the edge: m v^2 = m (x'^2 + y'^2) + J theta'^2.
+    // At the end, the sleigh moves along the edge and all energy is kinetic: m v^2 = m (x'^2 + y'^2) + J theta'^2.
     let energy = 2.0 * (first[3].powi(2) + first[4].powi(2)) + 0.12 * first[5].powi(2);
     assert!(last[5].abs() < 1e-9, "{}", last[5]);
     assert!((last[3].hypot(last[4]) - (energy / 2.0).sqrt()).abs() < 1e-7);
 }
 
-/// With constraints at a field's end, a mode must need only a few more operations, as with a tip
-/// mass: those of its shape at the closure of the loop.
+/// With constraints at the end of a field, each additional mode must need only a few operations, as with a tip mass:
+/// the operations with its shape at the end.
 #[test]
 fn constraints_add_few_operations_per_mode() {
     let per_mode = |constrained: bool| {
@@ -794,8 +793,8 @@ fn feature_text(name: &str) -> String {
     std::fs::read_to_string(folder.join(format!("{name}.toml"))).unwrap()
 }
 
-/// The multipliers of the emitted equations are the joint forces: they account for the rocker's
-/// inertia.
+/// The multipliers of the emitted equations are the joint forces; the rocker's equation of motion must be satisfied
+/// with them.
 #[test]
 fn multipliers_equal_joint_forces() {
     let model = compile_feature("flexible_coupler", Orders::Declared);
@@ -837,7 +836,8 @@ fn constraint_nonlinear_in_rates_is_rejected_with_location() {
     assert!(message.contains("not linear in the rates"), "{message}");
 }
 
-/// Meijaard, Papadopoulos, Ruina and Schwab 2007, Table 2: weave, capsize and castering by speed.
+/// Source: Meijaard, Papadopoulos, Ruina and Schwab 2007, Table 2: eigenvalues of weave, capsize and castering at
+/// several speeds.
 #[test]
 fn bicycle_has_published_eigenvalues() {
     let model = compile_feature("bicycle", Orders::Declared);
@@ -934,7 +934,7 @@ fn chain(lengths: &[f64], masses: &[f64]) -> [String; 2] {
     [places, angles]
 }
 
-/// Random chains in random motion: accelerations in Cartesian coordinates against those in angles.
+/// Accelerations of random chains at random states are compared in Cartesian coordinates and in angles.
 #[test]
 fn random_chains_match_in_cartesian_coordinates_and_angles() {
     let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
@@ -997,8 +997,9 @@ fn random_chains_match_in_cartesian_coordinates_and_angles() {
     }
 }
 
-/// Returns a crank that drives a sliding mass with dry friction, in its angle and, if `is_constrained`, also in the position
-/// of the mass. `position` is that position as a function of the angle, `transmission` its derivative at the start.
+/// Returns a crank that drives a sliding mass with dry friction. The coordinate is the angle of the crank; if
+/// `is_constrained`, the position of the mass is a second coordinate. `position` is the position as a function of the
+/// angle, `transmission` its derivative at the start.
 fn crank_with_dry_friction(
     (position, transmission): (&str, f64),
     rate: f64,
@@ -1042,7 +1043,7 @@ friction = {{ on = "s", value = "-F*sign(dot(s))" }}
     ))
 }
 
-/// The friction has no effect at a dead centre, which the crank passes, and stops the machine beyond it.
+/// At a dead centre the friction has no lever arm, so the crank passes it. Then the friction stops the machine.
 #[test]
 fn dry_friction_stops_constrained_crank_as_one_in_its_angle() {
     let (sine, cosine) = 2.0_f64.sin_cos();

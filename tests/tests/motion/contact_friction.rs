@@ -1,5 +1,5 @@
-//! Contacts with friction: sliding, rest, rolling, rocking and impacts against closed forms, random drops of a
-//! box, and rejected models.
+//! Tests of contacts with friction: comparison of sliding, sticking, rolling, rocking and impacts with closed forms,
+//! random drops of a box, and rejected models.
 
 use eomgen_codegen::program::evaluator::{Evaluator, ImpactValues, Point};
 use eomgen_compiled_model::{CompiledModel, Motion, Orders, Request, Solver};
@@ -9,7 +9,7 @@ const SOLVERS: [Solver; 2] = [Solver::Rk, Solver::Radau];
 
 const G: f64 = 9.81;
 
-/// A block on a plane inclined by `alpha`; `impact` continues the entry of the contact.
+/// Returns a block on a plane inclined by `alpha`; `impact` is appended to the entry of the contact.
 fn block(coordinates: &str, forces: &str, impact: &str) -> String {
     format!(
         r#"
@@ -70,7 +70,7 @@ fn compile(text: &str) -> CompiledModel {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Simulates with an audit that must find no fault.
+/// Simulates and asserts that the energy audit gives no warning.
 fn simulate(
     model: &CompiledModel,
     settings: &[(&str, f64)],
@@ -179,7 +179,8 @@ fn block_thrown_up_an_incline_turns_or_stays() {
     }
 }
 
-/// Returns place and speed of a block under the force f sin(w t) at the time `until`, by its phases.
+/// Returns position and speed at the time `until` of a block under the force f sin(w t), computed phase by phase
+/// (sticking, sliding).
 fn pushed_block(f: f64, w: f64, until: f64) -> [f64; 2] {
     let (m, level) = (2.0, 0.3 * 2.0 * G);
     let (mut x, mut t) = (0.0, 0.0);
@@ -194,7 +195,7 @@ fn pushed_block(f: f64, w: f64, until: f64) -> [f64; 2] {
         }
         0.5 * (low + high)
     };
-    // The force exceeds the friction once in each half period and stops before the next.
+    // In each half period, the force exceeds the friction once, and the block stops before the next half period.
     for half in 0.. {
         let side = if half % 2 == 0 { 1.0 } else { -1.0 };
         let phase = (level / f).asin() / w;
@@ -295,7 +296,7 @@ fn ball_with_spin_bounces_with_sliding_or_rolling_impulse() {
     }
 }
 
-/// A slender block on two edges.
+/// Slender block that rocks on two edges.
 const ROCKING: &str = r#"
 [model]
 name = "rocking"
@@ -372,7 +373,7 @@ fn steeper_box_tips_about_its_lower_edge() {
         .replace("p = \"m*g*y\"", "p = \"m*g*(y*cos(alpha) - x*sin(alpha))\"")
         .replace("mu = {", "alpha = { value = 0.3, unit = \"rad\" }\nmu = {");
     let model = compile(&text);
-    // tan(0.3) > b/h, so it tips; the angular acceleration about the edge at the start.
+    // tan(0.3) > b/h, so the block tips. `expected` is the initial angular acceleration about the edge.
     let (b, h) = (0.1, 0.5);
     let (s, c) = 0.3_f64.sin_cos();
     let acceleration = G * (h * s - b * c) / (4.0 / 3.0 * (b * b + h * h));
@@ -495,8 +496,8 @@ fn box_dropped_flat_bounces_evenly() {
     }
 }
 
-/// A disc with spin comes to rest in a groove, after sliding or after rocking from wall to wall. The same machine
-/// is drawn at several angles.
+/// A rotating disc comes to rest in a groove after sliding, or after rocking from wall to wall. The machine is
+/// formulated in coordinate systems at several angles.
 #[test]
 fn disc_comes_to_rest_in_a_groove_at_any_angle() {
     let model = compile(
@@ -564,8 +565,8 @@ wall = { when = "a - r", restitution = "e", friction = "mu", slip = "r*dot(phi) 
     }
 }
 
-/// Links on a hinge fall on a floor, bounce without end while they slide, and stick. The expected end is that of the
-/// equations of motion in SciPy (DOP853, 1e-13) with impacts down to 1e-7 m/s.
+/// Links on a hinge fall on a floor, bounce infinitely often while they slide, and stick. The expected final state is
+/// from SciPy (DOP853, 1e-13) with impacts down to 1e-7 m/s.
 #[test]
 fn links_that_stop_bouncing_while_they_slide_keep_their_momentum() {
     let model = compile(
@@ -645,7 +646,8 @@ fn slip_that_is_not_linear_and_wrong_coefficients_are_rejected() {
     assert!(model.with_parameters(&[("mu", f64::NAN)]).is_err());
 }
 
-/// Compares columns, Delassus' matrix and the accelerations of slips with dense algebra and differences.
+/// Compares generalised force directions, Delassus' matrix and the accelerations of slips with dense algebra and finite
+/// differences.
 fn assert_slips_match_dense_algebra(model: &CompiledModel) {
     let run = model.with_declared_parameters().unwrap();
     let mut own = run.evaluator().unwrap();
@@ -721,7 +723,7 @@ fn slips_match_dense_algebra_for_rigid_and_flexible_machines() {
     }
 }
 
-/// A wheel with dry friction F_c in its bearing on a rough floor, and a torque M from t_0 on.
+/// Wheel on a rough floor with dry friction F_c in its bearing; a torque M acts from t_0 on.
 const WHEEL: &str = r#"
 [model]
 name = "wheel"
@@ -812,7 +814,7 @@ friction = {{ on = "x", value = "-{friction}*sign(dot(x))" }}"#
     }
 }
 
-/// A mass on a rough floor is pushed against a smooth wall, with dry friction along z; `slip` is that on the floor.
+/// A mass on a rough floor is pushed against a smooth wall, with dry friction along z; `slip` is the slip on the floor.
 #[test]
 fn dry_friction_at_a_smooth_wall_rests_on_a_rough_floor() {
     let text = |slip: &str| {
@@ -849,7 +851,7 @@ wall = {{ when = "z", restitution = 0 }}
         for push in [5.0, 7.0, 20.0] {
             for z in [0.0, 0.5] {
                 let a = push - along_z;
-                // Without a wall in reach.
+                // The block does not reach a wall.
                 let moved = 0.5 * a.max(0.0) * 0.04;
                 for solver in SOLVERS {
                     let initial = [0.0, 0.0, z, 0.4, 0.0, 0.0];
@@ -878,7 +880,7 @@ wall = {{ when = "z", restitution = 0 }}
     }
 }
 
-/// Blocks stick to each other on a floor that shakes sideways and slide on it together, as one block.
+/// Blocks stick to each other on a floor that oscillates sideways; they slide on it together as one block.
 #[test]
 fn stack_on_a_shaking_floor_moves_as_one_block() {
     let text = |blocks: usize| {
@@ -963,8 +965,8 @@ side = "b*sin(w*t)"
     }
 }
 
-/// A rod that slides over a rough floor, and a force that lifts it. Above a coefficient of friction it can lift off or
-/// jam.
+/// A rod slides over a rough floor, and a force lifts it. Above a critical coefficient of friction, both lift-off and
+/// jamming are solutions (Painleve's paradox).
 #[test]
 fn several_motions_are_noted_and_the_smallest_forces_are_taken() {
     for (friction, is_noted) in [

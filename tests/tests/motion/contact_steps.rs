@@ -1,11 +1,11 @@
-//! Steps of fixed length with frictions that hold and with contacts, against the solver with events and closed forms.
+//! Comparison of fixed steps with sticking friction and contacts with the event-driven solver and with closed forms.
 
 use eomgen_compiled_model::{CompiledModel, Orders, Request, Solver};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_tests::contact_machines::{BALLS, BLOCK_ON_CART, PENDULUM, STRIBECK};
 use eomgen_tests::program::run_rejected;
 
-/// Returns the states at times (s) with held inputs.
+/// Returns the states at times (in s) with piecewise constant inputs.
 fn states_at(
     specification: &str,
     (solver, max_step): (Solver, f64),
@@ -65,7 +65,7 @@ fn body_held_by_friction_does_not_creep() {
     let held = STRIBECK.replace("initial = 0.3", "initial = 0.06");
     let load = HeldInputs::constant(vec![0.5]);
     let found = states_at(&held, (Solver::Fixed, 1e-3), &load, &[0.0, 100.0]);
-    // The spring pulls with 2.4 N against the load: below the static friction of 3 N and above that of Coulomb.
+    // The spring force of 2.4 N minus the load is below the static friction of 3 N and above the Coulomb friction.
     assert!((found[1][0] - 0.06).abs() < 1e-15, "{found:?}");
     assert!(found[1][1].abs() < 1e-15, "{found:?}");
     let released = STRIBECK.replace("initial = 0.3", "initial = 0.12");
@@ -84,7 +84,7 @@ fn bounces_have_newtons_law_and_end_at_rest() {
     let height = rate * since - 0.5 * g * since * since;
     assert!((found[1][0] - height).abs() < 2e-4, "{found:?}");
     assert!((found[1][2] - (rate - g * since)).abs() < 2e-3, "{found:?}");
-    // The bounces end after fall (1 + e)/(1 - e).
+    // The bounces end after the time `fall` (1 + e)/(1 - e).
     assert!(
         found[2][0].abs() < 1e-9 && found[2][2].abs() < 1e-6,
         "{found:?}"

@@ -1,4 +1,4 @@
-//! Closed contacts with friction but without a normal force, and friction that holds in any unit of the coordinates.
+//! Tests of closed contacts with friction but without normal force, and of sticking in any unit of the coordinates.
 
 use eomgen_compiled_model::Solver;
 use eomgen_tests::motions::{grid, simulate_to_end};
@@ -6,9 +6,9 @@ use eomgen_tests::random_numbers::Numbers;
 
 const SETTINGS: (f64, f64) = (1e-9, f64::INFINITY);
 
-/// A block hits another one from below without restitution, and both fly on. A spring along the contact then pulls them
-/// with `c = cos(al)` and `s = sin(al)` of the turned coordinates. Returns mass, mass, stiffness and initial distance, and
-/// the specification.
+/// Returns masses, stiffness, initial distance and specification of two blocks. One block hits the other from below
+/// without restitution, and both continue upwards. Then a spring along the contact pulls them. The coordinates are
+/// rotated, with `c = cos(al)` and `s = sin(al)`.
 fn colliding_blocks(numbers: &mut Numbers, angle: f64, gravity: f64) -> ([f64; 4], String) {
     let mut between = |low: f64, high: f64| low + 0.5 * (high - low) * (1.0 + numbers.symmetric());
     let (lower, upper) = (between(0.3, 2.0), between(0.3, 2.0));
@@ -65,7 +65,7 @@ fn contact_without_normal_force_has_no_friction() {
     }
 }
 
-/// A block on a floor that sticks and slips under a harmonic load. Its coordinates are `size` times its positions.
+/// A block on a floor sticks and slips under a harmonic load. The coordinates are `size` times the positions.
 #[test]
 fn friction_that_holds_takes_few_evaluations_in_any_unit() {
     let times = grid(1.5, 30);
@@ -95,7 +95,8 @@ fn friction_that_holds_takes_few_evaluations_in_any_unit() {
     }
 }
 
-/// A ladder rests on a floor and at a wall, both rough, with rates that are left from an earlier motion.
+/// A ladder rests on a rough floor and against a rough wall. Its initial rates are rounding errors of an earlier
+/// motion.
 #[test]
 fn ladder_with_rates_of_rounding_rests() {
     for rate in [0.0, 1e-45, 1e-30, 1e-20, 1e-14] {

@@ -1,4 +1,4 @@
-//! Simulations that continue from call to call, against whole simulations.
+//! Comparison of simulations that continue over several calls with uninterrupted simulations.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::Trajectory;
 use eomgen_tests::random_numbers::Numbers;
 
-/// A machine, the end of its motion (s) and the solvers that can follow it.
+/// Machine, end of the simulation (s) and the solvers that support it.
 struct Case {
     path: &'static str,
     end: f64,
@@ -17,7 +17,7 @@ struct Case {
 const GENERAL: &[Solver] = &[Solver::Rk, Solver::Radau];
 const ALL: &[Solver] = &[Solver::Exact, Solver::Rk, Solver::Radau];
 
-/// Play, dry friction that holds, impacts, closed contacts with friction, constraints, and a smooth machine.
+/// Cases: play, sticking friction, impacts, closed contacts with friction, constraints, and a smooth machine.
 const CASES: [Case; 6] = [
     Case {
         path: "model-spec/models/planetary_arm_rig.toml",
@@ -56,7 +56,7 @@ fn load(case: &Case) -> CompiledModel {
     CompiledModel::load(root.join(case.path), Orders::Declared).expect(case.path)
 }
 
-/// A block with dry friction.
+/// Block with dry friction.
 const BLOCK: &str = r#"
 [model]
 name = "block"
@@ -74,7 +74,7 @@ drive = { on = "x", value = "F" }
 friction = { on = "x", value = "-f*sign(dot(x))" }
 "#;
 
-/// A block with dry friction between two walls.
+/// Block with dry friction between two walls.
 const HAMMER: &str = r#"
 [model]
 name = "hammer"
@@ -97,7 +97,7 @@ right = { when = "b - x", restitution = "e" }
 left = { when = "b + x", restitution = "e" }
 "#;
 
-/// Times that divide a motion into calls of very different lengths.
+/// Returns times that divide a motion into calls of very different lengths.
 fn call_ends(random: &mut Numbers, end: f64) -> Vec<f64> {
     let mut ends: Vec<f64> = (0..40)
         .map(|_| end * random.symmetric().abs().powi(3))
@@ -130,7 +130,7 @@ fn options(solver: Solver) -> SolverOptions {
     }
 }
 
-/// Asserts that states agree within a fraction of the largest value of each entry.
+/// Asserts that states agree within a fraction of the largest magnitude of each entry.
 fn assert_equal(found: &[Vec<f64>], wanted: &[Vec<f64>], fraction: f64, of: &str) {
     let entries = wanted[0].len();
     let size = |entry: usize| wanted.iter().map(|y| y[entry].abs()).fold(1e-9, f64::max);
@@ -212,7 +212,7 @@ fn inputs_changed_between_calls_act_like_held_inputs() {
     }
 }
 
-/// A mass whose force is constant between its jumps, so that no error estimate limits a step.
+/// The force on a mass is constant between its jumps, so that no error estimate limits a step.
 #[test]
 fn steps_without_error_leave_no_rounding_in_states_before_their_end() {
     let text = "[model]\nname = \"mass\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n[coordinates]\n\

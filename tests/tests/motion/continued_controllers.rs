@@ -1,4 +1,4 @@
-//! Simulations with sampled controllers that continue from call to call, against whole simulations.
+//! Comparison of simulations with sampled controllers that continue over several calls with uninterrupted simulations.
 
 use eomgen_compiled_model::{
     CompiledModel, Instance, Motion, Orders, Request, Simulation, Solver, SolverOptions,
@@ -6,8 +6,8 @@ use eomgen_compiled_model::{
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_tests::random_numbers::Numbers;
 
-/// A mass on a spring with two controllers: the delay of the first is longer than its period, and the force of the
-/// second is quantised with ties. 3*0.1 and 0.3 differ by rounding.
+/// Mass on a spring with two controllers. The delay of the first is longer than its period. The force of the second is
+/// quantised, with values halfway between two steps. The times 3*0.1 and 0.3 differ by rounding.
 const LOOP: &str = r#"
 [model]
 name = "mass"
@@ -44,7 +44,7 @@ states = { count = { unit = "1", next = "count + 1" } }
 outputs = { v = "quantise((count - 2)*u_step/2, u_step) - k_d*dot(x)" }
 "#;
 
-/// Friction that holds the mass between the outputs of its controller.
+/// Mass that sticks by friction between the changes of its controller's output.
 const HELD: &str = r#"
 [model]
 name = "block"
@@ -147,7 +147,7 @@ fn calls_that_end_anywhere_give_the_motion_of_simulate() {
     ] {
         let model = derive(text);
         let run = model.with_declared_parameters().expect("an instance");
-        // At samples, between them, and one rounding before or after them.
+        // Calls end at samples, between them, and one floating-point number before or after them.
         let mut times: Vec<f64> = (0..=40).map(|k| f64::from(k) * 0.1).collect();
         times.extend((1..20).map(|k| f64::from(k) * 0.07));
         times.extend((1..20).map(|k| (f64::from(k) * 0.07).next_up()));
@@ -189,7 +189,7 @@ fn calls_that_end_anywhere_give_the_motion_of_simulate() {
 fn inputs_set_between_calls_act_as_held_inputs_of_simulate() {
     let model = derive(LOOP);
     let run = model.with_declared_parameters().expect("an instance");
-    // Changes at samples and between them.
+    // Calls end at samples and between them.
     let times: Vec<f64> = (0..=80).map(|k| f64::from(k) * 0.05).collect();
     let value = |row: usize| [0.5, -0.2, 0.9, 0.1][row / 7 % 4];
     let rows = (0..times.len()).flat_map(|row| [value(row), 0.0, 0.0]);
@@ -230,7 +230,7 @@ fn simulation_refuses_values_of_driven_inputs_and_keeps_controllers_at_another_s
     simulation.advance(0.5).expect("an advance");
     let e_i = states[0] + 0.1 * (0.5 - simulation.state()[0]);
     assert!((simulation.controller_states()[0] - e_i).abs() < 1e-12);
-    // Outputs keep their delay: those of the sample at 0.3 s act at 0.55 s.
+    // Outputs keep their delay: the outputs of the sample at 0.3 s act at 0.55 s.
     let before = simulation.inputs()[1];
     simulation.advance(0.54).expect("an advance");
     assert_eq!(simulation.inputs()[1], before);

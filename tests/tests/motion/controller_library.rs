@@ -1,4 +1,5 @@
-//! Controllers in a shared library: `simulate --controller`. Skipped with a message without a C compiler.
+//! Tests of controllers in a shared library (`simulate --controller`). Skipped with a message if there is no C
+//! compiler.
 #![cfg(unix)]
 
 use std::path::Path;
@@ -35,7 +36,7 @@ fn compile(folder: &Path, name: &str, source: &Path) -> String {
     library
 }
 
-/// A library of the interface with a line replaced; all parts are right in the original.
+/// Valid controller library; tests replace single lines of it.
 const SIMPLE: &str = r#"
 #include "eomgen_controller.h"
 uint32_t eomgen_controller_abi(void) { return EOMGEN_CONTROLLER_ABI; }
@@ -201,7 +202,7 @@ fn faulty_libraries_are_rejected_with_their_cause() {
             rejected(&library, &[], part);
             continue;
         }
-        // The rows before the stop remain.
+        // The rows before the stop are kept.
         let given = simulate(&library, &[]);
         let output = Command::new(program::path())
             .args(&given)

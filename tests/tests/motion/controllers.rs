@@ -1,4 +1,4 @@
-//! Sampled controllers against recursions over the samples, which are exact for held inputs.
+//! Comparison of sampled controllers with recursions over the samples, which are exact for piecewise constant inputs.
 
 use eomgen_compiled_model::{CompiledModel, Error, Motion, Orders, Request, Solver};
 use eomgen_sim::inputs::HeldInputs;
@@ -35,7 +35,7 @@ states = { e_i = { unit = "m s", next = "e_i + period*(r - position)", initial =
 outputs = { u = "k_p*(r - position) - k_d*dot(x) + k_i*e_i" }
 "#;
 
-/// Solvers with the tolerances of their states.
+/// Solvers with the tolerances for the comparison of states.
 const SOLVERS: [(Solver, f64); 4] = [
     (Solver::Exact, 1e-10),
     (Solver::Auto, 1e-10),
@@ -43,7 +43,7 @@ const SOLVERS: [(Solver, f64); 4] = [
     (Solver::Radau, 1e-7),
 ];
 
-/// Output interval, s, and the last row of the motions.
+/// Output interval, in s.
 const INTERVAL: f64 = 0.01;
 const ROWS: usize = 150;
 
@@ -51,7 +51,7 @@ fn times() -> Vec<f64> {
     (0..=ROWS).map(|row| row as f64 * INTERVAL).collect()
 }
 
-/// Simulates with r = 1 m.
+/// Simulates with the reference r = 1 m.
 fn simulate(text: &str, solver: Solver) -> Result<(CompiledModel, Motion), Error> {
     let model = CompiledModel::from_text("loop.toml", text, Orders::Declared)?;
     let run = model.with_declared_parameters()?;
@@ -72,7 +72,7 @@ fn simulate(text: &str, solver: Solver) -> Result<(CompiledModel, Motion), Error
     Ok((model, motion))
 }
 
-/// A mass of 2 kg whose force is held.
+/// Mass of 2 kg whose force is constant between changes.
 #[derive(Clone, Copy)]
 struct Mass {
     t: f64,
@@ -100,8 +100,8 @@ impl Mass {
     }
 }
 
-/// Follows changes of the force: a function of the instants at which it is called, which returns the next instant.
-/// Returns the state at every row.
+/// Computes the motion in closed form between changes of the force. `change` is called at each change and returns the
+/// time of the next one. Returns the state at every row.
 fn follow(mut change: impl FnMut(&mut Mass) -> f64) -> Vec<[f64; 2]> {
     let mut mass = Mass::START;
     let mut next = change(&mut mass);
@@ -146,7 +146,7 @@ fn pid_on_a_mass_matches_its_recursion_in_every_solver() {
         assert_eq!(motion.controller_states.names, ["e_i"]);
         let rows = &motion.controller_states.rows;
         for (row, state) in rows.iter().enumerate() {
-            // Rows at samples have the values after them.
+            // Rows at sample times have the values after the sample.
             let right = integrals[row / 5];
             assert!(
                 (state[0] - right).abs() < within,
@@ -174,7 +174,8 @@ fn pid_on_a_mass_matches_its_recursion_in_every_solver() {
     }
 }
 
-/// A held force does the work of its value times the way between two changes; its jumps at samples do no work.
+/// Between two changes, the work of a constant force is its value times the displacement; its jumps at samples do no
+/// work.
 #[test]
 fn energy_audit_of_a_controlled_motion_has_the_work_of_the_held_force() {
     let (mut work, mut e_i, mut sample) = (0.0, 0.01, 0.0);
@@ -214,7 +215,7 @@ fn energy_audit_of_a_controlled_motion_has_the_work_of_the_held_force() {
     assert!(without.is_err() || without.is_ok_and(|(_, motion)| motion.audit.is_none()));
 }
 
-/// A controlled mass between a wall and dry friction: samples fall into sticking and next to impacts.
+/// A controlled mass with a wall and dry friction: some samples are during sticking, others close to impacts.
 #[test]
 fn energy_audit_of_a_controlled_motion_with_friction_and_impacts_is_silent() {
     let plant = MASS
@@ -247,7 +248,7 @@ fn delayed_offset_quantised_loop_matches_its_recursion() {
             "\"k_p*(r - position) - k_d*dot(x) + k_i*e_i\"",
             "\"quantise(clamp(k_p*(r - position) - k_d*dot(x) + k_i*e_i, -u_max, u_max), u_step)\"",
         );
-    // The delay is longer than the period: two outputs wait.
+    // The delay is longer than the period, so two outputs are pending.
     let mut e_i = 0.01;
     let mut waiting: Vec<(f64, f64)> = Vec::new();
     let (mut sample, mut next) = (0.0, 0.02);
@@ -280,7 +281,7 @@ fn delayed_offset_quantised_loop_matches_its_recursion() {
 
 #[test]
 fn coincident_samples_use_the_values_before_them() {
-    // 3*0.1 and 0.3 differ by rounding. The second controller measures the force before the sample.
+    // The times 3*0.1 and 0.3 differ by rounding. The second controller measures the force before the sample.
     let controllers = r#"
 [controllers.fast]
 period = 0.1
@@ -337,7 +338,7 @@ period = 0.04
 outputs = { u = "-(g_1*x + g_2*y + g_3*dot(x) + g_4*dot(y))" }
 "#;
 
-/// Returns exp(a h) of a square matrix by its Taylor series with squaring.
+/// Returns exp(a h) of a square matrix by the Taylor series with scaling and squaring.
 fn exponential(a: &[Vec<f64>], h: f64) -> Vec<Vec<f64>> {
     let n = a.len();
     let product = |a: &[Vec<f64>], b: &[Vec<f64>]| -> Vec<Vec<f64>> {
@@ -370,7 +371,7 @@ fn exponential(a: &[Vec<f64>], h: f64) -> Vec<Vec<f64>> {
 #[test]
 fn discrete_regulator_matches_a_matrix_recursion() {
     let gains = [-9.0, 25.0, 2.0, 7.0];
-    // (x, y, x', y', u), with u' = 0 between samples.
+    // The state is (x, y, x', y', u), with u' = 0 between samples.
     let (m, k, c) = (2.0, 30.0, 0.8);
     let a = [
         [0.0, 0.0, 1.0, 0.0, 0.0],
@@ -406,7 +407,7 @@ fn discrete_regulator_matches_a_matrix_recursion() {
     }
 }
 
-/// A beam whose first mode is fed back.
+/// Beam with feedback of its first mode.
 const BEAM: &str = r#"
 [model]
 name = "beam"
@@ -535,7 +536,7 @@ fn commands_run_the_loop_or_say_that_they_do_not() {
     let number =
         |field: Option<&str>| -> f64 { field.and_then(|f| f.parse().ok()).expect("a number") };
     let last = number(rows.lines().last().expect("a row").split(',').nth(1));
-    // A reference that varies with time is measured too.
+    // A reference that varies with time is measured correctly too.
     let moving = ["--input", "r=0.5*sin(3*t)", "--until", "1.5"];
     let (code, said) = program(&[&["simulate", &spec, "--out", &table][..], &moving].concat());
     assert_eq!(code, Some(0), "{said}");

@@ -1,5 +1,5 @@
-//! Motions where the energies jump: against closed forms, the corner conditions solved here, and limits of
-//! smooth models; and rejected models and hosts.
+//! Tests of motions with jumps of the energies: comparison with closed forms, with corner conditions solved by hand,
+//! and with limits of smooth models; rejected models and hosts.
 
 use std::sync::Arc;
 
@@ -61,7 +61,7 @@ fn assert_near(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
     }
 }
 
-/// One coordinate x in m from -1 at 1 m/s.
+/// Returns a model with one coordinate x that starts at -1 m with 1 m/s.
 fn line(parameters: &str, definitions: &str, kinetic: &str, potential: &str) -> String {
     format!(
         "[model]\nname = \"line\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n{parameters}\n\
@@ -130,7 +130,7 @@ fn start_on_a_surface_is_on_the_side_of_its_first_row() {
     };
     let parameters = "d = { value = 3, unit = \"kg\" }\nt_1 = { value = 0, unit = \"s\" }";
     let mass = line(parameters, "", "1/2*(m + d*above(t - t_1))*dot(x)^2", "0");
-    // The first rate is 1 m/s, or -1 m/s away from the step.
+    // The initial rate is 1 m/s towards the step, or -1 m/s away from it.
     for (text, rate, expected) in [
         (step("0.3"), 1.0, 0.4_f64.sqrt()),
         (step("1"), 1.0, -1.0),
@@ -147,7 +147,7 @@ fn start_on_a_surface_is_on_the_side_of_its_first_row() {
     }
 }
 
-/// A base that moves at 0.5 m/s from 1 s on: position, rate and second rate.
+/// Input of a base that moves at 0.5 m/s from 1 s on: position, rate and second rate.
 #[derive(Debug)]
 struct MovingBase;
 
@@ -179,7 +179,7 @@ fn input_rate_that_jumps_keeps_momentum() {
 
 #[test]
 fn cam_follows_corner_conditions_with_full_mass_matrix() {
-    // A follower of mass m on a cam of inertia J with a corner at phi = 0, and a mass coupled to both.
+    // The machine is a follower of mass m on a cam of inertia J with a corner at phi = 0, and a mass coupled to both.
     let text = "[model]\nname = \"cam\"\n[parameters]\nj = { value = 0.7, unit = \"kg m^2\" }\n\
         m = { value = 2, unit = \"kg\" }\nc = { value = 0.5, unit = \"kg m\" }\n\
         a = { value = 0.3, unit = \"m\" }\nb = { value = -0.2, unit = \"m\" }\n[coordinates]\n\
@@ -202,7 +202,8 @@ fn cam_follows_corner_conditions_with_full_mass_matrix() {
     };
     let v = [1.5, 0.4];
     let p = times(near, v);
-    // p_z is kept; the energy gives the rate of phi: (A phi'^2 + p_z^2/M_zz)/2 with A the Schur complement.
+    // The momentum p_z is conserved. The energy (A phi'^2 + p_z^2/M_zz)/2 gives the rate of phi; A is the Schur
+    // complement.
     let schur = |m: [[f64; 2]; 2]| m[0][0] - m[0][1] * m[0][1] / m[1][1];
     let phi_rate = v[0] * (schur(near) / schur(far)).sqrt();
     let z_rate = (p[1] - far[0][1] * phi_rate) / far[1][1];
@@ -214,8 +215,8 @@ fn cam_follows_corner_conditions_with_full_mass_matrix() {
     }
 }
 
-/// A point mass in the plane at a potential step along a line turned by `angle`, from the origin of the
-/// turned system at (-1, 0) with the rates `(u, v)` along its axes.
+/// Returns a point mass in the plane with a potential step along a line. The axes of the step are rotated by `angle`.
+/// In these axes the mass starts at (-1, 0) with the rates `(u, v)`.
 fn plane(angle: f64, height: f64, (u, v): (f64, f64)) -> String {
     let (s, c) = angle.sin_cos();
     format!(
@@ -259,7 +260,7 @@ fn inclined_potential_step_refracts_and_reflects_in_every_frame() {
     }
 }
 
-/// A machine whose masses, coupling, momenta and potential jump across a curved surface that moves.
+/// Returns a machine whose masses, coupling, momenta and potential jump at a moving curved surface.
 fn random_machine(seed: u64, side: &str) -> String {
     let mut numbers = Numbers(0x9e37_79b9_7f4a_7c15 ^ (seed * 0x1234_5678_9abc));
     let mut next = |middle: f64, width: f64| middle + width * numbers.symmetric();
@@ -379,7 +380,7 @@ fn automatic_solver_applies_corners_and_others_reject_them() {
 
 #[test]
 fn corners_on_a_constraint_are_those_of_an_angle() {
-    // A pendulum as a point with a constraint, and with its angle from the lowest position.
+    // The pendulum is formulated as a point with a constraint, and with its angle from the lowest position.
     let head = |step: f64| {
         format!(
             "[model]\nname = \"pendulum\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\

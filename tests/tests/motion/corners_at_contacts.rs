@@ -1,10 +1,10 @@
-//! Jumps of energies of machines with closed contacts and with friction that holds: closed forms.
+//! Tests of jumps of energies in machines with closed contacts and sticking friction, compared with closed forms.
 
 use eomgen_compiled_model::{CompiledModel, Orders, Request, Solver};
 
 const SOLVERS: [Solver; 2] = [Solver::Rk, Solver::Radau];
 
-/// Body of 1 kg under 10 m/s^2 with the coordinates x and y.
+/// Returns a body of 1 kg with the coordinates x and y under a gravity of 10 m/s^2.
 fn body(parameters: &str, start: f64, potential: &str, contacts: &str) -> String {
     format!(
         r#"
@@ -29,7 +29,7 @@ step = "{potential}"
     )
 }
 
-/// Body on a base that starts to move along `base` with V at 0.5 s.
+/// Returns a body on a base that starts to move along `base` with the speed V at 0.5 s.
 fn on_moving_base(speed: f64, base: &str, rest: &str) -> String {
     format!(
         r#"
@@ -52,7 +52,7 @@ y = {{ unit = "m" }}
     )
 }
 
-/// Simulates with the energy audit, which must find nothing, and returns the last state.
+/// Simulates, asserts that the energy audit gives no warning, and returns the last state.
 fn end(text: &str, until: f64, solver: Solver) -> Vec<f64> {
     let model = CompiledModel::from_text("machine.toml", text, Orders::Declared)
         .unwrap_or_else(|error| panic!("{error}\n{text}"));
@@ -84,7 +84,8 @@ fn friction_of_a_contact_follows_the_slip_that_a_step_reverses() {
         let mu: f64 = friction.parse().expect("a number");
         for solver in SOLVERS {
             let found = end(&body(step, 4.0, "U*above(x - a)", &contact), 2.5, solver);
-            // The energy at the step, 8 J less the friction over 1 m, is lost over the way back.
+            // The energy at the step is 8 J minus the work of the friction over 1 m. The friction dissipates it on the
+            // way back.
             let expected = 1.0 - (8.0 - 10.0 * mu) / (10.0 * mu);
             assert!((found[0] - expected).abs() < 1e-8, "{solver:?}: {found:?}");
             assert_eq!(found[2], 0.0, "{solver:?}");
@@ -118,7 +119,7 @@ fn body_that_friction_holds_slips_after_its_base_starts() {
         let text = on_moving_base(1.0, "X", &format!("{definitions}{energies}{law}\n"));
         for solver in SOLVERS {
             let found = end(&text, 1.5, solver);
-            // 1 m/s backwards, stopped by 2 m/s^2.
+            // The body moves backwards with 1 m/s and is decelerated by 2 m/s^2.
             assert!(
                 (found[0] + 0.25).abs() < 1e-8,
                 "{law} {solver:?}: {found:?}"
@@ -149,7 +150,8 @@ fn contact_acts_in_a_jump_if_it_pushes() {
     let energy = "J = { value = 1, unit = \"J\" }";
     let floor = "f = { when = \"y\", restitution = 0 }\n";
     let both = format!("{floor}g = {{ when = \"-y\", restitution = 0 }}\n");
-    // The step releases 1 J. Along (1, 1/2) its impulse lifts the body, along (1, -1/2) the floor bears it.
+    // The step releases 1 J. An impulse along (1, 1/2) lifts the body; an impulse along (1, -1/2) is supported by the
+    // floor.
     let impulse = (-2.0 + 6.5_f64.sqrt()) / 1.25;
     let lifted = [2.0 + impulse, 0.5 * impulse - 10.0 * 0.02];
     let pressed = [6.0_f64.sqrt(), 0.0];
@@ -195,7 +197,8 @@ w = { when = "a - x", restitution = 0.5 }
     }
 }
 
-/// Body of 1 kg in a corner that starts to move with V to both sides, while mass is taken up.
+/// Returns a body of 1 kg in a corner of two walls that start to move with V, at a time at which the mass of the body
+/// increases.
 fn in_corner(force: f64) -> String {
     format!(
         r#"

@@ -1,9 +1,10 @@
-//! Figure of `simulate --plot`: panels named by their quantities, and no flat curve in the panel of a large one.
+//! Tests of the figure of `simulate --plot`: panels have the names of their quantities, and no curve looks constant
+//! because another curve in the panel is much larger.
 
 use eomgen_tests::models::path;
 use eomgen_tests::program::run_accepted;
 
-/// Returns the titles of the panels, which are bold.
+/// Returns the titles of the panels, which are printed in bold.
 fn titles(svg: &str) -> Vec<String> {
     let bold = svg.split(" font-weight=\"600\"").skip(1);
     let elements = bold.filter_map(|rest| rest.split("</text>").next());
@@ -24,7 +25,7 @@ fn panels_are_named_by_their_quantities() {
     run_accepted(&[&arguments[..], &["--out", &table, "--plot", &figure]].concat());
     let svg = std::fs::read_to_string(figure).expect("a figure");
     let titles = titles(&svg);
-    // The carrier turns by radians, its error by microradians.
+    // The angle of the carrier has the magnitude of radians, its error of microradians.
     let panel_of = |name: &str| {
         titles
             .iter()

@@ -1,11 +1,11 @@
-//! Energy audit of `simulate`: only unexplained energy gives a warning.
+//! Tests of the energy audit of `simulate`: only unexplained energy gives a warning.
 
 use eomgen_compiled_model::{Audit, CompiledModel, Orders, Request, Solver};
 use eomgen_tests::models::{load, shipped_specifications};
 use eomgen_tests::program::{run, text};
 use serde_json::Value;
 
-/// Bead on a wire with a corner: its inertia jumps at x = 0.
+/// Bead on a wire with a corner; the inertia jumps at x = 0.
 const CORNER: &str = r#"
 [model]
 name = "corner"
@@ -20,7 +20,7 @@ y = "a*max(x, 0)"
 t = "1/2*m*(dot(x)^2 + dot(y)^2)"
 "#;
 
-/// Step of the potential, higher than the kinetic energy.
+/// Mass at a potential step that is higher than the kinetic energy.
 const STEP: &str = r#"
 [model]
 name = "step"
@@ -35,7 +35,7 @@ t = "1/2*m*dot(x)^2"
 v = "U*above(x)"
 "#;
 
-/// Mass on a spring whose base suddenly moves at a finite speed.
+/// Mass on a spring whose base suddenly starts to move at a finite speed.
 const BASE: &str = r#"
 [model]
 name = "base"
@@ -54,7 +54,7 @@ mass = "1/2*m*dot(place)^2"
 spring = "1/2*k*x^2"
 "#;
 
-/// Mass on a spring whose base is prescribed. Both rest at first.
+/// Mass on a spring with prescribed motion of the base. Both are initially at rest.
 const PRESCRIBED_BASE: &str = r#"
 [model]
 name = "prescribed_base"
@@ -193,7 +193,7 @@ fn losses_at_impacts_are_accounted_for() {
     for solver in [Solver::Rk, Solver::Radau] {
         let audit = audit_of_text(BALL, 5.0, solver, 1e-9);
         assert_eq!(audit.fault_count, 0, "{audit:?}");
-        // The ball ends at rest, so m g y = 0.981 J is lost.
+        // The final state is at rest, so m g y = 0.981 J is lost.
         assert!((audit.impact_energy + 0.981).abs() < 1e-6, "{audit:?}");
         assert!(audit.unexplained_energy().abs() < 1e-6, "{audit:?}");
     }
@@ -265,7 +265,7 @@ fn audit_omits_contacts_moved_by_inputs() {
     assert!(reason.contains("`table`"), "{reason}");
 }
 
-/// Mass at rest until a force starts.
+/// Mass that is at rest until a force starts.
 const PUSHED: &str = r#"
 [model]
 name = "pushed"
@@ -399,7 +399,7 @@ fn base_that_starts_from_rest_has_no_unexplained_energy() {
     assert!((x - 0.75 * (2.0_f64.cos() - 1.0)).abs() < 1e-8, "{x}");
 }
 
-/// Mass that an input can push for 10 ms within 100 s.
+/// Mass that a short pulse of an input can push within 100 s.
 const PULSE: &str = r#"
 [model]
 name = "pulse"
@@ -447,7 +447,7 @@ fn max_step_detects_short_pulse() {
         .split(',')
         .nth(3)
         .expect("energy");
-    // The pulse of 100 N with 5 ms sqrt(pi) gives a momentum of 0.886 N s.
+    // The pulse with an amplitude of 100 N and an effective duration of 5 ms sqrt(pi) gives a momentum of 0.886 N s.
     let energy: f64 = energy.parse().expect("a number");
     let momentum = 100.0 * 0.005 * std::f64::consts::PI.sqrt();
     assert!(
@@ -466,9 +466,9 @@ fn max_step_detects_short_pulse() {
     }
 }
 
-/// Machines with contacts, in coordinates of the laboratory; `{x}` is a coordinate or a definition.
+/// Machines with contacts, in coordinates of the inertial frame; `{x}` stands for a coordinate or a definition.
 const CONTACTS: [&str; 4] = [
-    // Ball with friction on a floor that shakes.
+    // Ball with friction on an oscillating floor.
     r#"
 [kinetic]
 ball = "1/2*m*(dot(x)^2 + dot(y)^2)"
@@ -477,7 +477,7 @@ weight = "m*g*y"
 [impacts]
 floor = { when = "y - 0.02*L*sin(9*h*t)", restitution = 0.6, friction = 0.2, slip = "dot(x) - 0.5*L*h" }
 "#,
-    // Ball on a rope that becomes taut and stays so.
+    // Ball on a rope that becomes taut and remains taut.
     r#"
 [kinetic]
 ball = "1/2*m*(dot(x)^2 + dot(y)^2)"
@@ -511,8 +511,8 @@ wall = { when = "1.3*L - x", restitution = 0 }
 "#,
 ];
 
-/// Frames: the position (x, y) of the coordinates (a, b), and their initial values for the start x = 1 m, y = 0.55 m with
-/// the rates 0.5 m/s and -1 m/s.
+/// Moving frames: position (x, y) as a function of the coordinates (a, b), and initial values of the coordinates. All
+/// start at x = 1 m, y = 0.55 m with the rates 0.5 m/s and -1 m/s.
 const FRAMES: [(&str, [&str; 4]); 4] = [
     (r#"x = "a""#, ["1", "0.5", "0.55", "-1"]),
     // Uniform motion.
@@ -579,7 +579,8 @@ fn losses_at_contacts_do_not_depend_on_the_frame() {
 
 #[test]
 fn work_of_a_contact_in_a_moving_frame_is_that_of_its_force() {
-    // A ball at rest on the floor, relative to a frame that rises with V: T + V of the laboratory is constant.
+    // The coordinates of a ball at rest on the floor are relative to a frame that rises with V. In the inertial frame,
+    // T + V is constant.
     let text = BALL
         .replace("initial = 0.5", "initial = 0, initial_rate = -1")
         .replace("[kinetic]", "[definitions]\nz = \"y + A*w*t\"\n[kinetic]")
@@ -595,8 +596,8 @@ fn work_of_a_contact_in_a_moving_frame_is_that_of_its_force() {
     }
 }
 
-/// A body comes to rest on the floor under a force that is not in the potential energy. If all bounces are small, the
-/// energy left at the last one exceeds the errors of the solver.
+/// A body comes to rest on the floor under a force that is not part of the potential energy. If all bounces are small,
+/// the energy dissipated at the last bounce exceeds the errors of the solver.
 #[test]
 fn last_bounce_under_an_applied_force_is_no_fault() {
     for speed in [0.3, 2.2e-7, -1.2e-7, 3.3e-9, -2.9e-9] {
@@ -630,8 +631,8 @@ fn last_bounce_under_an_applied_force_is_no_fault() {
     }
 }
 
-/// Checks that no energy audit of a machine fails, by any solver for a general motion. Returns the largest number of
-/// evaluations of its energy.
+/// Asserts that the energy audit of a machine gives no warning with any general solver. Returns the largest number of
+/// energy evaluations.
 fn check_silent_audits(text: &str, until: f64) -> u64 {
     let model = CompiledModel::from_text("machine.toml", text, Orders::Declared);
     let model = model.unwrap_or_else(|error| panic!("{error}\n{text}"));
@@ -735,7 +736,7 @@ fn block_that_slides_from_rest_to_rest_gives_no_warning() {
     }
 }
 
-/// The belt below a body at rest starts within 1 ms: rounding of this time gives the body 1e-22 J.
+/// The belt below a body at rest starts within 1 ms. Rounding errors of the time give the body an energy of 1e-22 J.
 #[test]
 fn body_on_a_belt_that_starts_steeply_gives_no_warning() {
     let text = r#"[model]

@@ -1,4 +1,4 @@
-//! The event log of `simulate --events`: surfaces, kinds, modes and jumps.
+//! Tests of the event log of `simulate --events`: surfaces, kinds, modes and jumps.
 
 use std::path::Path;
 

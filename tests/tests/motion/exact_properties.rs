@@ -1,9 +1,9 @@
-//! Random parameters over decades: the exact solver against the general solver over short times,
-//! for the arm and for small machines of springs, stops and dry friction.
+//! Comparison of the exact solver with the general solvers over short times, for the arm and for small machines of
+//! springs, stops and dry friction with random parameters over decades.
 //!
-//! The uncertainty of the general solver is its change with tolerance and method. The exact solver
-//! may differ by twice that plus rounding. The second method takes other steps, because an event
-//! much shorter than a step can be missed by one of them.
+//! The uncertainty of the general solvers is the difference between tolerances and between methods. The exact solver
+//! may differ by twice the uncertainty plus rounding. A second method is needed, because one method can miss an event
+//! that is much shorter than a step.
 
 use eomgen_compiled_model::{CompiledModel, Orders, Solver};
 use eomgen_sim::ode::{Method, SolveError, Trajectory};
@@ -12,7 +12,7 @@ use eomgen_tests::models::load;
 use eomgen_tests::motions::{Spec, TestMotion, difference, grid};
 use proptest::prelude::*;
 
-/// Largest number of steps and trial steps of the exact solver in one motion.
+/// Maximum number of steps and trial steps of the exact solver in one motion.
 const MAX_EXACT_STEPS: u64 = 100_000;
 
 /// Deviation due to rounding, amplified by switches, relative to the largest magnitude of each
@@ -37,7 +37,7 @@ fn compare_solvers(subject: &TestMotion, until: f64, smallest: f64) -> Result<()
     let times = grid(until, 16);
     let exact = match exact(subject, until, &times) {
         Ok(motion) => motion,
-        // Too many switches for any solver.
+        // The motion has too many switches for any solver.
         Err(ExactError::Stopped(SolveError::TooManySwitches { .. })) => return Ok(()),
         Err(error) => return Err(TestCaseError::fail(error.to_string())),
     };
@@ -45,7 +45,7 @@ fn compare_solvers(subject: &TestMotion, until: f64, smallest: f64) -> Result<()
     let general = |tolerance: f64| subject.simulate_generally((0.0, until), &times, tolerance);
     let adams = subject.simulate_by_method(Method::Adams, (0.0, until), &times, 1e-12);
     let (Ok(coarse), Ok(fine), Ok(adams)) = (general(1e-10), general(1e-12), adams) else {
-        // The motion stays on a surface, or the model is too stiff for the general solver.
+        // The motion slides on a switching surface, or the model is too stiff for the general solver.
         return Ok(());
     };
     let differs = |other: &Trajectory| difference(&other.states, &fine.states, smallest);
@@ -102,8 +102,8 @@ proptest! {
     }
 }
 
-/// The play is crossed within 1e-4 of the damper's settling time: a search that looks far ahead
-/// covers much of that decay.
+/// The play is crossed within 1e-4 of the damper's settling time. A search over a long interval covers a large part of
+/// the decay.
 #[test]
 fn exact_matches_general_solver_for_play_with_strong_damper() {
     let values = [
@@ -137,7 +137,7 @@ enum Term {
     OneSided(f64, f64),
     Dry(f64),
     Push(f64, f64, f64),
-    /// Spring whose deflection is delayed by a filter, with a backlash if given.
+    /// Spring whose deflection is filtered (low-pass), optionally with backlash.
     Late(f64, f64, f64),
 }
 
@@ -243,8 +243,8 @@ proptest! {
     }
 }
 
-/// Two masses in friction contact move together, loaded through a filter: the rounding residue of
-/// the friction force between them must not cause a relative rate.
+/// Two masses in frictional contact move together and are loaded through a filter. The rounding error of the friction
+/// force between them must not cause a relative rate.
 #[test]
 fn exact_matches_general_solver_for_sticking_masses_with_filter() {
     let terms = [
@@ -258,7 +258,7 @@ fn exact_matches_general_solver_for_sticking_masses_with_filter() {
     compare_solvers(&TestMotion::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
 }
 
-/// A spring behind a fast filter between two slow masses, one of them with drag.
+/// A filtered spring with a short time constant connects two slow masses, one of them with drag.
 #[test]
 fn exact_matches_general_solver_for_fast_filter() {
     let terms = [
@@ -274,7 +274,7 @@ fn exact_matches_general_solver_for_fast_filter() {
     compare_solvers(&TestMotion::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
 }
 
-/// A mass on a one-sided spring, with friction against a free mass, and a separate oscillator:
+/// The machine is a mass on a one-sided spring, with friction against a free mass, and a separate oscillator. Its
 /// eigenvalues are symmetric.
 #[test]
 fn exact_matches_general_solver_for_symmetric_eigenvalues() {
@@ -288,7 +288,7 @@ fn exact_matches_general_solver_for_symmetric_eigenvalues() {
     compare_solvers(&TestMotion::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
 }
 
-/// The implicit solver with the models' Jacobians against the best solver for each model.
+/// The implicit solver uses the models' Jacobians and is compared with the most accurate solver for each model.
 #[test]
 fn radau_matches_best_solver_on_shipped_models() {
     for (name, until, reference) in [

@@ -1,10 +1,9 @@
-//! The arm with zero, four and sixteen modes, with and without backlash, against its Taylor series
-//! in double-double arithmetic.
+//! Comparison of the arm with zero, four and sixteen modes, with and without backlash, with its Taylor series in
+//! double-double arithmetic.
 //!
-//! The same series in doubles measures the effect of rounding on these motions. With backlash they
-//! are partly chaotic, so the growth of a rounding error is random. The bound uses the largest of
-//! several runs with different steps, hence different roundings. The exact solver must stay within
-//! ten times that.
+//! The Taylor series in doubles measures the effect of rounding errors on these motions. With backlash the motions are
+//! partly chaotic, so the growth of a rounding error is random. The bound is ten times the largest deviation of several
+//! runs. The runs have different steps and therefore different rounding errors.
 
 use eomgen_model_spec::model::Model;
 use eomgen_sim::inputs::HeldInputs;
@@ -81,7 +80,7 @@ impl Reference {
         }
     }
 
-    /// Returns the deviations of states whose first entries are the displacements.
+    /// Returns the deviations from the reference; the first entries of each state are the displacements.
     fn growth<'a>(&self, states: impl ExactSizeIterator<Item = &'a [f64]>) -> Growth {
         assert_eq!(states.len(), self.times.len());
         let mut growth = Growth::default();
@@ -99,7 +98,7 @@ impl Reference {
         growth
     }
 
-    /// Returns the deviations of the series in doubles: the largest of five runs.
+    /// Returns the largest deviations of the series in doubles over five runs.
     fn rounding(&self) -> Growth {
         let mut rounding = Growth::default();
         for power in [10, 11, 12, 13, 14] {
@@ -119,7 +118,7 @@ struct Comparison {
     exact: Growth,
     /// Numbers of switches of the sun-planet and planet-ring meshes.
     switches: [usize; 2],
-    /// Number of instants of switches found by the exact solver, after [`AFTER_START_S`].
+    /// Number of distinct switching times of the exact solver after [`AFTER_START_S`].
     exact_switches: usize,
 }
 
@@ -157,8 +156,8 @@ const MAX_ROUNDING_RATIO: f64 = 10.0;
 /// Maximum deviation in m; the series in doubles must stay below a tenth of it.
 const MAX_DEVIATION_M: f64 = 1e-10;
 
-/// Time in s after which switches are counted. Without backlash a mesh starts on its surface: the
-/// exact solver counts its departure as a switch after some nanoseconds, the reference does not.
+/// Time in s after which switches are counted. Without backlash, a mesh starts on its switching surface. The exact
+/// solver counts its departure after some nanoseconds as a switch; the reference does not.
 const AFTER_START_S: f64 = 1e-6;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -169,8 +168,8 @@ enum Bounds {
     DeviationOnly,
 }
 
-/// Asserts that doubles and the exact solver match the reference over two seconds, with these
-/// switch counts.
+/// Asserts that the series in doubles and the exact solver match the reference over two seconds, with these switch
+/// counts.
 fn assert_both_match_reference(order: usize, b: f64, switches: [usize; 2], bounds: Bounds) {
     let until = 2.0;
     let compared = compare(order, b, until);
@@ -188,8 +187,8 @@ fn assert_both_match_reference(order: usize, b: f64, switches: [usize; 2], bound
             "double: {rounding}"
         );
         assert!(exact.is_within(MAX_DEVIATION_M), "exact: {exact}");
-        // The ratio is checked over the whole run only: over parts, single samples deviate by 1e-14
-        // m more.
+        // The ratio is checked over the whole time span only, because single samples can deviate by 1e-14 m more over a
+        // part of it.
         if bounds == Bounds::DeviationAndRatio && part == 1.0 {
             let within = exact.x_sp <= MAX_ROUNDING_RATIO * rounding.x_sp
                 && exact.tip <= MAX_ROUNDING_RATIO * rounding.tip;
@@ -250,7 +249,7 @@ fn assert_general_solver_matches(order: usize, b: f64) {
     let displacements = trajectory.states.iter().map(|state| &state[..3 + order]);
     let [.., worst] = reference.growth(displacements);
     println!("S = {order}, b = {b:e} m: {worst}");
-    // The tolerance of 1e-12 per step applies to motions of 1e-4 m.
+    // The relative tolerance of 1e-12 per step applies to motions of 1e-4 m.
     assert!(worst.x_sp < 1e-14 && worst.tip < 1e-14, "{worst}");
 }
 

@@ -1,4 +1,4 @@
-//! `simulate --solver fixed`: order, held inputs, and models and times that it rejects.
+//! Tests of `simulate --solver fixed`: order of convergence, held inputs, and rejected models and times.
 
 use eomgen_compiled_model::{CompiledModel, Orders, Request, Solver};
 use eomgen_sim::inputs::HeldInputs;

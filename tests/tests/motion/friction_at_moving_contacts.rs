@@ -1,5 +1,6 @@
-//! Dry friction of a body that a closed contact moves or stops, against closed forms. The body neither keeps the rest of an
-//! instant at which its speed passes zero with the contact, nor that of a belt that passes zero below it.
+//! Comparison with closed forms for a body with dry friction that a closed contact moves or stops. The body must not
+//! remain sticking after its speed crosses zero together with the contact, or after the speed of the belt below it
+//! crosses zero.
 
 use std::f64::consts::PI;
 
@@ -8,17 +9,17 @@ use eomgen_tests::random_numbers::Numbers;
 
 const SOLVERS: [Solver; 3] = [Solver::Auto, Solver::Rk, Solver::Radau];
 
-/// Block on rough ground that is pressed against a wall. Wall or ground moves with amplitude `a` (m or m/s) and angular
-/// frequency `w`.
+/// Block on rough ground that is pressed against a wall. The wall or the ground oscillates with amplitude `a` (m or
+/// m/s) and angular frequency `w`.
 struct Block {
     mass: f64,
     pressure: f64,
     friction: f64,
     amplitude: f64,
     frequency: f64,
-    /// Place of the wall.
+    /// Expression of the wall's position.
     wall: &'static str,
-    /// Speed of the ground.
+    /// Expression of the ground's speed.
     ground: &'static str,
 }
 
@@ -57,7 +58,8 @@ wall = {{ when = "r*x - {wall}", restitution = 0 }}
         )
     }
 
-    /// Compares the motion from rest with the places of the block, m; its coordinate is in units of `length`, m.
+    /// Compares the motion from rest with the expected positions of the block in m. The unit of the coordinate is
+    /// `length` m.
     fn compare(&self, length: f64, until: f64, wanted: impl Fn(f64) -> f64) {
         let text = self.text(length);
         let model = CompiledModel::from_text("block.toml", &text, Orders::Declared);
@@ -91,7 +93,7 @@ wall = {{ when = "r*x - {wall}", restitution = 0 }}
     }
 }
 
-/// Draws blocks with this ratio of pressure to friction.
+/// Draws random blocks with this ratio of pressing force to friction.
 fn draw_blocks(
     seed: u64,
     [least, most]: [f64; 2],
@@ -125,7 +127,7 @@ fn pushed_block_stays_where_the_wall_turns() {
             ..
         } = block;
         let turn = 0.5 * PI / frequency;
-        // While the wall slows down, the block must not slide ahead of it.
+        // While the wall decelerates, the block must not leave it.
         let slows_faster = (block.pressure + block.friction) / block.mass;
         if amplitude * frequency.powi(2) < slows_faster {
             block.compare(length, 4.0 * turn, |t| {
@@ -146,7 +148,7 @@ fn belt_that_turns_takes_the_block_from_the_wall() {
         } = block;
         let turn = PI / frequency;
         let acceleration = (block.friction - block.pressure) / block.mass;
-        // The block is slower than the belt for a while.
+        // For some time the block is slower than the belt.
         let until = turn + 0.1 / frequency;
         if acceleration < 0.9 * amplitude * frequency.powi(2) {
             block.compare(length, until, |t| {
@@ -165,7 +167,7 @@ fn belt_that_starts_smoothly_takes_the_block_from_the_wall() {
             frequency,
             ..
         } = block;
-        // The block keeps to the belt while that accelerates slowly.
+        // The block sticks to the belt while the acceleration of the belt is small.
         let limit = (block.friction - block.pressure) / block.mass;
         let length_of_rest = 0.9 * limit / (2.0 * amplitude * frequency.powi(2));
         let until = length_of_rest.min(1.0) / frequency;

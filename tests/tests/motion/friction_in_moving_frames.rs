@@ -1,6 +1,6 @@
-//! Friction against the direction of sliding in coordinates of a moving frame, where the kinetic energy has terms linear in
-//! the rates: compared with the same equations of motion from inertial forces, with Galilei's closed form and with
-//! scalar friction.
+//! Tests of friction against the direction of sliding in coordinates of a moving frame, in which the kinetic energy has
+//! terms linear in the rates. Motions are compared with equations with inertial forces, with a closed form after a
+//! Galilean transformation, and with scalar friction.
 
 use eomgen_compiled_model::{CompiledModel, Motion, Orders, Request, Solver};
 
@@ -47,7 +47,7 @@ slowness = "1/norm(v)"
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Returns the motion after a comparison of its energy with the work.
+/// Simulates, asserts the balance of energy and work, and returns the motion.
 fn simulate(model: &CompiledModel, solver: Solver) -> Motion {
     let run = model.with_declared_parameters().expect("an instance");
     let times: Vec<f64> = (0..=40).map(|k| 0.05 * f64::from(k)).collect();
@@ -117,7 +117,7 @@ fn friction_in_moving_frames_matches_inertial_forces() {
     }
 }
 
-/// On the turntable the friction at rest is the centripetal force.
+/// If the puck sticks to the turntable, the friction is the centripetal force.
 #[test]
 fn puck_rests_on_a_turntable() {
     let model = puck(TURNING, [0.6, 0.5], &[DRY]);
@@ -132,7 +132,7 @@ fn puck_rests_on_a_turntable() {
     }
 }
 
-/// Friction on the ground, in the coordinates of an observer at the speed V.
+/// The friction acts on the ground; the coordinates are those of an observer who moves with the speed V.
 #[test]
 fn puck_on_the_ground_stops_for_a_moving_observer() {
     let model = puck(CARRIED, [1.3, 0.4], &["[a, b]:-F*u/norm(u)"]);
@@ -159,7 +159,7 @@ fn puck_on_the_ground_stops_for_a_moving_observer() {
     }
 }
 
-/// The shaken table holds the puck and lets it slide in each half period.
+/// In each half period of the oscillating table, the puck sticks and slides.
 #[test]
 fn straight_motion_on_a_shaken_table_matches_scalar_friction() {
     let vector = puck(SHAKEN, [0.6, 0.0], &[DRY]);

@@ -1,10 +1,10 @@
-//! Friction proportional to the force of a guide: two contacts without play replace its constraint. Compared with closed
-//! forms.
+//! Tests of friction proportional to the force of a guide, compared with closed forms. Two contacts without play
+//! replace the constraint of the guide.
 
 use eomgen_compiled_model::Solver;
 use eomgen_tests::motions::simulate_to_end;
 
-/// Returns the states at the end of the motions by `rk` and `radau`.
+/// Returns the final states of the motions computed by `rk` and `radau`.
 fn simulate(text: &str, until: f64) -> [Vec<f64>; 2] {
     [Solver::Rk, Solver::Radau].map(|solver| {
         let motion = simulate_to_end(text, &[0.0, until], solver, (1e-10, f64::INFINITY));
@@ -52,8 +52,8 @@ inner = {{ when = "sqrt(x^2 + y^2) - R", restitution = 0, friction = "mu", slip 
     }
 }
 
-/// Motion of a drawer on two pads at distance `a` on both sides, which a force at distance `e` of the guide pulls. The pads
-/// push with F e/(2 a), so that their friction is mu F e/a.
+/// A drawer slides on two pads at the distance `a` on both sides; a force F pulls it at the distance `e` from the
+/// guide. The normal force of each pad is F e/(2 a), so the friction is mu F e/a.
 #[test]
 fn drawer_on_two_pads_jams_if_the_force_acts_far_outside() {
     let (mass, half, force, friction) = (2.0_f64, 0.2_f64, 3.0_f64, 0.5_f64);
@@ -91,7 +91,7 @@ pull = {{ on = "x - e*phi", value = "F" }}
                 pads.concat()
             );
             let lost = friction * force * offset / half;
-            // Against the pull, both forces brake.
+            // If the drawer moves against the pull, both forces decelerate it.
             let braking = if speed < 0.0 {
                 force + lost
             } else {

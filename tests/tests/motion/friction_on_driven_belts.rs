@@ -1,14 +1,14 @@
-//! Dry friction on a belt whose speed is a continuous piecewise function of time, against closed forms. The body rests on the belt
-//! wherever the belt accelerates slowly enough.
+//! Comparison with closed forms for dry friction on a belt whose speed is a continuous piecewise function of time. The
+//! body sticks to the belt while the acceleration of the belt is small enough.
 
 use eomgen_compiled_model::Solver;
 use eomgen_tests::motions::{grid, simulate_declared, simulate_to_end};
 
-/// Mass, kg, and friction, N, of the body: it accelerates by at most 1.5 m/s^2.
+/// Mass of the body in kg. With the friction of 3 N, its largest acceleration is 1.5 m/s^2.
 const MASS: f64 = 2.0;
 const FRICTION: f64 = 3.0;
 
-/// Compares the speeds of the body, m/s, in a coordinate in units of `length`, m.
+/// Compares the speeds of the body in m/s. The unit of the coordinate is `length` m.
 fn compare(belt: &str, expected: impl Fn(f64) -> f64) {
     let times = grid(2.0, 40);
     for (length, solver) in [(1.0, Solver::Rk), (1e3, Solver::Rk), (1e-3, Solver::Radau)] {
@@ -55,13 +55,13 @@ fn body_slides_on_a_belt_that_starts_fast_and_is_held_later() {
 #[test]
 fn body_rests_on_a_belt_that_returns() {
     compare("v*abs(w*t - 1)", |t| match t {
-        // From rest to the speed of the belt, which falls.
+        // The body accelerates from rest to the decreasing speed of the belt.
         t if t < 0.6 / 2.1 => 1.5 * t,
         t => 0.6 * (t - 1.0).abs(),
     });
 }
 
-/// Sums and quotients of the same speed of the belt.
+/// The speed of the belt is written as nested sums and as quotients.
 #[test]
 fn belt_may_be_written_as_a_nested_sum_or_a_quotient() {
     for belt in [
@@ -73,7 +73,7 @@ fn belt_may_be_written_as_a_nested_sum_or_a_quotient() {
     }
 }
 
-/// Speeds that jump by a function, by a quotient, or by the cut of an angle.
+/// The speed of the belt jumps because of a function, a quotient, or the branch cut of an angle.
 #[test]
 fn jumps_of_a_belt_are_rejected() {
     for belt in [

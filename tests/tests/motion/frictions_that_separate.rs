@@ -1,15 +1,15 @@
-//! Two frictions whose directions coincide at one instant and differ before or after it: one body, whose friction along x
-//! holds and whose other friction acts along a direction that turns.
+//! Tests of two frictions on one body whose directions coincide at one time only. One friction along x is sticking; the
+//! direction of the other friction rotates.
 
 use eomgen_compiled_model::{Motion, Solver};
 use eomgen_tests::motions::{grid, simulate_to_end};
 
-/// Angle of the axes x and y to the coordinates, rad.
+/// Angles of the axes x and y to the coordinates, in rad.
 const ANGLES: [f64; 3] = [0.0, 0.7, -2.1];
 
 const SOLVERS: [Solver; 2] = [Solver::Rk, Solver::Radau];
 
-/// Place (m) and speed (m/s) along y at the start.
+/// Initial position (m) and speed (m/s) along y.
 const BEFORE: (f64, f64) = (-0.3, 0.8);
 
 const DRY: &str = "first = { on = [\"a\", \"b\"], value = \"-F*sign(dot(v, e))*e\" }\n\
@@ -18,7 +18,8 @@ const DRY: &str = "first = { on = [\"a\", \"b\"], value = \"-F*sign(dot(v, e))*e
 const CONTACTS: &str = "[impacts]\nfirst = { when = \"h\", restitution = 0, friction = \"F/N\", slip = \"dot(v, e)\" }\n\
                         second = { when = \"k\", restitution = 0, friction = \"G/N\", slip = \"dot(v, n)\" }\n";
 
-/// Returns a body that a force pushes along y (N). The second friction acts at `turned` (rad) from x.
+/// Simulates a body that a force (N) pushes along y. The second friction acts in a direction at the angle `turned`
+/// (rad) from x.
 fn simulate(
     (angle, solver): (f64, Solver),
     (place, speed): (f64, f64),
@@ -48,7 +49,7 @@ fn simulate(
     simulate_to_end(&text, &grid(until, 20), solver, (1e-10, f64::INFINITY))
 }
 
-/// Returns x, y and the speed along y, from a state.
+/// Returns x, y and the speed along y for a state.
 fn along_axes(angle: f64, state: &[f64]) -> [f64; 3] {
     let (s, c) = angle.sin_cos();
     [
@@ -58,7 +59,7 @@ fn along_axes(angle: f64, state: &[f64]) -> [f64; 3] {
     ]
 }
 
-/// Calls `check` with all angles, solvers and kinds of friction.
+/// Calls `check` for all angles, solvers and kinds of friction.
 fn for_all(check: impl Fn((f64, Solver), &str)) {
     for angle in ANGLES {
         for solver in SOLVERS {
@@ -75,7 +76,7 @@ fn body_stops_after_it_passes_the_common_direction() {
         for push in [0.0, 0.2, -0.2] {
             let motion = simulate(run, BEFORE, (push, "y/l", frictions), 4.0);
             let [x, y, speed] = along_axes(run.0, &motion.trajectory.final_state);
-            // The force along y is G sin(y) against the motion: the energy at rest is that at the start less its work.
+            // The friction along y is G sin(y). At rest, the initial energy minus the work of the friction is zero.
             let (place, start) = BEFORE;
             let rest =
                 |y: f64| 0.5 * start * start + push * (y - place) - 2.0 + place.cos() + y.cos();
@@ -120,8 +121,8 @@ fn body_stops_in_a_direction_that_turns_with_time() {
 
 #[test]
 fn belt_slips_over_a_block_that_the_floor_holds() {
-    // The belt pushes with 1 N while it is faster than the block, which accelerates with 0.5 m/s^2, and then brakes it with
-    // 1.5 m/s^2 together with the floor.
+    // While the belt is faster than the block, it pushes with 1 N and the block accelerates with 0.5 m/s^2. Then belt
+    // and floor decelerate the block with 1.5 m/s^2.
     let mut reached = 1.0;
     for _ in 0..20 {
         let belt = |t: f64| 10.0 * (std::f64::consts::PI * t).sin() - 0.5 * t;
@@ -148,7 +149,7 @@ fn belt_slips_over_a_block_that_the_floor_holds() {
 
 #[test]
 fn floor_at_its_limit_holds_a_block_that_a_contact_releases() {
-    // The belt cancels the load. The contact pulls along x with cos(t) < 1, and along y with sin(t).
+    // The force of the belt cancels the load. The contact acts with cos(t) < 1 along x, and with sin(t) along y.
     let text = "[model]\nname = \"block\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
          K = { value = 1, unit = \"N\" }\nw = { value = 1, unit = \"1/s\" }\nU = { value = 1, unit = \"m/s\" }\n\
          [coordinates]\nx = { unit = \"m\" }\ny = { unit = \"m\" }\nh = { unit = \"m\" }\n\

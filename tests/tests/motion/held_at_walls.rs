@@ -1,9 +1,9 @@
-//! Bodies that dry friction holds while they touch a wall, or that a moving wall hits.
+//! Tests of bodies that stick by dry friction while they touch a wall, or that a moving wall hits.
 
 use eomgen_compiled_model::{CompiledModel, EventKind, Orders, Request, Solver};
 use eomgen_tests::random_numbers::Numbers;
 
-/// Units of length and mass.
+/// Units of length (m) and mass (kg) of the tested coordinates.
 const UNITS: [(f64, f64); 2] = [(1.0, 1.0), (1e-3, 1e3)];
 
 const SOLVERS: [Solver; 3] = [Solver::Rk, Solver::Radau, Solver::Auto];
@@ -38,8 +38,8 @@ fn simulate(text: &str, until: f64, solver: Solver) -> (Vec<f64>, Vec<Vec<f64>>)
     (times, motion.trajectory.states)
 }
 
-/// A spring pulls a body at a wall first away from it and then presses it against it by turns, by less than the friction. The mass at
-/// the other end oscillates freely.
+/// A spring alternately pulls a body away from a wall and presses it against the wall, with less force than the
+/// friction. The mass at the other end of the spring oscillates freely.
 #[test]
 fn held_body_stays_at_a_wall() {
     for case in 0..MACHINES {
@@ -87,8 +87,8 @@ fn held_body_stays_at_a_wall() {
     }
 }
 
-/// A force presses a body at a wall and pulls it off by turns, by less than the friction. The rounding of its rest leads
-/// neither to impacts nor to overlaps, also beside a zero coordinate.
+/// A force alternately presses a body against a wall and pulls it away, with less force than the friction. Rounding
+/// errors of the position at rest must cause neither impacts nor overlaps, also if another coordinate is zero.
 #[test]
 fn held_body_at_a_wall_has_one_event() {
     for case in 0..12 {
@@ -142,8 +142,8 @@ fn held_body_at_a_wall_has_one_event() {
     }
 }
 
-/// A periodic force slides a body from a wall and back to it, where it comes to rest. Samples inside the step that ends there
-/// are beyond the wall by errors of the step.
+/// A periodic force moves a body away from a wall and back to it, and the body comes to rest at the wall. Samples
+/// within the last step are beyond the wall by the error of dense output.
 #[test]
 fn sliding_body_returns_to_a_wall() {
     let (m, push, friction, frequency) = (
@@ -180,8 +180,8 @@ fn sliding_body_returns_to_a_wall() {
     }
 }
 
-/// A body at rest by friction on two surfaces is hit by an oscillating wall, and again before it stops. The durations vary
-/// the lengths of the steps.
+/// A body sticks on two surfaces. An oscillating wall hits it, and hits it again before it stops. Different durations
+/// of the simulation vary the step sizes.
 #[test]
 fn held_body_is_hit_by_a_moving_wall() {
     for (length, mass) in UNITS {
@@ -234,8 +234,8 @@ fn held_body_is_hit_by_a_moving_wall() {
     }
 }
 
-/// A body hits a wall without restitution, where dry friction holds it. Another one of any mass then hits it: the wall takes
-/// the impulse at once, and the other body returns with its speed.
+/// A body hits a wall without restitution and sticks there by dry friction. Then another body of any mass hits it. The
+/// wall takes the impulse in the same impact, and the other body rebounds with its speed.
 #[test]
 fn body_that_friction_holds_at_a_wall_stays_in_contact() {
     for case in 0..MACHINES {
@@ -274,8 +274,9 @@ fn body_that_friction_holds_at_a_wall_stays_in_contact() {
     }
 }
 
-/// The upper of two stacked bodies is pulled up and pressed down by less than its weight and the friction between them. The
-/// contact between them opens while the friction holds them together, and has to bear a load again when the friction slips.
+/// The upper of two stacked bodies is alternately pulled up and pressed down, with less force than its weight plus the
+/// friction between them. The contact between them opens while they stick together. When the friction slips, the
+/// contact must carry a load again.
 #[test]
 fn stack_that_friction_holds_together_stays_at_rest() {
     for case in 0..MACHINES {

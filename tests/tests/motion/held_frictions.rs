@@ -1,5 +1,5 @@
-//! Dry frictions that hold a machine: levers of any length, loads with short peaks, and states that depend on a speed that
-//! the held frictions make zero.
+//! Tests of machines that stick by dry friction: levers of any length, loads with short peaks, and first-order states
+//! whose rate depends on a speed that is zero during sticking.
 
 use eomgen_compiled_model::{Motion, Solver};
 use eomgen_tests::motions::{difference, grid, simulate_to_end};
@@ -10,7 +10,7 @@ fn simulate(text: &str, solver: Solver, times: &[f64], max_step: f64) -> Motion 
     simulate_to_end(text, times, solver, (TOLERANCE, max_step))
 }
 
-/// Asserts that these states of two motions differ by at most `error` of their largest magnitudes.
+/// Asserts that the states `places` of two motions differ by at most `error` times their largest magnitudes.
 fn assert_equal(found: &Motion, right: &Motion, places: &[usize], error: f64, what: &str) {
     let [found, right] = [found, right].map(|motion| {
         let states = motion.trajectory.states.iter();
@@ -21,7 +21,8 @@ fn assert_equal(found: &Motion, right: &Motion, places: &[usize], error: f64, wh
     assert!(worst <= error, "{what}: {worst:e}");
 }
 
-/// A carriage with friction and an unbalanced rotor with friction, driven by a torque of three times its friction.
+/// Returns a carriage with friction and an unbalanced rotor with friction. The torque on the rotor is three times its
+/// friction.
 fn rotor(lever: f64) -> String {
     let inertia = lever * lever;
     format!(
@@ -76,8 +77,8 @@ fn breakaway_does_not_depend_on_the_length_of_a_lever() {
     }
 }
 
-/// A mass on a spring with friction and hysteresis, driven by two sines of 1/s `rates`. Between the samples of a long step, the
-/// load may exceed the friction.
+/// Simulates a mass on a spring with friction and hysteresis, driven by two sines with the angular frequencies `rates`
+/// (rad/s). The load can exceed the friction for a short time within a long step.
 fn driven(
     [m, k, friction]: [f64; 3],
     drives: [f64; 2],

@@ -1,5 +1,5 @@
-//! Machines with impacts: jumps against dense algebra and textbook formulas, bouncing against its
-//! closed form, resting contacts and lift-off, and rejected models.
+//! Tests of machines with impacts: comparison of jumps with dense algebra and textbook formulas, of bouncing with its
+//! closed form; resting contacts, lift-off, and rejected models.
 
 use std::path::Path;
 
@@ -39,8 +39,8 @@ fn simulate_with(model: &CompiledModel, settings: &[(&str, f64)], times: &[f64])
     motion.unwrap_or_else(|error| panic!("{settings:?}: {error}"))
 }
 
-/// Returns the height of a ball at the time `since` after it left the floor: flights from speeds v,
-/// e v, e^2 v.
+/// Returns the height of a ball at the time `since` after it left the floor. The flights start with the speeds v, e v,
+/// e^2 v.
 fn height_after_launch(g: f64, e: f64, mut since: f64, mut v: f64) -> f64 {
     while v > 1e-9 && 2.0 * v / g < since {
         since -= 2.0 * v / g;
@@ -89,7 +89,7 @@ fn simulate_with_all_solvers(model: &CompiledModel, initial: &[f64], times: &[f6
     motions.collect()
 }
 
-/// Rounding of an impact must not take energy: some masses and speeds round up.
+/// Rounding errors of an impact must not reduce the energy. The masses and speeds include values that are rounded up.
 #[test]
 fn elastic_bodies_keep_their_energy() {
     for (mass, height) in [(0.17, 0.8), (1.0, 0.8), (2.3, 0.31), (1e-3, 4.7)] {
@@ -215,7 +215,7 @@ p = "{potential}"
 
 #[test]
 fn ball_leaves_table_that_falls_faster() {
-    // With e = 0, the ball stays on the table until a omega^2 sin(omega t) = g.
+    // With e = 0, the ball remains on the table until a omega^2 sin(omega t) = g.
     let model = compile_example("bouncing_ball", Orders::Declared);
     let (a, omega, g) = (0.03, 20.0_f64, 9.81);
     let run = model.with_parameters(&[("a", a), ("e", 0.0)]).unwrap();
@@ -278,12 +278,12 @@ bumper = {{ when = "z - x", restitution = "e" }}
             (state[2] - x).abs() < 1e-12 && (state[3] - z).abs() < 1e-12,
             "{e}: {state:?}"
         );
-        // The carts meet at t = 1/4 at x = 3/4.
+        // The carts collide at t = 1/4 s at x = 3/4 m.
         assert!((state[0] - 0.75 - 0.75 * x).abs() < 1e-12, "{e}: {state:?}");
     }
 }
 
-/// Compiles two balls above each other and the floor below them.
+/// Compiles two balls above each other on a floor.
 fn compile_stack(between: f64) -> CompiledModel {
     let text = format!(
         r#"
@@ -311,8 +311,8 @@ balls = {{ when = "z - y", restitution = 0.8 }}
 
 #[test]
 fn touching_balls_bounce_like_one_ball() {
-    // Moreau's law: balls that touch as they fall have no relative speed to restore, so they move
-    // together like a single ball.
+    // By Moreau's impact law, balls that touch while they fall have no relative speed to restore, so they move together
+    // like a single ball.
     let model = compile_stack(1.0);
     for (light, e) in [
         (100.0, 0.9),
@@ -398,7 +398,7 @@ fn random_stacks_of_balls_gain_no_energy_and_do_not_penetrate() {
     }
 }
 
-/// A bead that slides down a disc leaves it in the middle of a step.
+/// A bead slides down a disc and leaves it within a step.
 #[test]
 fn bead_leaves_a_disc_at_the_same_time_at_all_tolerances() {
     let text = r#"
@@ -445,7 +445,7 @@ disc = { when = "norm([x, y]) - R", restitution = 0 }
                     .iter()
                     .find(|state| state[0].hypot(state[1]) > 1.0 + 1e-6);
                 let height = left.expect("the bead leaves")[1];
-                // The first sample after it left is up to 10 ms later.
+                // The first sample after the lift-off is up to 10 ms later.
                 assert!(
                     (-0.05..=1e-3).contains(&(height - cosine)),
                     "{speed} {solver} 1e-{exponent}: {height}, expected {cosine}"
@@ -457,8 +457,8 @@ disc = { when = "norm([x, y]) - R", restitution = 0 }
 
 #[test]
 fn stack_comes_to_rest_after_infinitely_many_impacts() {
-    // Impacts at the floor and between the balls alternate until both distances are rounding. Then
-    // one contact closes, and its correction moves the other by rounding.
+    // Impacts at the floor and between the balls alternate until both distances are rounding errors. Then one contact
+    // closes, and its correction changes the other distance by a rounding error.
     let text = r#"
 [model]
 name = "stack"
@@ -493,7 +493,7 @@ balls = { when = "z - y - 2*r", restitution = 0.08 }
 
 #[test]
 fn light_ball_on_heavy_ball_rebounds_by_textbook_formula() {
-    // With a small gap, the heavy ball has rebounded before they meet; then the textbook collision
+    // With a small gap, the heavy ball rebounds before the balls collide. Then the textbook formula for the collision
     // of two bodies applies.
     let (e, apart, g) = (0.9, 1e-6, 9.81);
     let motion = simulate_with(&compile_stack(1.0 + apart), &[], &[0.0, 0.46]);
@@ -526,7 +526,7 @@ fn dropped_box_hits_with_both_edges_or_one() {
         state[2].abs() < 1e-12 && state[5].abs() < 1e-10,
         "{state:?}"
     );
-    // For one edge, the impulse on the rigid body is P = (1 + e) v / (1/m + r^2/I).
+    // For an impact at one edge, the impulse on the rigid body is P = (1 + e) v / (1/m + r^2/I).
     let phi = 0.2_f64;
     let height = h * phi.cos() + b * phi.sin();
     let fallen = (2.0 * (0.7 - height) / g).sqrt();
@@ -693,7 +693,7 @@ fn jumps_match_dense_algebra_for_rigid_and_flexible_machines() {
 
 #[test]
 fn impact_satisfies_constraints() {
-    // A rod pendulum swings against a wall: its speed is multiplied by -e, and the constraint is
+    // A pendulum with a rod as constraint hits a wall. Its speed is multiplied by -e, and the constraint remains
     // satisfied.
     let text = r#"
 [model]
@@ -734,7 +734,7 @@ wall = { when = "x", restitution = 0.5 }
 
 #[test]
 fn stiff_contact_spring_converges_to_impact() {
-    // With e = 1 the motion of a stiff contact spring converges to that of the impact.
+    // With e = 1, the motion with a stiff contact spring converges to the motion with an impact.
     let hitting = compile_example("beam_stop", Orders::Uniform(2));
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/impacts");
     let text = std::fs::read_to_string(folder.join("beam_stop.toml")).expect("an example");
@@ -844,7 +844,7 @@ fn start_just_beside_a_floor_costs_no_more_than_one_on_it() {
     }
 }
 
-/// Returns a body above a floor, with a force over time and an independent state.
+/// Returns a body above a floor with a force that depends on time, and an independent first-order state.
 fn compile_body(height: &str, force: &str, pressure: &str) -> CompiledModel {
     let text = format!(
         "[model]\nname = \"body\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
@@ -862,7 +862,7 @@ fn compile_body(height: &str, force: &str, pressure: &str) -> CompiledModel {
 
 #[test]
 fn force_that_reaches_the_weight_lifts_a_resting_body() {
-    // With u = 10 f the body leaves at f = 1, t = 1; then y'' = 10 (f - 1).
+    // With u = 10 f, the body lifts off at f = 1, t = 1; then y'' = 10 (f - 1).
     for (force, height) in [
         ("t/s", 10.0 / 6.0),
         ("(t/s)^3", 8.0),
@@ -921,7 +921,7 @@ fn invalid_impacts_are_rejected_with_reason() {
         .expect("refused")
         .to_string();
     assert!(refusal.contains('1'), "{refusal}");
-    // A distance that depends on no coordinate.
+    // The distance does not depend on a coordinate.
     let text = r#"
 [model]
 name = "apart"
@@ -941,7 +941,7 @@ nothing = { when = "0*y", restitution = 0.5 }
     for said in ["no coordinate changes", "`nothing`", "apart.toml:11:21"] {
         assert!(refusal.contains(said), "{refusal}");
     }
-    // Closing walls around a ball: the impacts accumulate.
+    // Two walls approach each other with a ball between them, so the impacts accumulate.
     let text = r#"
 [model]
 name = "closing"
@@ -994,7 +994,7 @@ fn measures_without_impacts_reject_them() {
     assert!(!Path::new(&out).exists());
 }
 
-/// Sleigh whose blade moves along its heading phi only.
+/// Sleigh whose blade can move only along its heading phi.
 const SLEIGH: &str = r#"
 [model]
 name = "sleigh"
@@ -1041,8 +1041,8 @@ rolls_y = { zero = "dot(y) - r*sin(psi)*dot(theta)" }
 wall = { when = "d - x", restitution = "e" }
 "#;
 
-/// Asserts that the first impact at the wall x = d obeys Newton's law with these inertias and rows of constraints at an
-/// angle, the last coordinate.
+/// Asserts that the first impact at the wall x = d satisfies Newton's impact law. `inertias` and `rows` are the
+/// inertias and the constraint gradients at an angle, which is the last coordinate.
 fn assert_bounce_within_constraints(
     text: &str,
     inertias: &[f64],
@@ -1106,7 +1106,8 @@ fn sleigh_and_rolling_disc_bounce_within_their_constraints() {
     });
 }
 
-/// A block that rests at a stop is pulled away by one that slides on it and begins to stick: the stop cannot pull.
+/// A block rests at a stop, and another block slides on it. When the sliding block sticks, it pulls the first block
+/// away from the stop.
 #[test]
 fn block_leaves_its_stop_when_the_one_on_it_begins_to_stick() {
     let text = r#"
@@ -1131,7 +1132,7 @@ stop = { when = "d - a", restitution = 0 }
     let model = CompiledModel::from_text("pulled.toml", text, Orders::Declared).unwrap();
     for m in [0.5, 1.0, 1.5, 1.9, 2.0, 2.1, 2.5, 3.0, 5.0] {
         let run = model.with_parameters(&[("m", m)]).unwrap();
-        // It slides until m/6, then both have the acceleration u/(2 m).
+        // The block slides until t = m/6; then both blocks have the acceleration u/(2 m).
         let since = 1.0 - m / 6.0;
         let expected = 0.05 - since * since / (2.0 * m);
         for solver in [Solver::Rk, Solver::Radau] {
@@ -1150,7 +1151,7 @@ stop = { when = "d - a", restitution = 0 }
     }
 }
 
-/// Two bodies that friction holds together hit a stop again and again: each time both continue with 0.15 of the speed, so that
+/// Two bodies stick to each other and hit a stop repeatedly. After each impact both have 0.15 of the speed, so that
 /// they come to rest at the stop after 0.33 s.
 #[test]
 fn bodies_held_together_come_to_rest_at_a_stop() {
@@ -1181,8 +1182,8 @@ stop = { when = "d - b", restitution = "e" }
     }
 }
 
-/// The force of a spring between two bodies equals the limit of the friction between them up to rounding. They move on
-/// together, and a ball beside them bounces as if it were alone.
+/// The force of a spring between two bodies equals the bound of the friction between them up to rounding. The bodies
+/// continue to stick, and an independent ball bounces as in a separate simulation.
 #[test]
 fn ball_bounces_beside_friction_at_its_limit() {
     let text = r#"
@@ -1233,7 +1234,7 @@ floor = { when = "y", restitution = "e" }
     }
 }
 
-/// A mass between two stops without play: no restitution is possible.
+/// A mass between two stops without play has no restitution.
 #[test]
 fn mass_between_stops_without_play_stays() {
     for (first, second) in [(0.5, 0.5), (0.0, 0.0), (0.9, 0.2)] {
@@ -1254,7 +1255,8 @@ fn mass_between_stops_without_play_stays() {
     }
 }
 
-/// A ball bounces to rest on a floor that moves as the spline through samples. Each impact has the floor at its time.
+/// A ball bounces until it rests on a floor whose motion is a spline through samples. At each impact, the ball must be
+/// at the floor's position of this time.
 #[test]
 fn ball_bounces_to_rest_on_a_floor_with_sampled_motion() {
     let times: Vec<f64> = (0..=100).map(|row| 0.01 * f64::from(row)).collect();

@@ -1,8 +1,9 @@
-//! Inputs that are functions of time: their second rate in forces and observables, and steps at samples of controllers.
+//! Tests of inputs that are functions of time: second rates in forces and observables, and steps at samples of
+//! controllers.
 
 use eomgen_tests::program::run_accepted;
 
-/// Simulates a specification and returns a column of its table.
+/// Simulates a specification and returns a column of the result.
 fn simulate(text: &str, options: &[&str], column: &str) -> Vec<f64> {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: &str| folder.path().join(name).display().to_string();
@@ -111,7 +112,8 @@ outputs = { w = "u" }
     }
 }
 
-/// A body rests on a belt that starts at 1 s: it slides until it has the speed of the belt, and moves on with it.
+/// A body is at rest on a belt that starts at 1 s. The body slides until it has the speed of the belt; then it sticks
+/// to the belt.
 #[test]
 fn friction_holds_on_a_belt_that_steps() {
     let text = r#"[model]
@@ -155,7 +157,7 @@ friction = { on = "x", value = "-F*sign(dot(x) - v)" }
     }
 }
 
-/// A stepped speed of the belt is held although a force varies; the body rests on the belt all the time.
+/// The speed of the belt is piecewise constant although a force varies; the body sticks to the belt all the time.
 #[test]
 fn stepped_inputs_are_held_if_others_vary() {
     let text = r#"[model]

@@ -1,4 +1,4 @@
-//! Requests of `simulate` that no motion meets, with the cause in the message.
+//! Tests of requests of `simulate` that cannot be simulated; the message contains the cause.
 
 use eomgen_tests::program::{run, text};
 
@@ -22,7 +22,7 @@ V = "1/2*k*x^2"
 push = { on = "x", value = "u" }
 "#;
 
-/// Returns exit status and message of a simulation for 1 s.
+/// Runs a simulation of 1 s and returns exit status and message.
 fn simulate(more: &[&str]) -> (Option<i32>, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let spec = folder.path().join("mass.toml");
@@ -108,7 +108,7 @@ fn unit_after_a_pure_number_of_parameters_is_that_of_the_input() {
 
 #[test]
 fn input_without_a_finite_value_is_named_with_its_time() {
-    // Infinite at the start, in between and at the end; not a number from a time on; infinite between steps.
+    // Inputs are infinite at the start, in the middle or at the end, NaN from a time on, or infinite between steps.
     for (input, cause, status) in [
         ("u=1/t", "`u` is infinite at t = 0.0 s", 2),
         ("u=ln(t)", "`u` is infinite at t = 0.0 s", 2),

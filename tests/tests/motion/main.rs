@@ -1,4 +1,4 @@
-//! Motions against closed forms, published figures, reference trajectories and other solvers.
+//! Comparison of motions with closed forms, published values, reference trajectories and other solvers.
 
 mod chains_against_walls;
 mod chambers;

@@ -1,4 +1,4 @@
-//! Throws at a narrow disc: a solver must not step over it, whatever the length of its steps.
+//! Tests of a mass thrown at a narrow disc. A solver must not step over the disc with any step size.
 
 use eomgen_compiled_model::{CompiledModel, Motion, Orders, Request, Solver};
 
@@ -24,21 +24,21 @@ const POTENTIAL: &str = r#"
 weight = "m*g*y"
 "#;
 
-/// A disc that the mass hits, and elastic ones.
+/// Disc as an impact, and elastic discs.
 const DISCS: [&str; 3] = [
     "[impacts]\nhit = { when = \"norm([x - a, y - b]) - r\", restitution = 1 }\n",
     "disc = \"1/2*k*min(sqrt((x - a)^2 + (y - b)^2) - r, 0)^2\"\n",
     "disc = \"1/2*k*max(r - norm([x - a, y - b]), 0)^2\"\n",
 ];
 
-/// Random throw: speeds, and place and radius of the disc.
+/// Random throw: initial speeds, position and radius of the disc.
 struct Throw {
     speeds: [f64; 2],
     disc: [f64; 2],
     radius: f64,
-    /// Least distance of the flight from the surface of the disc.
+    /// Smallest distance between the trajectory and the surface of the disc.
     least: f64,
-    /// Time of the first contact, if there is one.
+    /// Time of the first contact; `None` if the mass misses the disc.
     contact: Option<f64>,
 }
 

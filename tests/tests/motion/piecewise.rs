@@ -1,5 +1,5 @@
-//! Nested piecewise functions, which may have equilibria on whole regions: exact solver, general
-//! solver, rates and emitted kernels agree.
+//! Tests of nested piecewise functions, which can have whole regions of equilibria: exact solver, general solver, rates
+//! and emitted kernels agree.
 
 use std::fmt::Write as _;
 
@@ -26,7 +26,7 @@ fn subject(text: &str) -> TestMotion {
     }
 }
 
-/// Returns the exact motion after comparing it with the general solver.
+/// Compares the exact solver with the general solver and returns the exact motion.
 fn compare_and_simulate(subject: &TestMotion, until: f64) -> Trajectory {
     let times = grid(until, 40);
     let exact = subject.simulate_exactly((0.0, until), &times);
@@ -37,7 +37,7 @@ fn compare_and_simulate(subject: &TestMotion, until: f64) -> Trajectory {
     exact
 }
 
-/// Returns a mass of 0.1 kg under gravity on a floor with a spring and the force `pad`.
+/// Returns a mass of 0.1 kg under gravity that falls on an elastic floor with the additional force `pad`.
 fn ball(pad: &str) -> TestMotion {
     subject(&format!(
         r#"
@@ -61,7 +61,7 @@ pad = {{ on = "y", value = "{pad}" }}
     ))
 }
 
-/// Returns a driven mass with this force; m, N and kg are of order one.
+/// Returns a driven mass with this force. All quantities are of order one in SI.
 fn driven_mass(force: &str) -> TestMotion {
     subject(&format!(
         r#"
@@ -98,7 +98,7 @@ fn ball_on_floor_defined_by_minimum_matches_general_solver() {
     for pad in pads {
         let motion = compare_and_simulate(&ball(pad), 2.0);
         let mut times: Vec<f64> = motion.events.iter().map(|event| event.t).collect();
-        // Functions that coincide change their sign together.
+        // Switching functions that coincide change their sign at the same time.
         times.dedup();
         assert_eq!(times.len(), 6, "{pad}");
         assert!(
@@ -127,8 +127,8 @@ fn preloaded_springs_and_one_sided_stops_hold_at_rest() {
     }
 }
 
-/// Friction that starts at a given speed holds the mass at that speed. Steep smooth friction gives
-/// nearly the same motion.
+/// Friction that acts only above a given speed can hold the mass at this speed. Steep smooth friction gives nearly the
+/// same motion.
 #[test]
 fn friction_that_starts_at_a_speed_holds_the_mass_at_it() {
     let times = grid(4.0, 40);
@@ -147,7 +147,7 @@ fn friction_that_starts_at_a_speed_holds_the_mass_at_it() {
     assert!(exact.events.len() < 100, "{}", exact.events.len());
 }
 
-/// An input held at zero has sign zero.
+/// The sign of an input that is held at zero is zero.
 #[test]
 fn sign_of_input_held_at_zero_is_zero() {
     let mut subject = subject(
@@ -177,19 +177,19 @@ push = { on = "y", value = "F*sign(u)" }
     }
 }
 
-/// Counts of random machines, and of those not compared, by reason.
+/// Number of random machines, and numbers of machines that were not compared, by reason.
 #[derive(Debug, Default)]
 struct Tally {
     machines: usize,
-    /// Machines for which rounding decides the side of a switching surface.
+    /// Number of machines for which the side of a switching surface depends on rounding.
     ambiguous: usize,
-    /// Motions that stick often or for long: only the exact solver handles them.
+    /// Number of motions with sticking, which only the exact solver supports.
     held: usize,
-    /// Machines that the exact solver rejects with a reason.
+    /// Number of machines that the exact solver rejects with a reason.
     refused: usize,
     motions: usize,
     switches: usize,
-    /// Motions of which the general solver is uncertain.
+    /// Number of motions for which the general solver is not accurate enough.
     uncertain: usize,
     rates: usize,
     resting: usize,
@@ -212,7 +212,7 @@ fn number(name: &str, otherwise: u64) -> u64 {
     value.map_or(otherwise, |text| text.parse().expect("a whole number"))
 }
 
-/// Draws `EOMGEN_PIECEWISE_COUNT` machines with the seed `EOMGEN_PIECEWISE_SEED`.
+/// Number and seed of the machines are the environment variables `EOMGEN_PIECEWISE_COUNT` and `EOMGEN_PIECEWISE_SEED`.
 #[test]
 fn random_machines_agree_between_solvers_rates_and_kernels() {
     let seed = number("EOMGEN_PIECEWISE_SEED", 16);
@@ -243,7 +243,7 @@ fn random_machines_agree_between_solvers_rates_and_kernels() {
     assert!(tally.resting > 0 && tally.switches > 0, "{tally:?}");
 }
 
-/// Returns random states with their rates, none on a surface; `None` if rounding decides a side.
+/// Returns random states with their rates, none of them on a switching surface; `None` if a side depends on rounding.
 fn samples(subject: &TestMotion, random: &mut Random, tally: &mut Tally) -> Option<Vec<Sample>> {
     let mut evaluator = variant(&subject.model, 0).evaluator;
     let guards = evaluator.guard_count();
@@ -424,7 +424,7 @@ fn main() {
 }
 "#;
 
-/// Returns a mass on a spring with a force over its position.
+/// Returns a mass on a spring with a force that depends on the position.
 fn mass_with(spring: &str, force: &str) -> CompiledModel {
     let text = format!(
         r#"
@@ -450,7 +450,8 @@ push = {{ on = "x", value = "{force}" }}
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The force jumps at the surface of the outer function, which steps must not see before they reach it.
+/// The force jumps at the surface of the outer function. Steps must not evaluate the force beyond this surface before
+/// they reach it.
 #[test]
 fn nested_functions_move_as_one_function_at_any_tolerance() {
     let (no_spring, no_force) = ("0*k*x^2", "0*F");
@@ -473,7 +474,8 @@ fn nested_functions_move_as_one_function_at_any_tolerance() {
         let [nested, plain] =
             [&nested, &plain].map(|model| model.with_declared_parameters().expect("values"));
         let times: Vec<f64> = (0..=20).map(|k| 0.1 * f64::from(k)).collect();
-        // Some amplitudes pass the surface slowly, which enlarges errors: the plain machine has the same.
+        // With some amplitudes the surface is crossed slowly, which amplifies errors. The machine without nesting has
+        // the same errors.
         for amplitude in [-0.300_044_321_32, -0.301, -0.33, -0.5] {
             for (solver, tolerance) in [
                 (Solver::Rk, 1e-6),

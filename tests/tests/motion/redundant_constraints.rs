@@ -1,12 +1,12 @@
-//! Constraints that depend on each other: motions against the same machines without the redundant ones, and
-//! multipliers of least norm against a dense pseudo-inverse.
+//! Tests of redundant constraints: comparison of motions with the machines without redundant constraints, and of
+//! multipliers of least norm with a dense pseudo-inverse.
 
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_compiled_model::{CompiledModel, Instance, Motion, Orders, Request, Solver};
 use eomgen_tests::certified::{certify, check_model};
 use nalgebra::{DMatrix, DVector};
 
-/// A platform that swings on three parallel rods; the third adds no restriction.
+/// Platform that swings on three parallel rods; the third rod is redundant.
 const THREE_RODS: &str = r#"
 [model]
 name = "three_rods"
@@ -32,8 +32,8 @@ middle = { zero = "(x^2 + y^2 - l^2)/l" }
 right  = { zero = "((x + a*cos(phi) - a)^2 + (y + a*sin(phi))^2 - l_r^2)/l" }
 "#;
 
-/// A bead that turns a shaft. Each two of the three constraints imply the third, and each two of them that contain
-/// `circle` depend on each other at some angle.
+/// Bead that turns a shaft. Any two of the three constraints imply the third. `circle` and any other constraint are
+/// dependent at some angle.
 const BEAD: &str = r#"
 [model]
 name = "bead"
@@ -59,7 +59,7 @@ const ALONG: &str = "along = { zero = \"x - l*cos(p)\" }\n";
 const UP: &str = "up = { zero = \"y - l*sin(p)\" }\n";
 const CIRCLE: &str = "circle = { zero = \"(x^2 + y^2 - l^2)/l\" }\n";
 
-/// The bead with the angle of the shaft only.
+/// Machine of [`BEAD`] with the angle of the shaft as the only coordinate.
 const SHAFT: &str = r#"
 [model]
 name = "shaft"
@@ -77,7 +77,7 @@ bead = "1/2*(m*l^2 + J)*dot(p)^2"
 weight = "m*g*l*sin(p)"
 "#;
 
-/// Three equal cranks on one coupler that does not rotate, with more constraints than coordinates.
+/// Three equal cranks with one coupler that does not rotate; there are more constraints than coordinates.
 const CRANKS: &str = r#"
 [model]
 name = "cranks"
@@ -103,7 +103,7 @@ x_s = { zero = "l*(cos(p) - cos(s))" }
 y_s = { zero = "l*(sin(p) - sin(s))" }
 "#;
 
-/// A planar four-bar linkage of point masses in space.
+/// Planar four-bar linkage of point masses in three dimensions.
 const SPATIAL: &str = r#"
 [model]
 name = "spatial"
@@ -156,7 +156,7 @@ fn move_until(run: &Instance<'_>, until: f64, solver: Solver, tolerance: f64) ->
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Compares states of two motions by index: `pairs` of entries.
+/// Compares states of two motions; `pairs` contains the indices of corresponding entries.
 fn assert_same(one: &Motion, other: &Motion, pairs: &[(usize, usize)], tolerance: f64) {
     assert_eq!(one.early_stop.is_none(), other.early_stop.is_none());
     let states = &one.trajectory.states;
@@ -191,7 +191,7 @@ fn third_rod_leaves_motion_unchanged() {
     }
 }
 
-/// The pseudo-inverse of A M^-1 A^T, scaled to a unit diagonal.
+/// Returns the multipliers of least norm by the pseudo-inverse of A M^-1 A^T, scaled to a unit diagonal.
 fn least_norm_multipliers(state: &[f64]) -> DVector<f64> {
     let (m, inertia, g, l, a) = (2.0, 0.1, 9.81, 1.0, 0.5);
     let [x, y, phi, x_dot, y_dot, w] = state else {
@@ -342,7 +342,7 @@ fn contradictory_parameters_are_refused() {
     assert!(error.contains("`right`"), "{error}");
 }
 
-/// A bead on a circle with a wall and dry friction.
+/// Bead on a circle with a wall and dry friction.
 const RUBBED_BEAD: &str = r#"
 [model]
 name = "rubbed_bead"
@@ -434,7 +434,7 @@ fn certificate_accepts_dependent_constraints_and_finds_small_faults() {
     }
 }
 
-/// Two masses on one spring, joined by a constraint that is written twice.
+/// Two masses on one spring, joined by a constraint that appears twice.
 const PAIR: &str = r#"
 [model]
 name = "pair"

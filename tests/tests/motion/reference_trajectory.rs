@@ -1,5 +1,5 @@
-//! The arm with four modes, simulated by the program, against trajectories known to more digits
-//! than required.
+//! Comparison of the arm with four modes, simulated by the program, with trajectories of higher precision than
+//! required.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -7,20 +7,18 @@ use std::path::Path;
 use eomgen_tests::models::path;
 use eomgen_tests::program::run_accepted;
 
-/// Trajectory from two codes in quadruple precision that agree in all digits, with a row per 0.01
-/// s.
+/// Trajectory with a row every 0.01 s. Two codes in quadruple precision agree in all its digits.
 const REFERENCE: &str = include_str!("../../reference/trajectory_order4.csv");
 
-/// Simulated time in s, and the number of switches in it.
+/// Simulated time, in s.
 const UNTIL: f64 = 2.0;
 const SWITCHES: u64 = 965;
 
-/// Maximum deviations over two seconds, in m: roundings of the exact solver, amplified by 965
-/// switches.
+/// Maximum deviations over two seconds, in m: rounding errors of the exact solver, amplified by 965 switches.
 const TOLERANCES: [(&str, f64); 2] = [("x_sp", 1e-12), ("tip", 1e-11)];
 
-/// Maximum deviation of the general solver over one second at a relative tolerance of 1e-10, in m.
-/// It reaches 6e-13 m; the documentation promises 1e-8 m.
+/// Maximum deviation of the general solver over one second at a relative tolerance of 1e-10, in m. The actual deviation
+/// is 6e-13 m; the documented one is 1e-8 m.
 const GENERAL_TOLERANCE: f64 = 1e-11;
 
 /// Regression data: t, x_sp, x_pr, x_c and tip, in s and m, from the general solver at `--tolerance
@@ -78,8 +76,7 @@ fn columns(text: &str) -> Columns {
     columns
 }
 
-/// Simulates the paper's case with one row per `sample` seconds; returns the columns and the
-/// report.
+/// Simulates the paper's case with one row every `sample` seconds; returns the columns and the report.
 fn simulate(
     folder: &Path,
     until: f64,
@@ -118,7 +115,7 @@ fn arm_matches_quadruple_precision_trajectory() {
     let (found, work) = simulate(folder.path(), UNTIL, "0.01", &[]);
     assert_eq!(work["solver"], "exact");
     assert_eq!(work["switches"], SWITCHES);
-    // The times of the reference are multiples of the interval, rounded once more.
+    // The times of the reference are multiples of the interval with an additional rounding.
     assert_eq!(found["t"].len(), expected["t"].len());
     assert!(deviation(&found["t"], &expected["t"]) <= 4.0 * f64::EPSILON);
     for (name, tolerance) in TOLERANCES {

@@ -1,5 +1,5 @@
-//! Steps of inputs shortly after dry friction releases a motion, and motions with friction whose equations are chains of
-//! integrators, by the exact solver: compared with closed forms and with the general solver.
+//! Tests of the exact solver: steps of inputs shortly after the breakaway from dry friction, and motions with friction
+//! whose equations are chains of integrators. Motions are compared with closed forms and with the general solver.
 
 use eomgen_compiled_model::{CompiledModel, Motion, Orders, Request, Solver};
 use eomgen_sim::inputs::HeldInputs;
@@ -23,7 +23,7 @@ fn simulate(text: &str, solver: Solver, times: &[f64], inputs: &HeldInputs) -> M
     motion.unwrap_or_else(|error| panic!("{solver}: {error}\n{text}"))
 }
 
-/// Returns the place in an interval where a falling function is zero.
+/// Returns the zero of a decreasing function in an interval, by bisection.
 fn find_zero(function: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f64 {
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
@@ -63,7 +63,7 @@ drive = {{ on = "x", value = "a*sin(w*t) + u" }}
 "#
     );
     let release = (FRICTION / FORCE).asin() / FREQUENCY;
-    // Velocity and place without the input, by integration of a sin(w t) - F.
+    // Velocity and position without the input, by integration of a sin(w t) - F.
     let phase = |t: f64| FREQUENCY * t;
     let start = phase(release);
     let velocity = |t: f64| {
@@ -96,7 +96,7 @@ drive = {{ on = "x", value = "a*sin(w*t) + u" }}
     }
 }
 
-/// Returns two masses on springs with dry friction at the first one and at the second one, whose friction acts on `slip`.
+/// Returns two masses on springs, each with dry friction; the friction of the second mass acts on `slip`.
 fn draw_machine(random: &mut Random, slip: &str) -> String {
     let mut between = |low: f64, high: f64| low * (high / low).powf(random.unit());
     let [m, n] = [between(0.2, 3.0), between(0.2, 3.0)];
@@ -132,8 +132,8 @@ h = {{ on = "x", value = "a*sin(w*t) + u" }}
     )
 }
 
-/// While the second mass keeps the velocity of the first one without a reaction on it, four states are a chain of
-/// integrators.
+/// While the second mass moves with the velocity of the first one and exerts no force on it, four states form a chain
+/// of integrators.
 #[test]
 fn drawn_machines_with_stepped_inputs_match_the_general_solver() {
     let mut random = Random::new(11);
@@ -172,7 +172,8 @@ fn drawn_machines_with_stepped_inputs_match_the_general_solver() {
 
 #[test]
 fn masses_at_the_end_of_a_chain_of_integrators_match_the_closed_form() {
-    // A free mass with constant velocity moves the input of a lag, which pushes three masses on springs.
+    // Time constant of a first-order lag, in s. A free mass with constant velocity moves the input of the lag; its
+    // output pushes three masses on springs.
     const LAG: f64 = 0.0154;
     const GAIN: f64 = 47.9;
     const PLACE: f64 = 0.656;
@@ -215,7 +216,8 @@ push = {{ on = "r", value = "z" }}
     let times: Vec<f64> = (0..=20).map(|k| 0.1 * f64::from(k)).collect();
     let motion = simulate(&text, Solver::Exact, &times, &HeldInputs::zero(0));
     for (state, t) in motion.trajectory.states.iter().zip(&times) {
-        // z = c (p0 - v T + v t) - c (p0 - v T) exp(-t/T) moves the centre of mass; integrated twice.
+        // The lag z = c (p0 - v T + v t) - c (p0 - v T) exp(-t/T) accelerates the centre of mass; the motion is its
+        // double integral.
         let offset = PLACE - VELOCITY * LAG;
         let decay = LAG * t + LAG * LAG * (-t / LAG).exp_m1();
         let moment = GAIN * (0.5 * offset * t * t + VELOCITY * t.powi(3) / 6.0 - offset * decay);

@@ -1,12 +1,12 @@
-//! Stopped solvers: the program keeps the rows so far, prints the time, the quantity and a remedy,
-//! and exits with 1. Messages about friction appear only for friction.
+//! Tests of solvers that stop: the program keeps the rows so far, prints the time, the quantity and a remedy, and exits
+//! with status 1. Messages about friction appear only for friction.
 
 use std::path::Path;
 use std::process::Output;
 
 use eomgen_tests::program::{run, run_accepted, text};
 
-/// Mass dragged by a belt.
+/// Mass on a spring that a belt drags by friction.
 const BELT: &str = r#"
 [model]
 name = "belt"
@@ -25,7 +25,7 @@ V = "1/2*k*x^2"
 belt = { on = "x", value = "-F*sign(dot(x) - v)" }
 "#;
 
-/// Returns a mass between two forces that both point to the middle, with the given force law.
+/// Returns a mass with a force law whose forces on both sides point to the middle.
 fn between_forces(law: &str) -> String {
     format!(
         r#"
@@ -61,7 +61,7 @@ T = "1/2*m*dot(x)^2"
 V = "-1/4*k*x^4"
 "#;
 
-/// Pendulum with dry friction, smoothed so steeply that the equations are very stiff.
+/// Pendulum with smoothed dry friction that is so steep that the equations are very stiff.
 const STIFF: &str = r#"
 [model]
 name = "stiff"
@@ -80,8 +80,8 @@ gravity = "-T_g*cos(theta)"
 friction = { on = "theta", value = "-T_c*tanh(dot(theta)/v_0)" }
 "#;
 
-/// Two chambers joined by an orifice, in which a piston comes to rest: the flow is infinitely stiff where
-/// the pressures agree.
+/// Two chambers with an orifice and a piston that comes to rest. At equal pressures the derivative of the flow is
+/// infinite.
 const ORIFICE: &str = r#"
 [model]
 name = "orifice"
@@ -104,7 +104,7 @@ V = "1/2*k*x^2"
 p = { on = "x", value = "-(p1 - p2)*A" }
 "#;
 
-/// Turntable whose inertia vanishes at some position of a slider.
+/// Turntable whose inertia is zero at one position of a slider.
 const INDEFINITE: &str = r#"
 [model]
 name = "turntable"
@@ -253,7 +253,7 @@ fn stopped_run_keeps_parquet_rows_and_gives_reason_in_json() {
 
 #[test]
 fn chattering_forces_are_not_reported_as_friction() {
-    // The times between switches become shorter and shorter.
+    // The time between switches decreases to zero.
     let law = between_forces("-F*sign(x) - D*sign(dot(x))");
     let found = run_until_stop(&law, "60", &["--solver", "rk"]);
     found.assert_says(&["at t = ", "`x` is zero", "chatters"]);
@@ -261,7 +261,7 @@ fn chattering_forces_are_not_reported_as_friction() {
     assert!(found.rows.len() > 10 && found.last_time() > 5.0);
 }
 
-/// A relay with a lead term slides along its switching surface like dry friction.
+/// A relay with a lead term has a sliding mode on its switching surface, like dry friction.
 #[test]
 fn relay_with_lead_slides() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -291,8 +291,7 @@ fn relay_with_lead_slides() {
     assert!((last[1] + 0.1 * last[2]).abs() < 1e-9, "{last:?}");
 }
 
-/// The times between switches accumulate at 6.3094 s. The rows before are those of the general
-/// solver.
+/// The switches accumulate at 6.3094 s. The rows before this time agree with the general solver.
 #[test]
 fn stopped_exact_solver_keeps_the_rows_so_far() {
     let law = between_forces("-F*sign(x) - D*sign(dot(x))");
@@ -360,7 +359,7 @@ V = "-1/2*k*x^2"
             message.contains(&format!("the state diverged at t = {stop:.4}")),
             "{message}"
         );
-        // The energy overflows earlier.
+        // The energy overflows earlier than the state.
         let table = std::fs::read_to_string(&out).expect("the rows so far");
         let rows: Vec<&str> = table.lines().skip(1).collect();
         assert_eq!(rows.len(), 1 + (stop / interval) as usize, "{message}");
@@ -382,7 +381,7 @@ fn explicit_solvers_report_stiffness() {
     }
 }
 
-/// The solution by `auto` matches the one with friction a thousand times less steep: the pendulum
+/// The solution of `auto` agrees with the solution for a friction that is a thousand times less steep: the pendulum
 /// comes to rest at the same time.
 #[test]
 fn auto_solves_stiff_friction_with_radau() {
@@ -456,7 +455,7 @@ fn loss_of_positive_definiteness_is_reported() {
     }
 }
 
-/// A force so large that the energy overflows.
+/// The force is so large that the energy overflows.
 #[test]
 fn overflowing_energy_is_an_error() {
     let spec = r#"

@@ -1,9 +1,10 @@
-//! Contacts without play, in which the force changes its sign, against the machine with the corresponding constraint.
+//! Comparison of machines with contacts without play, in which the force changes its sign, with machines with the
+//! corresponding constraint.
 
 use eomgen_compiled_model::{CompiledModel, Orders, Solver};
 use eomgen_tests::random_numbers::Numbers;
 
-/// Units of length and mass.
+/// Units of length (m) and mass (kg) of the tested coordinates.
 const UNITS: [(f64, f64); 2] = [(1.0, 1.0), (1e-3, 1e3)];
 
 /// Largest difference from the constrained machine, relative to the largest value.
@@ -11,7 +12,7 @@ const MAX_DIFFERENCE: f64 = 1e-6;
 
 struct Machine {
     text: String,
-    /// The distance that two contacts keep zero, and the constraint of the other machine.
+    /// For each pair of contacts: the distance that they keep zero, and the constraint that replaces them.
     pairs: Vec<[String; 2]>,
 }
 
@@ -44,7 +45,7 @@ fn between(numbers: &mut Numbers, low: f64, high: f64) -> f64 {
     low + 0.5 * (high - low) * (1.0 + numbers.symmetric())
 }
 
-/// Returns a force with changes of its sign; some begin with zero, and some are zero for a while.
+/// Returns a random force that changes its sign; some forces start with zero, and some are zero during an interval.
 fn force(numbers: &mut Numbers, case: usize) -> String {
     let (w, phase) = (between(numbers, 1.0, 8.0), between(numbers, 0.0, 6.0));
     [
@@ -57,7 +58,7 @@ fn force(numbers: &mut Numbers, case: usize) -> String {
         .clone()
 }
 
-/// Gears in a row; a torque acts on the first, a spring and dry friction on the last.
+/// Returns a gear train; a torque acts on the first gear, a spring and dry friction on the last.
 fn gears(numbers: &mut Numbers, case: usize, (length, mass): (f64, f64)) -> Machine {
     let count = 2 + case % 3;
     let torque = between(numbers, 0.5, 5.0) * mass;
@@ -110,7 +111,7 @@ fn gears(numbers: &mut Numbers, case: usize, (length, mass): (f64, f64)) -> Mach
     }
 }
 
-/// A bead on a circle, on which weight, a force and the centripetal force change the side that carries it.
+/// Returns a bead on a circle. Weight, a force and the centripetal force change the side of the ring that carries it.
 fn ring(numbers: &mut Numbers, case: usize, (length, mass): (f64, f64)) -> Machine {
     let (radius, angle) = (between(numbers, 0.3, 2.0), between(numbers, 0.0, 6.3));
     let speed = between(numbers, 1.0, 5.0);
@@ -141,7 +142,7 @@ fn ring(numbers: &mut Numbers, case: usize, (length, mass): (f64, f64)) -> Machi
     }
 }
 
-/// A bead in a slot that oscillates.
+/// Returns a bead in an oscillating slot.
 fn slot(numbers: &mut Numbers, case: usize, (length, mass): (f64, f64)) -> Machine {
     let (m, stiffness) = (between(numbers, 0.2, 3.0), between(numbers, 0.0, 10.0));
     let (amplitude, frequency) = (between(numbers, 0.1, 1.0), between(numbers, 1.0, 7.0));
@@ -216,7 +217,7 @@ fn contacts_without_play_move_like_constraints() {
     }
 }
 
-/// Friction at both walls of a slot along x is mu*abs(N) at a single wall that pulls as well.
+/// The friction of two walls of a slot along x equals mu*abs(N) at a single wall that can also pull.
 #[test]
 fn bead_slides_along_rough_walls_without_play() {
     let text = |friction: &str, rest: &str| {

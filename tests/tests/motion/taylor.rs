@@ -1,5 +1,5 @@
-//! Taylor series: arithmetic, mode shapes, first crossings, independence of the step size, and the
-//! paper's case against a trajectory of seventeen digits.
+//! Tests of the Taylor series integrator: arithmetic, mode shapes, first crossings, independence of the step size, and
+//! comparison of the paper's case with a trajectory of seventeen digits.
 
 use eomgen_tests::taylor::arm::Case;
 use eomgen_tests::taylor::crossing::first_rise;
@@ -11,7 +11,7 @@ use serde_json::Value;
 
 const MODES: &str = include_str!("../../reference/clamped_free_modes.json");
 
-/// Trajectory from two codes in quadruple precision that agree in all digits.
+/// Trajectory of which two codes in quadruple precision agree in all digits.
 const TRAJECTORY: &str = include_str!("../../reference/trajectory_order4.csv");
 
 fn pair(high: f64, low: f64) -> DoubleDouble {
@@ -64,7 +64,7 @@ fn double_doubles_have_thirty_one_digits() {
     ];
     for (found, high, low) in found {
         let error = relative(found, pair(high, low));
-        // The reduction of 40 by multiples of pi/2 multiplies the rounding of pi by 25.
+        // The reduction of 40 by multiples of pi/2 multiplies the rounding error of pi by 25.
         assert!(error < 1e-30, "{found:?} is off by {error:e}");
     }
 }
@@ -109,20 +109,20 @@ fn product(roots: &[f64]) -> Vec<DoubleDouble> {
 
 #[test]
 fn first_rise_is_found_however_short() {
-    // Positive only between the first two roots, for 1e-9 of the step.
+    // The polynomial is positive only between the first two roots, an interval of 1e-9 of the step.
     let found = first_rise(&product(&[0.3, 0.3 + 1e-9, 0.9, 1.5, 2.0]));
     assert!(found.is_some_and(|at| (at.to_f64() - 0.3).abs() < 1e-15));
-    // Negative between the roots, then a rise.
+    // The polynomial is negative between the roots and changes to positive at the second.
     let found = first_rise(&product(&[0.25, 0.75]));
     assert!(found.is_some_and(|at| (at.to_f64() - 0.75).abs() < 1e-15));
-    // Falls at the only root within the step; rises beyond the step.
+    // The polynomial decreases at the only root within the step; it becomes positive only after the step.
     assert!(first_rise(&product(&[0.25, 1.25])).is_none());
-    // A complex pair of roots near the axis: the minimum is 1e-20 above zero.
+    // A pair of complex roots is near the axis: the polynomial comes within 1e-20 of zero without crossing it.
     let mut touching = product(&[0.4, 0.4]);
     touching[0] = touching[0] + DoubleDouble::exactly(1e-20);
     let touching: Vec<DoubleDouble> = touching.into_iter().map(|c| -c).collect();
     assert!(first_rise(&touching).is_none());
-    // Starts at the edge, beyond it by rounding, and moves out or in.
+    // The start is beyond the edge by a rounding error, and the motion continues outwards or inwards.
     let start = |slope: f64| [1e-40, slope, 0.0].map(DoubleDouble::exactly);
     assert!(first_rise(&start(1.0)).is_some_and(|at| at.to_f64() == 0.0));
     assert!(first_rise(&start(-1.0)).is_none());
@@ -158,7 +158,7 @@ fn motion_is_independent_of_step_size() {
         "tip, b = 100 um: {worst:.1e} m in {} and {} steps",
         chosen.steps, finer.steps
     );
-    // A rounding of 1e-33 m grows by 1e5, as in doubles; the bound allows two more digits.
+    // Rounding errors of 1e-33 m grow by a factor of 1e5, as in doubles; the bound allows a further factor of 100.
     assert!(worst < 1e-26, "{worst:e}");
 }
 
@@ -186,8 +186,8 @@ fn papers_case_matches_reference_to_last_digits() {
             *worst = worst.max(deviation);
         }
     }
-    // Seventeen digits of 1e-4 m, 1 m and 3e-3 m, and as much again for constants that the
-    // reference rounds differently: 10 pi, 24.6 degrees.
+    // The bounds are twice the resolution of seventeen digits at 1e-4 m, 1 m and 3e-3 m, because the reference rounds
+    // the constants 10 pi and 24.6 degrees differently.
     for (worst, allowed) in worst.into_iter().zip([2e-17, 2e-17, 1e-15, 1e-16]) {
         assert!(
             worst < allowed,

@@ -1,8 +1,8 @@
-//! Warnings of integrals along a field that their quadrature does not resolve.
+//! Tests of the warnings about integrals along a field that the quadrature does not resolve.
 
 use eomgen_compiled_model::{CompiledModel, Orders, Request, Solver};
 
-/// Hinged beam under a constant force along its axis: its work is no polynomial of the deflection.
+/// Hinged beam under a constant axial force; the work of the force is not a polynomial of the deflection.
 const ARC: &str = r#"
 [model]
 name = "arc"

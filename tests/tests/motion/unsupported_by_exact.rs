@@ -1,9 +1,9 @@
-//! Motions that the exact solver cannot follow: `auto` computes them with another solver.
+//! Tests of motions that the exact solver does not support: `auto` selects another solver.
 
 use eomgen_compiled_model::{Motion, Solver, SolverChoice};
 use eomgen_tests::motions::simulate_declared;
 
-/// A mass at rest on the surface of a relay force, with damping, and an oscillator that moves.
+/// Returns a damped mass at rest on the switching surface of a relay force, and a moving oscillator.
 fn relay(mass: f64, force: f64, damping: f64) -> String {
     format!(
         "[model]\nname = \"relay\"\n[parameters]\nm = {{ value = {mass}, unit = \"kg\" }}\n\

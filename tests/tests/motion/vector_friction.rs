@@ -1,14 +1,14 @@
-//! Friction against the direction of sliding, with a velocity across the motion of any size, and together with contacts
-//! and constraints.
+//! Tests of friction against the direction of sliding, with any lateral velocity, and together with contacts and
+//! constraints.
 
 use eomgen_compiled_model::{Motion, Solver};
 use eomgen_tests::motions::{grid, simulate_to_end};
 
-/// Deceleration by friction, m/s^2.
+/// Deceleration by friction, in m/s^2.
 const DECELERATION: f64 = 2.0;
 
-/// Returns a body with friction in a plane that starts with the speed 1 m/s along x and `across` along y, and has these
-/// further forces.
+/// Simulates a body with friction in a plane that starts with 1 m/s along x and `across` m/s along y; `forces` are
+/// additional.
 fn simulate(across: f64, forces: &str, solver: Solver, until: f64) -> Motion {
     let text = format!(
         "[model]\nname = \"puck\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
@@ -53,11 +53,11 @@ fn repeated_stops_take_as_many_evaluations_for_any_velocity_across() {
     }
 }
 
-/// Angle of a wall or a wire, rad.
+/// Angles of a wall or a wire, in rad.
 const ANGLES: [f64; 3] = [0.0, 0.7, 2.5];
 
-/// Returns a puck on axes rotated by an angle, which a force drives along a guide: scalar friction, or friction in the plane
-/// together with a part of a specification that keeps the puck on the guide.
+/// Returns a puck that a force drives along a guide, in rotated axes. Without `guide`, the friction is scalar. With
+/// `guide`, the friction acts in the plane, and this part of a specification keeps the puck on the guide.
 fn on_guide(angle: f64, guide: Option<&str>) -> String {
     let (c, s) = (angle.cos(), angle.sin());
     let (coordinates, kinetic, friction) = match guide {
@@ -110,7 +110,7 @@ fn puck_along_a_wall_or_a_wire_rests_and_slides_like_scalar_friction() {
     }
 }
 
-/// Body in a plane between two walls, without restitution: it stops where both close.
+/// A body in a plane between two walls without restitution stops in the corner in which both contacts close.
 #[test]
 fn puck_in_a_corner_rests() {
     for angle in ANGLES {

@@ -1,4 +1,4 @@
-//! The woodpecker toy against a time stepping of velocities (J. J. Moreau), without events and modes.
+//! Comparison of the woodpecker toy with Moreau's time-stepping scheme, which has no events and modes.
 
 use std::path::Path;
 
@@ -7,14 +7,14 @@ use nalgebra::{Matrix3, Vector3};
 
 const STEP_S: f64 = 2e-6;
 
-/// End, s: just before the first impact of the beak. There restitution with friction is energetic in the program, but
-/// Newton's in the time stepping.
+/// End of the comparison in s, just before the first impact of the beak. At this impact the program uses energetic
+/// restitution, but the time-stepping scheme uses Newton's.
 const END_S: f64 = 0.0809;
 
-/// Largest difference of a state, relative to its largest magnitude. The time stepping is of first order.
+/// Largest difference of a state, relative to its largest magnitude. The time-stepping scheme is of first order.
 const MAX_DIFFERENCE: f64 = 2e-3;
 
-/// A contact at a distance with its normal and tangential directions.
+/// Contact: distance, normal direction and tangential direction.
 struct Contact {
     distance: fn(Vector3<f64>) -> f64,
     normal: Vector3<f64>,
@@ -25,7 +25,7 @@ const R_O: f64 = 0.0025;
 const R_M: f64 = 0.0031;
 const H_M: f64 = 0.0058;
 
-/// Returns the contacts of the sleeve: lower and upper edge.
+/// Returns the contacts of the sleeve at its lower and upper edges.
 fn sleeve() -> [Contact; 2] {
     let tangent = Vector3::new(1.0, R_M, 0.0);
     [
@@ -42,7 +42,7 @@ fn sleeve() -> [Contact; 2] {
     ]
 }
 
-/// Steps the toy from a state to [`END_S`] and returns position and velocity at these times (s).
+/// Integrates the toy from a state to [`END_S`] and returns position and velocity at these times (in s).
 fn step_through(
     (mut q, mut u): (Vector3<f64>, Vector3<f64>),
     times: &[f64],

@@ -1,4 +1,4 @@
-//! The shipped arm with extreme parameters, against the general solver.
+//! Comparison of the exact solver with the general solver for the shipped arm with extreme parameters.
 
 use eomgen_sim::ode::Trajectory;
 use eomgen_tests::models::load;
@@ -8,7 +8,7 @@ use eomgen_validate::variant::Variant;
 use eomgen_tests::models::variant;
 use eomgen_validate::derived::Derived;
 
-/// Scale below which components are compared absolutely, in m or m/s. Deflections are 1e-4 m.
+/// Magnitude in m or m/s below which the deviation of a state is absolute. Deflections are about 1e-4 m.
 const SMALLEST: f64 = 1e-6;
 
 fn arm(order: usize, values: &[(&str, f64)]) -> TestMotion {
@@ -16,7 +16,7 @@ fn arm(order: usize, values: &[(&str, f64)]) -> TestMotion {
     TestMotion::new(model.expect("the values are within their bounds"), order)
 }
 
-/// Returns the arm in motion: mesh deflections `x` in m, approach speeds `v` in m/s.
+/// Returns the arm with initial mesh deflections `x` in m and rates `v` in m/s.
 fn moving_arm(
     order: usize,
     values: &[(&str, f64)],
@@ -31,9 +31,9 @@ fn moving_arm(
     subject.with_initial_state(&initial)
 }
 
-/// Simulates with the general solver at two tolerances. If it cannot leave the surface on which it
-/// starts, exact motions from 1e-12 (relative) on either side replace its results: their initial
-/// regime is certain.
+/// Simulates with the general solver at two tolerances. If it cannot leave the surface on which the motion starts, the
+/// results are replaced by exact motions from states on both sides at a relative distance of 1e-12. The initial regime
+/// of these states is unambiguous.
 fn simulate_generally(subject: &TestMotion, until: f64, times: &[f64]) -> (Trajectory, Trajectory) {
     let run = |subject: &TestMotion, tolerance: f64| {
         subject.simulate_generally((0.0, until), times, tolerance)
@@ -61,8 +61,8 @@ fn assert_matches_general_solver(name: &str, subject: &TestMotion, until: f64) -
         "{name}: {found:.1e}, general {doubt:.1e}, {} switches",
         exact.events.len()
     );
-    // The bound is ten times the change with the tolerance, plus rounding over these switches: the
-    // forces are differences of nearly equal numbers.
+    // The bound is ten times the difference between the tolerances, plus rounding errors that grow with the number of
+    // switches, because the forces are differences of nearly equal numbers.
     assert!(
         found < 10.0 * doubt + 1e-9,
         "{name}: difference {found:e}, uncertainty {doubt:e}"
@@ -142,7 +142,7 @@ fn arm_with_any_number_of_modes_matches_general_solver() {
 
 #[test]
 fn simultaneous_switches_of_both_meshes_match_general_solver() {
-    // The meshes are 1 nm outside the backlash and open: they unload within `delay` of each other.
+    // Both meshes are 1 nm beyond the backlash and lose contact, one `delay` after the other.
     for delay in [0.0, 1e-16, 1e-14, 1e-12, 1e-11, 1e-9] {
         for speed in [-1.0, -1e-3] {
             let x = [25e-6 + 1e-9, 25e-6 + 1e-9 - delay * speed];
@@ -182,7 +182,7 @@ fn start_on_a_surface_matches_general_solver() {
 
 #[test]
 fn grazing_initial_rates_match_general_solver() {
-    // Bisects for the initial rate at which x_sp just reaches b from the middle, without forces.
+    // Computes by bisection the initial rate at which x_sp, starting from the middle, just reaches b without forces.
     let values = [
         ("a_m", 0.0),
         ("F_w", 0.0),

@@ -1,5 +1,5 @@
-//! Properties of a flow: a continued motion equals the whole one, repeated requests give the same
-//! bits, and tangent vectors match difference quotients of motions.
+//! Tests of the properties of a flow: a continued motion equals the uninterrupted motion, repeated requests are
+//! bit-identical, and tangent vectors match difference quotients of motions.
 
 use eomgen_sim::piecewise_linear::LyapunovRequest;
 use eomgen_tests::models::load;
@@ -58,7 +58,7 @@ fn continued_motion_equals_whole_motion() {
         let found = difference(&parts, &whole.states, 1e-6);
         println!("{name}: {found:.1e}, {} switches", whole.events.len());
         assert!(found < tolerance, "{name}: {found:e}");
-        // A sticking mass may leave and stick again in the same instant.
+        // A sticking mass may break away and stick again at the same time.
         assert!(name == "rough" || switches == whole.events.len(), "{name}");
         assert_eq!(whole.states.last(), Some(&whole.final_state));
     }
@@ -80,7 +80,7 @@ fn repeated_requests_give_the_same_bits() {
         let times = grid(0.1, 50);
         let first = subject.simulate_exactly((0.0, 0.1), &times);
         assert_eq!(first, subject.simulate_exactly((0.0, 0.1), &times));
-        // A propagator gives the same bits after other motions.
+        // The results of a propagator are bit-identical after it has computed other motions.
         let mut propagator = subject.propagator().expect("a propagator");
         let other: Vec<f64> = subject.initial.iter().map(|y| y + 1e-5).collect();
         for from in [
@@ -98,8 +98,8 @@ fn repeated_requests_give_the_same_bits() {
     }
 }
 
-/// Returns the growth up to `until` of the difference of two motions that start `step` apart along
-/// the first tangent vector, and the growth of that vector.
+/// Returns two growth factors up to `until`: of the difference between two motions that start `step` apart along the
+/// first tangent vector, and of the tangent vector.
 fn growth_of_difference_and_tangent(
     subject: &TestMotion,
     until: f64,
@@ -167,14 +167,14 @@ fn tangent_vectors_match_difference_quotients() {
         let (vector, apart) =
             growth_of_difference_and_tangent(&subject, until, step, &arm_felt(order));
         println!("S = {order}, b = {b:e}, {until} s: {vector} and {apart}, {count} switches");
-        // Central differences of motions with different switching times.
+        // The difference quotients are central differences of motions with different switching times.
         assert!(
             (vector - apart).abs() < 1e-4,
             "S = {order}, b = {b:e}: {vector} and {apart}"
         );
         assert!(count > 0 || b == 0.0);
     }
-    // Sticking removes a direction, permanently.
+    // Sticking projects the tangent space; the lost direction does not return.
     let subject = rough_system();
     for until in [0.05, 0.2, 0.5, 1.0, 2.0] {
         let count = subject.simulate_exactly((0.0, until), &[]).events.len();

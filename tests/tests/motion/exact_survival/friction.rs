@@ -1,4 +1,4 @@
-//! Coulomb friction with true sticking, against closed forms and against steep smooth friction.
+//! Comparison of Coulomb friction with sticking with closed forms and with steep smooth friction.
 
 use eomgen_model_spec::check;
 use eomgen_model_spec::source::Source;
@@ -75,7 +75,7 @@ fn pushed_block_slides_and_sticks_as_closed_form() {
         );
         let times = grid(8.0 * turn, 333);
         let motion = pushed_block(force, [0.0, 0.0]).simulate_exactly((0.0, 8.0 * turn), &times);
-        // Leaving and sticking again within rounding is not a motion.
+        // A breakaway with sticking again within rounding of the time is not counted as motion.
         let mut switches = motion.events.clone();
         switches.dedup_by(|a, b| (a.t - b.t).abs() < 1e-9);
         for (k, switch) in switches.iter().enumerate() {
@@ -134,9 +134,8 @@ fn block_on_belt_matches_closed_form() {
             .force("x", "T_c*sign(V - dot(x))");
         TestMotion::new(spec.model(), 0)
     };
-    // From rest the block is dragged and catches up with the belt. It moves with the belt until the
-    // spring force reaches T_c at x = T_c/k. Then it oscillates about that position and reaches the
-    // belt's speed once per period.
+    // The belt accelerates the block from rest to the belt's speed. The block sticks to the belt until the spring force
+    // reaches T_c at x = T_c/k. Then it oscillates about this position and reaches the belt's speed once per period.
     let (w, still) = (10.0, dry / k);
     let caught = (belt / (still * w)).asin() / w;
     let x_caught = still * (1.0 - (w * caught).cos());
@@ -164,7 +163,7 @@ fn block_on_belt_matches_closed_form() {
     assert_eq!(riding.final_state[1], belt);
 }
 
-/// Returns two stacked blocks: T_1 against the ground, T_2 between them, the upper one pushed.
+/// Returns two stacked blocks with friction T_1 on the ground and T_2 between them; a force pushes the upper block.
 fn stacked_blocks(dry: [f64; 2], force: f64, sign: impl Fn(&str) -> String) -> TestMotion {
     let spec = Spec::default()
         .parameter("m_1", 2.0, "kg")
@@ -203,7 +202,7 @@ fn two_joints_can_stick_at_once() {
         "{:?}",
         at_rest.final_state
     );
-    // The motion with steep friction converges to that with true sticking.
+    // The motion with steep smooth friction converges to the motion with sticking.
     let steep = |v: &str| format!("(({v}) - deadzone({v}, eps))/eps");
     for (levels, force) in [
         ([1.0, 4.0], 6.0),
@@ -220,15 +219,15 @@ fn two_joints_can_stick_at_once() {
             "{levels:?} {force}: {found:.1e}, {} switches",
             exact.events.len()
         );
-        // Steep friction creeps by eps = 1e-5 m/s for up to 2 s; speeds reach 0.5 m/s.
+        // With steep smooth friction the block creeps with up to eps = 1e-5 m/s for 2 s; speeds reach 0.5 m/s.
         assert!(found < 2e-4, "{levels:?} {force}: {found:e}");
     }
 }
 
 #[test]
 fn chain_of_blocks_comes_to_rest_block_by_block() {
-    // A chain of blocks on rough ground, joined by springs, the first one pushed: it comes to rest
-    // block by block. Compared with steep friction.
+    // A chain of blocks on rough ground is joined by springs, and the first block is pushed. The blocks come to rest
+    // one after the other. The motion is compared with steep smooth friction.
     let subject = |sign: &dyn Fn(&str) -> String| {
         let mut spec = Spec::default()
             .parameter("m", 1.0, "kg")
@@ -263,7 +262,7 @@ fn chain_of_blocks_comes_to_rest_block_by_block() {
     assert!(found < 1e-3, "{found:e}");
 }
 
-/// Returns the shipped hub with a beam, with another force on its angle and other parameters.
+/// Returns the shipped hub with a beam, with the force `force` on its angle and other parameter values.
 fn hub_with_force(force: &str, values: &[(&str, f64)], order: usize) -> TestMotion {
     let path = project().join("model-spec/models/hub_beam_tip_mass.toml");
     let text = std::fs::read_to_string(path).expect("the shipped specification");
@@ -296,7 +295,7 @@ fn friction_in_hub_of_beam_matches_steep_friction() {
             held.final_state[0]
         );
         assert!(held.events.is_empty());
-        // A hub that slides and sticks, compared with steep friction.
+        // The hub slides and sticks; the motion is compared with steep smooth friction.
         for level in [0.05, 0.5, 2.0] {
             let dry = hub_with_force("(-T_c*sign(dot(theta)))", &[("T_c", level)], order)
                 .simulate_exactly((0.0, 0.2), &times[..20]);
@@ -309,7 +308,7 @@ fn friction_in_hub_of_beam_matches_steep_friction() {
                 "order {order}, {level} N m: {found:.1e}, {} switches",
                 dry.events.len()
             );
-            // Steep friction creeps: the bound is its slope over the level, relative to the motion.
+            // With steep smooth friction the hub creeps. The bound allows for this creep.
             assert!(found < 2e-3, "order {order}, {level}: {found:e}");
         }
     }

@@ -1,4 +1,4 @@
-//! Sampled-and-held inputs: jumps that change forces, switching surfaces and sticking.
+//! Tests of sampled-and-held inputs: their jumps change forces, switching surfaces and sticking.
 
 use eomgen_model_spec::model::Model;
 use eomgen_records::read_inputs;
@@ -27,7 +27,7 @@ fn held_input(model: &Model, name: &str, unit: &str, steps: &[(f64, f64)]) -> He
 #[test]
 fn rig_driven_by_record_matches_general_solver() {
     let model = load("planetary_arm_rig");
-    // A torque that jumps every 0.1 ms and sometimes holds for longer.
+    // The torque jumps every 0.1 ms and is sometimes constant for longer.
     let steps: Vec<(f64, f64)> = (0..110)
         .filter(|k| k % 7 != 3)
         .map(|k| {
@@ -70,8 +70,8 @@ fn input_jump_releases_sticking_block() {
         .kinetic("1/2*m*dot(x)^2")
         .force("x", "u - T_c*sign(dot(x))");
     let model = spec.model();
-    // Sticking, sliding for 0.5 s at 2 m/s^2, decelerating at -2.5 m/s^2 for 0.4 s, sticking,
-    // sliding to the other side, and sticking under a force equal to the friction level.
+    // Phases: sticking; acceleration of 2 m/s^2 for 0.5 s; deceleration of 2.5 m/s^2 for 0.4 s; sticking; sliding to
+    // the other side; sticking under a force equal to the friction level.
     let steps = [
         (0.0, 1.5),
         (1.0, 7.0),
@@ -158,8 +158,7 @@ fn input_jump_moves_a_stop() {
 
 #[test]
 fn input_jump_at_a_switch_matches_closed_form() {
-    // The mass reaches the stop at 1 s; the force starts then, or one floating-point number before
-    // or after.
+    // The mass reaches the stop at 1 s. The force starts at this time, or one floating-point number before or after it.
     for at in [1.0_f64.next_down(), 1.0, 1.0_f64.next_up()] {
         let spec = Spec::default()
             .parameter("m", 1.0, "kg")

@@ -1,6 +1,6 @@
-//! Difficult cases for the exact solver: degenerate parameters, resonance, dry friction, grazing,
-//! starts on surfaces, invalid requests. Each motion is compared with an independent result: a
-//! closed form, a conserved quantity, or the general solver over a short time.
+//! Tests of difficult cases for the exact solver: degenerate parameters, resonance, dry friction, grazing, initial
+//! states on switching surfaces, invalid requests. Each motion is compared with an independent result: a closed form, a
+//! conserved quantity, or the general solver over a short time.
 
 mod arm;
 mod flow;

@@ -1,5 +1,5 @@
-//! Masses on springs with closed forms: resonance, equal and defective eigenvalues, extreme units,
-//! long times.
+//! Comparison of masses on springs with closed forms: resonance, equal and defective eigenvalues, extreme units, long
+//! times.
 
 use eomgen_tests::motions::{Spec, TestMotion, difference, grid};
 
@@ -35,8 +35,7 @@ fn assert_matches_closed_form(
     assert!(error < tolerance, "{name}: {error:e}");
 }
 
-/// Returns the undamped response from rest to F sin((w - gap) t), in a closed form that loses no
-/// digits for small gaps.
+/// Returns the undamped response from rest to F sin((w - gap) t), by a closed form that is accurate for small gaps.
 fn resonant_response(w: f64, gap: f64, force: f64, t: f64) -> Vec<f64> {
     let omega = w - gap;
     let middle = w - 0.5 * gap;
@@ -63,8 +62,8 @@ fn forcing_at_and_near_undamped_resonance_matches_closed_form() {
                 .parameter("F", 3.0, "N")
                 .parameter("omega", omega, "rad/s");
             let name = format!("w = {w}, relative distance {distance:e}");
-            // The rounding of w^2 and of its root turns the phase by 2 eps w t. The non-resonant
-            // part loses at most three digits by cancellation.
+            // The rounding of w^2 and of its root changes the phase by 2 eps w t. The non-resonant part loses at most
+            // three digits by cancellation.
             let phase = 200.0 * 4.0 * f64::EPSILON;
             assert_matches_closed_form(&name, &spec, 200.0 / w, phase + 1e3 * f64::EPSILON, |t| {
                 resonant_response(w, w - omega, 3.0, t)
@@ -195,8 +194,7 @@ fn equal_oscillators_match_closed_form() {
 
 #[test]
 fn defective_eigenvalues_in_resonance_match_closed_form() {
-    // Critically damped and driven, the second through the first: an eigenvalue of multiplicity
-    // four.
+    // Two critically damped oscillators; the first drives the second. The eigenvalue has multiplicity four.
     let spec = |coupling: f64| {
         Spec::default()
             .parameter("m", 1.0, "kg")
@@ -271,7 +269,7 @@ fn frequencies_decades_apart_match_closed_form() {
 
 #[test]
 fn long_motion_without_switch_matches_closed_form() {
-    // The transient has decayed; the phase of the response must be exact.
+    // The transient has decayed, so only the phase of the steady response is tested.
     let (w, zeta, omega): (f64, f64, f64) = (100.0, 0.05, 31.0);
     let spec = mass(1.0, w * w, 2.0 * zeta * w, "F*sin(omega*t)", [1.0, 0.0])
         .parameter("F", 3.0, "N")
@@ -279,13 +277,13 @@ fn long_motion_without_switch_matches_closed_form() {
     let subject = TestMotion::new(spec.model(), 0);
     let times = [9.9e5, 1e6 - 0.01, 1e6];
     let motion = subject.simulate_exactly((0.0, 1e6), &times);
-    // A step has 25 periods of the forcing.
+    // A step covers 25 periods of the forcing.
     assert!(motion.statistics.steps < 400_000, "{:?}", motion.statistics);
     for (t, state) in times.iter().zip(&motion.states) {
         let (a, b) = (w * w - omega * omega, 2.0 * zeta * w * omega);
         let (sine, cosine) = (omega * t).sin_cos();
         let x = 3.0 * (a * sine - b * cosine) / (a * a + b * b);
-        // The bound is the rounding of the closed form's phase of 3.1e7 rad.
+        // The bound allows for the rounding of the closed form's phase of 3.1e7 rad.
         assert!(
             (state[0] - x).abs() < 3e-4 * 3.1e7 * f64::EPSILON,
             "{} {x}",

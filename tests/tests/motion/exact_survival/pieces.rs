@@ -1,10 +1,10 @@
-//! min, max, abs, nested dead zones and several thresholds of one coordinate, against the general
-//! solver.
+//! Comparison of the exact solver with the general solver for min, max, abs, nested dead zones and several thresholds
+//! of one coordinate.
 
 use eomgen_sim::piecewise_linear::ExactError;
 use eomgen_tests::motions::{Spec, TestMotion, difference, grid};
 
-/// Returns two masses with a force on the first and harmonic excitation.
+/// Returns two masses with the force `force` on the first mass and harmonic excitation.
 fn with_force(force: &str) -> TestMotion {
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
@@ -102,7 +102,7 @@ fn nested_piecewise_forces_match_general_solver() {
     ] {
         match with_force(force).propagator() {
             Ok(_) => assert_matches_general_solver(force),
-            // A force not recognised as piecewise linear must be rejected by name.
+            // A force that is not recognised as piecewise linear must be rejected with its name.
             Err(error) => {
                 println!("{force}: {error}");
                 assert!(

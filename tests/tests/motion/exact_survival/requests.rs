@@ -1,4 +1,4 @@
-//! Invalid requests and models that cannot be simulated are rejected with a message.
+//! Tests that invalid requests and models that cannot be simulated are rejected with a message.
 
 use eomgen_sim::ode::SolveError;
 use eomgen_sim::piecewise_linear::ExactError;
@@ -57,7 +57,7 @@ fn invalid_times_are_rejected() {
     let still = subject.simulate_exactly((0.5, 0.5), &[0.5, 0.5]);
     assert_eq!(still.states, vec![subject.initial.clone(); 2]);
     assert_eq!(still.final_state, subject.initial);
-    // The change over the shortest span is below one rounding.
+    // Over the shortest time span, the change of the state is below its rounding error.
     let short = subject.simulate_exactly((0.0, 5e-324), &[0.0, 5e-324]);
     assert!((short.final_state[0] - 0.01).abs() < 1e-17);
     let late = subject.simulate_exactly((1e9, 1e9 + 1.0), &[1e9 + 1.0]);
@@ -76,7 +76,7 @@ fn diverging_motions_are_rejected() {
             Err(error) => println!("{error}"),
         }
     }
-    // Negative spring: the motion grows as e^(1000 t).
+    // With negative stiffness, the motion grows as e^(1000 t).
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
         .parameter("k", -1e6, "N/m")
@@ -104,7 +104,7 @@ fn nonpositive_masses_are_rejected() {
         let message = rejection(&TestMotion::new(model, 4), (0.0, 0.01), &[0.01]);
         assert!(message.contains("mass"), "{name}: {message}");
     }
-    // Two identical coordinates: the mass matrix is singular.
+    // Two coordinates describe the same motion, so the mass matrix is singular.
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
         .parameter("k", 100.0, "N/m")
@@ -143,7 +143,7 @@ fn extreme_parameters_of_arm_are_rejected_or_solved() {
 
 #[test]
 fn sticking_with_variable_friction_is_rejected() {
-    // The friction level depends on a spring force, so sticking is not linear.
+    // The friction level depends on a spring force, so the condition for sticking is not linear.
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
         .parameter("mu", 0.5, "1")

@@ -1,4 +1,5 @@
-//! Stops: impacts, grazing, starts on the stop and a million switches, against closed forms.
+//! Tests of elastic stops, compared with closed forms: impacts, grazing, initial states on the stop, and a million
+//! switches.
 
 use eomgen_sim::ode::SolveError;
 use eomgen_sim::piecewise_linear::ExactError;
@@ -48,7 +49,7 @@ fn bouncing_ball_matches_closed_form() {
 
 #[test]
 fn ball_touching_ceiling_matches_closed_form() {
-    // The throw would rise `above` m beyond the ceiling; the ball falls back at once.
+    // Without the ceiling, the ball would rise `above` m higher than the ceiling. It falls back immediately.
     for (speed, above) in [
         (1.0, 1e-3),
         (1.0, 1e-6),
@@ -66,7 +67,7 @@ fn ball_touching_ceiling_matches_closed_form() {
             .coordinate("x", [0.0, speed])
             .kinetic("1/2*m*dot(x)^2")
             .potential("m*g*x + 1/2*k*max(x - b, 0*b)^2");
-        // Above the ceiling y'' = -g - k y until y = 0 again; then the fall mirrors the rise.
+        // Above the ceiling y'' = -g - k y until y = 0 again; then the fall is symmetric to the rise.
         let (at, hit) = ((2.0 * above / g).sqrt(), (2.0 * above * g).sqrt());
         let arrival = speed / g - at;
         let w = 10.0;
@@ -80,7 +81,7 @@ fn ball_touching_ceiling_matches_closed_form() {
             "{speed} m/s, {above:e} m above: x = {x:e}, v + speed = {:e}",
             v + speed
         );
-        // The time of a shallow contact is the root of a small number.
+        // The duration of a shallow contact is the square root of a small number, which amplifies rounding errors.
         let rounding = 1e-14 * speed * speed / hit;
         assert!(x.abs() < 1e-12 + speed * rounding && (v + speed).abs() < 1e-12 + g * rounding);
         assert_eq!(motion.events.len(), 2);
@@ -89,7 +90,7 @@ fn ball_touching_ceiling_matches_closed_form() {
 
 #[test]
 fn start_on_a_stop_matches_closed_form() {
-    // On the stop at rest, pressed onto it: y'' = F/m - 2 zeta w y' - w^2 y.
+    // The mass is initially at rest on the stop, and a force presses it onto the stop: y'' = F/m - 2 zeta w y' - w^2 y.
     for zeta in [0.01, 0.1, 0.5] {
         for (w, b) in [(100.0, 1e-3), (1e4, 25e-6), (1e4, 0.0)] {
             let spec = Spec::default()
@@ -128,7 +129,7 @@ fn start_on_a_stop_matches_closed_form() {
     }
 }
 
-/// Returns a mass on a spring between stops at b, which it reaches with the amplitude b (1 + more).
+/// Returns a mass on a spring between stops at +- b. The amplitude without stops is b (1 + more).
 fn oscillator_between_stops(more: f64, c: f64) -> Spec {
     let (w, b) = (50.0, 1e-3);
     Spec::default()
@@ -181,12 +182,12 @@ fn grazing_a_stop_conserves_energy() {
             motion.events.len()
         );
         assert!(worst < 1e-12, "{more:e}: {worst:e}");
-        // 15 half periods per second with two switches each; 16 if the stop is stiff.
+        // There are 15 half periods per second (16 with a stiff stop) with two switches each.
         assert!(
             more < 1e-14 || (30..=34).contains(&motion.events.len()),
             "{more:e}"
         );
-        // The contacts are so short that damping has this small an effect.
+        // The contacts are so short that the effect of damping is within this bound.
         let damped = TestMotion::new(oscillator_between_stops(more, 100.0).model(), 0)
             .simulate_exactly((0.0, 1.0), &times);
         let lost = difference(&damped.states, &motion.states, 0.0);
@@ -200,7 +201,7 @@ fn grazing_a_stop_conserves_energy() {
 
 #[test]
 fn million_switches_match_closed_form() {
-    // Free flight of 2 b/v between elastic stops, and half a period in each contact.
+    // Free flights of duration 2 b/v between elastic stops alternate with contacts of half a period.
     let (w, b, v) = (1e3, 1e-3, 1.0);
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
@@ -210,7 +211,7 @@ fn million_switches_match_closed_form() {
         .kinetic("1/2*m*dot(x)^2")
         .potential("1/2*k*deadzone(x, b)^2");
     let half = 2.0 * b / v + std::f64::consts::PI / w;
-    // Two switches per half period; the end is a quarter of a free flight after the middle.
+    // There are two switches per half period. The end is a quarter of a free flight after the middle position.
     let until = 500_000.0 * half + 0.5 * b / v;
     let subject = TestMotion::new(spec.model(), 0);
     let motion = subject.simulate_exactly((0.0, until), &[until]);
@@ -224,9 +225,9 @@ fn million_switches_match_closed_form() {
         speed - v
     );
     assert_eq!(motion.events.len(), 1_000_000);
-    // Each half period has the same rounding error, so the errors add up.
+    // The rounding errors of all half periods are equal, so they add up.
     assert!((x - 0.5 * b).abs() < 1e-6 * b && (speed - v).abs() < 1e-10);
-    // At most two steps per switch.
+    // The solver may take at most two steps per switch.
     let work = motion.statistics;
     assert!(work.steps <= 2_000_000, "{work:?}");
 }
@@ -260,8 +261,8 @@ fn too_many_switches_are_rejected() {
 
 #[test]
 fn accumulating_switches_end() {
-    // The time between switches shrinks by a constant factor: the switches accumulate at about t =
-    // 1 + sqrt(2), and the mass stays at rest.
+    // The time between switches decreases by a constant factor. The switches accumulate at about t = 1 + sqrt(2); then
+    // the mass remains at rest.
     for dry in [0.5, 0.1] {
         let spec = Spec::default()
             .parameter("m", 1.0, "kg")
@@ -288,7 +289,7 @@ fn accumulating_switches_end() {
             ),
         }
     }
-    // With a damper, each period is slightly shorter, without end.
+    // With a damper, each period is slightly shorter than the previous one, and the motion never ends.
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
         .parameter("F", 1.0, "N")
@@ -317,7 +318,7 @@ fn accumulating_switches_end() {
 
 #[test]
 fn samples_at_a_switch_match_closed_form() {
-    // The mass reaches the stop at 1 s exactly; the span may also end then.
+    // The mass reaches the stop at exactly 1 s; in one case the time span ends at this time.
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
         .parameter("k", 100.0, "N/m")
