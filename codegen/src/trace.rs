@@ -278,7 +278,7 @@ fn read_note(comment: &str, trace: &Trace) -> Option<(Option<String>, Vec<String
     // The formula of a coefficient precedes its note.
     let note = comment.rsplit("` ").next()?;
     let note = note
-        .strip_prefix("with values of the preparation ")
+        .strip_prefix("with prepared intermediate values ")
         .unwrap_or(note);
     let note = note.replace("\\[", "[");
     let (unit, rest) = match note.strip_prefix('[') {

@@ -250,7 +250,7 @@ fn lower_separated(
     let mut program = lower_with_outputs(model, equations, &values, &outputs);
     program.inputs.extend(side_inputs(
         count,
-        "0 to 1; between them while the surface holds the motion",
+        "0 or 1, or a number between them while the surface holds the motion",
     ));
     Ok(program)
 }
@@ -298,7 +298,7 @@ pub fn lower_corners(
     let mut program = lower_with_outputs(model, &equations, &values, &outputs);
     program.inputs.extend(side_inputs(
         sides,
-        "1 where the function of the surface is positive, else 0",
+        "1 if the switching function is positive, else 0",
     ));
     Ok(Some(program))
 }

@@ -139,7 +139,7 @@ pub(crate) fn immovable_distance_error(impact: &model::Impact) -> DeriveError {
     DeriveError {
         span: impact.when.span,
         message: format!(
-            "no coordinate changes the distance of the impact `{}`",
+            "the distance of the impact `{}` depends on no coordinate",
             impact.name
         ),
         help: Some(

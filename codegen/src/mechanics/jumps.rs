@@ -334,8 +334,8 @@ pub(crate) fn check_mass(model: &Model, graph: &Graph, mass: &MassMatrix) -> Der
 fn mass_error(span: Span) -> DeriveError {
     DeriveError {
         span,
-        message: "the energies jump at a surface, and the kinetic energy is no polynomial of second degree in \
-                  the rates, so that the rates beyond the surface are not determined"
+        message: "the energies jump at a surface, and the kinetic energy is not a polynomial of second degree in \
+                  the rates: the rates after the jump are not determined"
             .into(),
         help: Some("use a kinetic energy of second degree, or energies without a jump".into()),
     }
@@ -347,7 +347,7 @@ fn position_error(span: Span) -> DeriveError {
         message: "this position jumps, but its rate enters the energies: the speed would be infinite"
             .into(),
         help: Some(
-            "let it move within a short time, for example by max(t - t_0, 0), or use a coordinate for the \
+            "let it change continuously within a short time, for example by max(t - t_0, 0), or use a coordinate for the \
              position of the mass and the step in the potential only"
                 .into(),
         ),
@@ -357,7 +357,7 @@ fn position_error(span: Span) -> DeriveError {
 fn rate_error(span: Span) -> DeriveError {
     DeriveError {
         span,
-        message: "an energy or its momenta jump where a rate changes its sign, so that the momenta do \
+        message: "an energy or its momenta jump where a rate changes its sign: the momenta do \
                   not follow from the rates"
             .into(),
         help: Some(
@@ -370,7 +370,7 @@ fn rate_error(span: Span) -> DeriveError {
 fn field_error(span: Span) -> DeriveError {
     DeriveError {
         span,
-        message: "an energy jumps along a field, so that the rates of its modes would jump at every place"
+        message: "an energy jumps along a field: the rates of its modes would jump at every position"
             .into(),
         help: Some("use a continuous function, such as max(p, 0) instead of p*above(p)".into()),
     }

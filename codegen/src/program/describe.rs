@@ -39,8 +39,8 @@ pub fn describe_value<'n>(
         depth: usize::MAX,
     };
     match parts.write(id, 0) {
-        Some(text) => format!("`{text}` with values of the preparation"),
-        None => "`value of the preparation`".to_owned(),
+        Some(text) => format!("`{text}` with prepared intermediate values"),
+        None => "`prepared intermediate value`".to_owned(),
     }
 }
 

@@ -57,7 +57,7 @@ impl Report {
             &rows("f", &self.forces),
         )?;
         let state_rates = lines(&self.state_rates);
-        section(out, "Rates of states of first order", &state_rates)?;
+        section(out, "Rates of first-order states", &state_rates)?;
         section(
             out,
             "Constraints, which are zero",
@@ -77,7 +77,7 @@ impl Report {
         let guards: Vec<String> = self.guards.iter().map(Formula::latex).collect();
         section(
             out,
-            "The equations switch where one of these changes sign",
+            "The equations switch when one of these functions changes its sign",
             &guards,
         )?;
         section(out, "Piecewise functions", &self.piecewise_functions())?;

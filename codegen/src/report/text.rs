@@ -43,7 +43,7 @@ impl Report {
             "Generalised forces f, with M q'' + c = f",
             &self.forces,
         )?;
-        section(out, "Rates of states of first order", &self.state_rates)?;
+        section(out, "Rates of first-order states", &self.state_rates)?;
         section(out, "Constraints, which are zero", &self.constraints)?;
         section(
             out,
@@ -63,7 +63,7 @@ impl Report {
         if !self.guards.is_empty() {
             writeln!(
                 out,
-                "\nThe equations switch where one of these changes sign"
+                "\nThe equations switch when one of these functions changes its sign"
             )?;
             for guard in &self.guards {
                 writeln!(out, "  {guard}")?;

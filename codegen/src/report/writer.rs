@@ -49,7 +49,7 @@ impl Writer<'_> {
                 None,
             ),
             Linearity::Corners(node) => (
-                "Rates jump by the corner conditions where the energies jump, first where this is zero:",
+                "Rates jump by the corner conditions where the energies jump; the first such surface is the zero of",
                 Some(self.reader.formula(node)),
             ),
             Linearity::Nonlinear(node) => (

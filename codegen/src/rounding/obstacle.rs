@@ -47,7 +47,7 @@ impl Obstacle {
         match self.cause {
             Cause::NoRange(place) => {
                 let name = &point_names(program)[place];
-                format!("`{name}` has no range; state it by `--range {name}=LOW:HIGH`")
+                format!("`{name}` has no range; declare it with `--range {name}=LOW:HIGH`")
             }
             Cause::Divisor => {
                 format!("a divisor{origin} is not proven different from 0: {between}")
@@ -64,7 +64,7 @@ impl Obstacle {
             Cause::Cut => format!(
                 "the point of `atan2`{origin} may be on the negative half-axis, where the angle jumps"
             ),
-            Cause::NegativeWidth => format!("a width{origin} of a dead zone may be negative"),
+            Cause::NegativeWidth => format!("the half-width of a dead zone{origin} may be negative"),
             Cause::Overflow => {
                 format!("a result{origin} may overflow, or its slope is unbounded: {between}")
             }

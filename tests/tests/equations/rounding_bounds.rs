@@ -336,7 +336,7 @@ fn missing_ranges_are_named() {
     let missing = reason(&bounds, "velocity_terms[x]");
     assert_eq!(
         missing,
-        "`x_dot` has no range; state it by `--range x_dot=LOW:HIGH`"
+        "`x_dot` has no range; declare it with `--range x_dot=LOW:HIGH`"
     );
     assert!(reason(&bounds, "forces[x]").contains("--range u=LOW:HIGH"));
 }

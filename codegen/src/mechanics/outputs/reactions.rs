@@ -25,14 +25,14 @@ pub enum StepObstacle {
 impl std::fmt::Display for StepObstacle {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Self::Corner => "there is no step of fixed length for energies that jump",
+            Self::Corner => "a step of fixed length is not available for energies that jump",
             Self::Direction => {
-                "there is no step of fixed length for a friction against the direction of a velocity, v/norm(v)"
+                "a step of fixed length is not available for friction against the direction of a velocity, v/norm(v)"
             }
-            Self::Nonlinear => "there is no step of fixed length for forces that are not linear in the sign of a friction",
+            Self::Nonlinear => "a step of fixed length is not available for forces that are not linear in the sign of a friction",
             Self::RestitutionWithFriction => {
-                "there is no step of fixed length for contacts with both friction and restitution; contacts without friction \
-                 have one, and those with the number 0 as restitution (not a parameter)"
+                "a step of fixed length is not available for contacts with both friction and restitution; remove the friction, \
+                 or write the number 0 (not a parameter) as restitution"
             }
         })
     }

@@ -59,7 +59,7 @@ pub fn check_coefficients(model: &Model, orders: &[usize]) -> Result<(), Diagnos
     for integral in find_integrals(model) {
         if let Some(jump) = moving_jump(model, integral.integrand) {
             return Err(Diagnostic::error(
-                "the position of this jump moves along the field, so that each quadrature point switches by itself",
+                "the position of this jump moves along the field, so that the quadrature points switch one after the other",
             )
             .with_span(jump.span, "")
             .with_help(
