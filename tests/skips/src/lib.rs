@@ -1,5 +1,5 @@
-//! Reports of skipped tests: printed to the terminal at once, although the test passes, and
-//! appended to a list that `.ci/run` prints at the end.
+//! Reports skipped tests. A report is printed to the terminal immediately, although the test passes, and appended to a
+//! list that `.ci/run` prints at the end.
 
 use std::fs::OpenOptions;
 use std::io::Write;
@@ -13,7 +13,7 @@ pub const LIST: &str = "EOMGEN_SKIPS";
 /// the missing tool and how to install it.
 ///
 /// # Panics
-/// Panics if the list cannot be written: a hidden skip is worse than a failure.
+/// Panics if the list cannot be written, because a hidden skip is worse than a failure.
 #[track_caller]
 pub fn skip(reason: &str) {
     let line = format!("SKIPPED: {}: {reason}\n", Location::caller().file());

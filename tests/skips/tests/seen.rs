@@ -1,4 +1,4 @@
-//! Skips of passing tests are visible, and all tests report them by `skips::skip`.
+//! Tests that skips of passing tests are visible and that all tests report skips by `skips::skip`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -56,7 +56,7 @@ fn all_tests_report_skips_by_skip() {
         .filter(|file| !own.iter().any(|own| file.ends_with(own)))
     {
         let text = std::fs::read_to_string(file).expect("a file");
-        // Split, so that this file does not match.
+        // The word is split, so that this file itself does not match.
         let found = text.contains(concat!("\"SKIP", "PED"));
         assert!(!found, "{}: report skips by skips::skip", file.display());
     }

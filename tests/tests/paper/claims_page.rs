@@ -1,5 +1,5 @@
-//! docs/claims.md against docs/claims.json, the document written by the command on the page.
-//! `study_search` checks that the program still gives these verdicts for the assumed values.
+//! Comparison of docs/claims.md with docs/claims.json, which the command on the page writes. `study_search` checks that
+//! the program still gives these verdicts for the assumed values.
 
 use eomgen_tests::models::project;
 use serde_json::Value;

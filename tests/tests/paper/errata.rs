@@ -1,11 +1,11 @@
-//! Errata: the derivation against the printed equations, row by row. It agrees with the rows
-//! consistent with the energies and differs from the misprints. To print the table, run `cargo test
-//! --release -p eomgen-tests --test paper errata -- --nocapture`.
+//! Comparison of the derivation with the printed equations, row by row. It agrees with the rows that are consistent
+//! with the energies and differs from the misprints. To print the table, run `cargo test --release -p eomgen-tests
+//! --test paper errata -- --nocapture`.
 //!
-//! `measure` reads every coefficient of a derived right-hand side by differences between states,
-//! which are exact up to rounding because the model is linear in a regime. `rigid` (Eq. 10, 12,
-//! 16), `flexible` (Eq. 22) and `consequences` (scales, mode shapes, Table I) give the printed and
-//! the corrected values; `table` compares. Only ratios such as a_35/a_30 follow from accelerations.
+//! `measure` computes every coefficient of a derived right-hand side from differences between states. The differences
+//! are exact up to rounding, because the model is linear in a regime. `rigid` (Eq. 10, 12, 16), `flexible` (Eq. 22) and
+//! `consequences` (scales, mode shapes, Table I) contain the printed and the corrected values; `table` compares them.
+//! Accelerations determine only ratios of coefficients, such as a_35/a_30.
 
 mod consequences;
 mod flexible;
@@ -88,7 +88,7 @@ fn derivation_matches_corrected_rows_and_differs_from_misprints() {
         .iter()
         .filter(|row| row.printed.is_some())
         .count();
-    // Misprinted rows of the paper, and rows that are correct.
+    // The table must contain misprinted rows and correct rows of the paper.
     assert!(
         misprints >= 35 && table.rows.len() >= 90,
         "{misprints} of {}",
@@ -104,7 +104,8 @@ fn printed_damping_fails_in_its_row() {
             return accelerations;
         };
         let masses = EquivalentMasses::new(parameters);
-        // The motor damping acts only on x_sp' and once on x_c'; F_csp lacks D in the second row.
+        // Seeded fault: the motor damping acts only on x_sp' and with the factor 1 on x_c'; the factor D of F_csp is
+        // missing in the second row.
         accelerations[0] += masses.B_m / masses.M_s * (x_pr_dot + x_c_dot);
         let damping = parameters.c_sp * f_c(x_sp, x_sp_dot, parameters.b_sp);
         accelerations[1] += (masses.D - 1.0) / masses.M_pr * damping;

@@ -1,4 +1,4 @@
-//! The paper's equations, figures and claims.
+//! Tests of the paper's equations, figures and claims.
 
 mod claims_page;
 mod errata;

@@ -1,5 +1,5 @@
-//! Cases, claims and search of the paper: measurements against independent computations, rules
-//! against constructed readings, a resumed search against an uninterrupted one.
+//! Tests of the cases, the claims and the search of the paper. Measurements are compared with independent computations,
+//! rules with constructed readings, and a resumed search with an uninterrupted one.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use eomgen_paper::studies::sets::{RANGES, parameter_set};
 use eomgen_paper::studies::tally::{exclusive_pairs, histogram, share_with, shares, undecided};
 use eomgen_sim::inputs::HeldInputs;
 
-/// Returns a reading whose transmission error grows with b, with a constant deflection.
+/// Returns a reading whose transmission error increases with b and whose deflection is constant.
 fn reading(key: &CaseKey, kind: Kind) -> Reading {
     let of = |span: f64| Amplitude {
         largest: span / 2.0,
@@ -36,7 +36,7 @@ fn reading(key: &CaseKey, kind: Kind) -> Reading {
     }
 }
 
-/// Returns the readings that the paper describes.
+/// Returns readings for which the claims of the paper hold.
 fn paper() -> Readings {
     let kind = |key: &CaseKey| match (key.order, key.forcing, key.micrometres) {
         (0, ..) => Kind::Regular,
@@ -72,8 +72,8 @@ fn each_claim_can_fail() {
         };
         reading.f_la.largest = 1.0;
         reading.f_la_signed.largest = 1.0;
-        // The larger part is the transmission error for small b, and the deflection for large b,
-        // which grows tenfold.
+        // The transmission error is the larger part for small b, and the deflection, which increases tenfold, for large
+        // b.
         reading.dr.span = 1e-4 * (b / 10.0).powi(2) * (1.0 + key.order as f64);
         reading.dr.rms = reading.dr.span;
         reading.transmission.span = 2e-3 * (1.0 + b / 10.0);
@@ -96,7 +96,7 @@ fn each_claim_can_fail() {
             ..reference
         },
     );
-    // Frequency and flexibility still matter, because both compared sides were exchanged.
+    // The claims about frequency and flexibility still hold, because both compared sides were exchanged.
     let still = ["frequency", "flexibility"];
     for claim in CLAIMS.iter().filter(|claim| !still.contains(&claim.id)) {
         assert_eq!(
@@ -125,11 +125,11 @@ fn route_with_a_possible_return_is_undecided() {
     use Kind::{Chaotic as C, Regular as R, Unknown as U};
     for (kinds, expected) in [
         ([R, R, C, C], Verdict::Holds),
-        // One unknown case between regular and chaotic may be either.
+        // One unknown case between regular and chaotic motion may be regular or chaotic.
         ([R, U, C, C], Verdict::Holds),
         ([R, R, U, C], Verdict::Holds),
-        // Two unknown cases may be chaotic then regular; so may one after chaos or before regular
-        // motion.
+        // Two unknown cases may be chaotic and then regular, which contradicts the claim. The same applies to one
+        // unknown case after chaotic or before regular motion.
         ([R, U, U, C], Verdict::Undecided),
         ([R, C, U, C], Verdict::Undecided),
         ([R, U, R, C], Verdict::Undecided),
@@ -166,9 +166,8 @@ fn assumed(forcing: Forcing, backlash: f64) -> Case {
     }
 }
 
-/// Returns the logarithmic growth of the distance to a second motion per forcing period. The
-/// distance is reset four times per period (G. Benettin, L. Galgani, J.-M. Strelcyn, Phys. Rev. A
-/// 14 (1976) 2338-2345).
+/// Returns, for each forcing period, the logarithmic growth of the distance between two motions. The distance is
+/// rescaled four times per period (G. Benettin, L. Galgani, J.-M. Strelcyn, Phys. Rev. A 14 (1976) 2338-2345).
 fn parting(arm: &Arm, case: &Case, transient: usize, periods: usize) -> Vec<f64> {
     const DISTANCE: f64 = 1e-9;
     let mut propagator = arm.propagator(case).unwrap();
@@ -214,8 +213,8 @@ fn exponent_matches_the_divergence_of_two_motions() {
     assert_eq!(reading.kind, Kind::Chaotic, "{}", reading.sentence);
     let carried = measured.evidence.exponent.unwrap();
     let parted = mean_exponent(&parting(&arm, &case, 40, 200), case.period()).unwrap();
-    // Two stretches of one chaotic motion, by tangents and by differences: four of their joint
-    // standard errors.
+    // The exponents of two parts of one chaotic motion, by tangent vectors and by differences, must agree within four
+    // combined standard errors.
     let error = carried.standard_error.hypot(parted.standard_error);
     assert!(
         (carried.value - parted.value).abs() < 4.0 * error,
@@ -234,7 +233,7 @@ fn exponent_errors_match_their_scatter() {
         modes: 1,
         ..RunLength::FULL
     };
-    // Intermittent chaos over hundreds of periods.
+    // The motion is intermittently chaotic over hundreds of periods.
     let exponents: Vec<_> = (0..16)
         .map(|place| {
             let case = assumed(Forcing::FivePi, 100e-6 + 1e-8 * f64::from(place));
@@ -248,8 +247,8 @@ fn exponent_errors_match_their_scatter() {
     let scatter = (squares.sum::<f64>() / (count - 1.0)).sqrt();
     let stated = exponents.iter().map(|e| e.standard_error.powi(2));
     let stated = (stated.sum::<f64>() / count).sqrt();
-    // 16 exponents determine the scatter to 18 %; batches of 20 periods of 400 would give 0.4 of
-    // it.
+    // 16 exponents determine the standard deviation to 18 %. Standard errors from batches of 20 of 400 periods would be
+    // only 0.4 of it.
     assert!(
         (0.65..1.6).contains(&(stated / scatter)),
         "{stated} {scatter} {exponents:?}"
@@ -267,7 +266,7 @@ fn undecided_cases_are_extended() {
             ..RunLength::SCREENING
         };
         let measured = measure(&arm, &case, &length).unwrap();
-        // The record does not grow.
+        // The length of the record does not increase with the number of periods.
         let last = measured.record.times.last().unwrap() - measured.record.times[0];
         assert!((last / case.period() - 100.0).abs() < 1e-9);
         (measured.verdict.motion, measured.periods)
@@ -314,14 +313,15 @@ fn motion_without_backlash_is_regular_and_matches_observables() {
     };
     let measured = measure(&arm, &case, &RunLength::SCREENING).unwrap();
     assert_eq!(Reading::from_measurement(&measured).kind, Kind::Regular);
-    // Check of scale, quasi-static bending by the acceleration of the hub: the tip of a cantilever
+    // Check of the magnitude by quasi-static bending due to the acceleration a of the tip: the tip of a cantilever
     // under the load rho A x a/l deflects by 11 rho A a l^4/(120 E I).
     let torque = case.undisclosed.f_w;
     let lengths = arm.lengths(&case);
     let i_sh = 1.0 + 99.0 / 27.0;
     let acceleration = torque / lengths.inertia / i_sh * 0.5;
     let tip = 11.0 * 7900.0 * 1e-4 * acceleration * 0.5_f64.powi(4) / (120.0 * 2e11 * 8.333e-10);
-    // Motor damping and resonance at 31 of 230 rad/s change it by a few per cent.
+    // Motor damping, and the resonance at 230 rad/s with a forcing of 31 rad/s, change the deflection by a few per
+    // cent.
     assert!(
         (0.5 * measured.dr.span / tip - 1.0).abs() < 0.1,
         "{tip} {:?}",
@@ -346,7 +346,7 @@ fn sets_fill_their_ranges() {
             counts[(10.0 * (value / low).ln() / (high / low).ln()) as usize] += 1;
         }
         let all: usize = counts.iter().sum();
-        // In a random sequence, the tenths would differ by a third.
+        // In a random sequence, the counts of the ten intervals would differ by a third.
         let even = |count: &usize| (*count as f64 * 10.0 / all as f64 - 1.0).abs() < 0.2;
         assert!(counts.iter().all(even), "{} {counts:?}", range.name);
     }
@@ -376,7 +376,7 @@ fn interrupted_search_resumes_to_the_same_bytes() {
     let first = run(&request).unwrap();
     let part = folder.path().join("screened_00000.csv");
     let bytes = std::fs::read(&part).unwrap();
-    // State after an interruption: a missing chunk, and an incomplete temporary file.
+    // The folder is in the state after an interruption: a chunk is missing, and a temporary file is incomplete.
     std::fs::remove_file(&part).unwrap();
     std::fs::write(folder.path().join("screened_00000.unfinished"), "0,1").unwrap();
     assert_eq!(run(&request).unwrap(), first);

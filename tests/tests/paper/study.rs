@@ -1,4 +1,4 @@
-//! `eomgen paper study`: complete folders, readable figures, and numbers checked by independent
+//! Tests of `eomgen paper study`: complete folders, readable figures, and comparison of numbers with independent
 //! formulas.
 
 use std::path::Path;
@@ -81,8 +81,8 @@ fn study_writes_all_files_of_its_document() {
     );
 }
 
-/// Checks the first frequency. With closed meshes the arm turns with the whole drive. Its frequency exceeds that of the
-/// clamped arm by the part of its inertia that turns the drive, h^2/m.
+/// Checks the first frequency. If the meshes are closed, the drive turns with the arm. The frequency is higher than the
+/// frequency of the clamped arm; the coupling h^2/m with the inertia of the drive determines the difference.
 fn check_frequencies(case: &Value) {
     let first = number(&case["natural_frequencies"][0]);
     let (beta, arm) = (1.875_104_069_f64, 7900.0 * 1e-4 * 0.5_f64.powi(3));
@@ -110,22 +110,22 @@ fn check_numbers(case: &Value) {
         let [rms, peak] = ["rms", "peak"].map(|of| number(&case[name][of]));
         assert!(0.0 < rms && rms <= peak, "{name}: {case}");
     }
-    // f_la is the sum of the other two at every time; the bound exceeds the rounding of a sum.
+    // At every time, f_la is the sum of the other two; the bound exceeds the rounding error of the sum.
     let peak = |name: &str| number(&case[name]["peak"]);
     let sum = peak("l_dtheta") + peak("dr");
     assert!(peak("f_la") <= sum * (1.0 + 1e-12), "{case}");
-    // A torque of changing sign closes the meshes on both sides.
+    // The torque changes its sign, so the meshes close on both sides.
     assert!(peak("x_sp") > number(&case["b"]), "{case}");
     let verdict = case["verdict"].as_str().expect("a sentence");
     let motion = case["motion"].as_str().expect("a kind of motion");
     assert!(verdict.starts_with(motion), "{case}");
 }
 
-/// Checks the closed form. Without backlash, a forced motion far below every natural frequency is that of a rigid machine:
-/// the meshes transmit the ripple's torque minus the torque that accelerates the sun.
+/// Checks the closed form. Without backlash, forced motion far below all natural frequencies equals the motion of a
+/// rigid machine. The meshes transmit the torque ripple minus the torque that accelerates the sun.
 fn check_closed_form(case: &Value) {
     assert_eq!(number(&case["b"]), 0.0);
-    // Two meshes change flanks twice in each of the five periods per second.
+    // Each of the two meshes changes flanks twice in each of the five periods per second.
     let switches = number(&case["switches_per_second"]);
     assert!((switches - 20.0).abs() < 1e-12, "{switches}");
     let tooth = 3e-3_f64 * 24.6_f64.to_radians().cos() / 2.0;
@@ -134,18 +134,18 @@ fn check_closed_form(case: &Value) {
     let arm = 7900.0 * 1e-4 * 0.5_f64.powi(3) / 3.0;
     let carrier = 6.29 * r_c * r_c + 3.0 * 0.66 * r_c * r_c + arm;
     let ratio = 1.0 + 99.0 / 27.0;
-    // A planet turns with half the sun's velocity along the line of action.
+    // The velocity of a planet along the line of action is half the velocity of the sun.
     let planets = 3.0 * planet * (r_s / 2.0).powi(2);
     let inertia = sun + planets + carrier / (ratio * ratio);
     let omega = number(&case["omega"]);
     let (f_w, b_m, k_sp) = (5.0, 0.05, 1e8);
     let rate = f_w / (inertia * omega).hypot(b_m);
-    // T - I_s alpha = 3 r_s k x_sp with T = F_w sin - b_m theta_s', in complex amplitudes: the
-    // torque beyond the sun accelerates the remaining inertia.
+    // In complex amplitudes: T - I_s alpha = 3 r_s k x_sp with T = F_w sin - b_m theta_s'. This torque accelerates the
+    // remaining inertia.
     let expected = (inertia - sun) * omega * rate / (3.0 * r_s * k_sp);
     let found = number(&case["x_sp"]["peak"]);
-    // The bending arm increases its share of the inertia by (5/37)^2 = 1.8 %, at 5 Hz with a first
-    // frequency of 37 Hz.
+    // At 5 Hz, bending increases the arm's part of the inertia by (5/37)^2 = 1.8 %, because the first natural frequency
+    // is 37 Hz.
     assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
 }
 
@@ -165,7 +165,8 @@ fn remaining_studies_run_and_reproduce_documented_figures() {
             );
         }
     }
-    // Matrix products depend on the processor; other roundings give another chaotic motion.
+    // Rounding errors of matrix products depend on the processor and change chaotic motions, so numbers are compared on
+    // one architecture only.
     if cfg!(target_arch = "x86_64") {
         let shown = std::fs::read(project().join("docs/fig_09.svg")).expect("a figure");
         let left = std::fs::read(folder.path().join("backlash/fig_09.svg")).expect("a figure");

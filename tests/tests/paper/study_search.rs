@@ -1,5 +1,5 @@
-//! `eomgen paper claims`: a killed search resumes to the same bytes, its counts match its table,
-//! and invalid options are rejected.
+//! Tests of `eomgen paper claims`: the result of a search that is killed and resumed is byte-identical, its counts
+//! match its table, and invalid options are rejected.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ use eomgen_tests::models::project;
 use eomgen_tests::program::{self, eomgen, run_accepted, run_rejected, text};
 use serde_json::Value;
 
-/// One set of a well-damped machine, so that a search takes seconds.
+/// Options of a search with one parameter set, a well-damped machine, which takes seconds.
 const SMALL_SEARCH: [&str; 4] = ["--sets", "1", "--seed", "166"];
 
 const LIMIT: Duration = Duration::from_secs(300);
@@ -27,7 +27,7 @@ fn run_search(out: &Path) -> Value {
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
-/// Starts a search and kills it after its screening is written.
+/// Starts a search and kills it after the results of the screening are written.
 fn start_and_kill(out: &Path) {
     let mut child = Command::new(program::path())
         .args(["paper", "claims"])
@@ -76,7 +76,7 @@ fn killed_search_resumes_to_same_bytes() {
     start_and_kill(&killed);
     let screened = fs::metadata(killed.join("parts/screened_00000.csv"));
     let written = screened.and_then(|part| part.modified()).expect("a time");
-    // A kill during a write leaves such a file.
+    // A kill during writing leaves such an unfinished file.
     fs::write(killed.join("parts/confirmed_00000.unfinished"), "0,1").expect("written");
     let found = run_search(&killed);
     let screened = fs::metadata(killed.join("parts/screened_00000.csv"));
@@ -99,7 +99,7 @@ fn killed_search_resumes_to_same_bytes() {
         );
     }
     let table = fs::read_to_string(whole.join("claims.md")).expect("claims.md");
-    // One line per claim below the header; all bars inside cells are escaped.
+    // Below the header, the table has one line for each claim; all vertical bars inside cells are escaped.
     assert_eq!(table.lines().count(), 32);
     let bars = |line: &str| line.matches('|').count() - line.matches("\\|").count();
     assert!(table.lines().all(|line| bars(line) == 9), "{table}");
@@ -165,7 +165,7 @@ fn assert_counts_match_table(found: &Value, rows: &[Vec<String>]) {
     let histogram = found["histogram"].as_array().expect("counts");
     let mut expected = vec![0; 31];
     for row in &screened {
-        // The claims follow the stage, the set, five values and two counts.
+        // In each row, the claims follow after stage, set, five values and two counts.
         let holding = row[9..39].iter().filter(|letter| *letter == "H").count();
         assert_eq!(row[7], holding.to_string());
         expected[holding] += 1;
@@ -198,7 +198,7 @@ fn unwritable_output_is_rejected_before_the_search() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("file");
     fs::write(&file, "").expect("written");
-    // A search of so many sets exceeds the time limit of `run_rejected`.
+    // If the search started, it would exceed the time limit of `run_rejected`.
     let out = file.display().to_string();
     let error = run_rejected(&["paper", "claims", "--sets", "1000000", "--out", &out]);
     assert!(error.contains("file"), "{error}");

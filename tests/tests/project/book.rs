@@ -1,5 +1,5 @@
-//! README.md is short, docs/ is a complete book for mdBook, links lead to existing targets, and
-//! snippets of specifications are valid.
+//! Tests of the documentation: README.md is short, docs/ is a complete book for mdBook, links have existing targets,
+//! and snippets of specifications are valid.
 
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
@@ -8,11 +8,11 @@ use eomgen_model_spec::source::Source;
 use eomgen_tests::models::project;
 use eomgen_tests::pages::{anchors, blocks, links, pages};
 
-/// Greatest length of README.md.
+/// Maximum number of lines of README.md.
 const MAX_LINES: usize = 200;
 const MAX_WORDS: usize = 1800;
 
-/// Pages outside docs/ whose links are checked too.
+/// Pages outside docs/ whose links are also checked.
 const FURTHER_PAGES: [&str; 4] = [
     "CHANGELOG.md",
     "CONTRIBUTING.md",
@@ -87,7 +87,7 @@ fn links_lead_to_existing_targets() {
             if !project().join(&path).exists() || !(anchor.is_empty() || has_anchor()) {
                 wrong.push(format!("{page}: {link}"));
             }
-            // A page outside the book would have no HTML page beside it.
+            // A link to a page outside the book would have no HTML target.
             let is_page = path.extension().is_some_and(|end| end == "md");
             if page.starts_with("docs/") && is_page && !path.starts_with("docs") {
                 wrong.push(format!("{page}: {link} is outside the book"));
@@ -97,7 +97,7 @@ fn links_lead_to_existing_targets() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Specifications on the pages are valid; parts of specifications and other files are TOML.
+/// Complete specifications on the pages must be valid; parts of specifications and other files must be TOML.
 #[test]
 fn toml_on_the_pages_is_valid() {
     let mut specifications = 0;
@@ -122,7 +122,7 @@ fn toml_on_the_pages_is_valid() {
     assert!(specifications >= 3, "{specifications}");
 }
 
-/// The table of times repeats figures of other pages, and names a command that these print.
+/// The table of times repeats numbers of other pages and names commands that these pages contain.
 #[test]
 fn times_of_the_readme_are_those_of_the_book() {
     let readme = read("README.md");

@@ -1,13 +1,13 @@
-//! The program, the Python package and the studies build their dependencies with the same features as the tests
-//! and benches. So `cargo run`, `cargo test --workspace` and `pip install ./python`, run in
-//! sequence by `.ci/run`, compile nothing twice.
+//! Test that the program, the Python package and the studies build their dependencies with the same features as the
+//! tests and benches. Therefore `.ci/run`, which runs `cargo run`, `cargo test --workspace` and `pip install ./python`
+//! in sequence, compiles nothing twice.
 
 use std::collections::BTreeSet;
 use std::process::Command;
 
 use eomgen_tests::models::project;
 
-/// Returns the packages, with features, of the chosen packages and their dependencies.
+/// Returns the chosen packages and their dependencies, each with its features.
 fn packages(chosen: &[&str]) -> BTreeSet<String> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(cargo)
@@ -25,8 +25,7 @@ fn packages(chosen: &[&str]) -> BTreeSet<String> {
 
 const PROGRAMS: [&str; 3] = ["eomgen-cli", "eomgen-python", "eomgen-studies"];
 
-/// Asserts that each package, with the dependencies along these edges, has the same features as in
-/// the tests.
+/// Asserts that each published package and its dependencies along these edges have the same features as in the tests.
 fn assert_same_features(edges: &str, whole: &BTreeSet<String>) {
     for package in PROGRAMS {
         let alone = packages(&["--package", package, "--edges", edges]);
@@ -41,7 +40,7 @@ fn assert_same_features(edges: &str, whole: &BTreeSet<String>) {
 
 #[test]
 fn dependencies_have_the_same_features_as_in_tests() {
-    // Crates built for the compiler with other features are excluded.
+    // Crates that run inside the compiler are built with other features, so they are excluded.
     let hosts = ["--exclude", "eomgen-macros", "--exclude", "eomgen-build"];
     let whole = ["--workspace", "--edges", "normal,dev,no-proc-macro"];
     let whole = packages(&[&whole[..], &hosts].concat());

@@ -1,4 +1,4 @@
-//! Output files of the program: complete or absent, reproducible, and never in place of a special
+//! Tests of the output files of the program: they are complete or absent, reproducible, and never replace a special
 //! file.
 
 use std::path::Path;
@@ -87,7 +87,7 @@ fn inputs_are_never_replaced_by_outputs() {
     let text = std::fs::read(spec("pendulum")).expect("a specification");
     std::fs::write(&model, &text).expect("written");
     let (input, out) = (path_text(&model), format!("--out={}", path_text(&model)));
-    // Rows are written to CSV files only, and a specification may have any name.
+    // The name of the specification ends in `.csv`, which is allowed.
     let table = folder.path().join("model.csv");
     std::fs::write(&table, &text).expect("written");
     let beside = path_text(&folder.path().join(".").join("model.csv"));
@@ -158,8 +158,7 @@ fn devices_pipes_and_links_are_preserved() {
     );
 }
 
-/// `-` writes to stdout and suppresses messages there; a device receives the bytes and is not
-/// replaced.
+/// With `-`, output is written to stdout, and messages are not. A device receives the bytes and is not replaced.
 #[test]
 fn output_can_go_to_stdout_or_a_device() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -239,7 +238,7 @@ fn killed_run_leaves_a_complete_file_or_none() {
     const ROWS: usize = 100_001;
     let folder = tempfile::tempdir().expect("a folder");
     let whole = folder.path().join("whole.csv");
-    // Builds the program first, outside the timing.
+    // The program is built first, so that the measured time does not include it.
     program::path();
     let begun = std::time::Instant::now();
     assert!(

@@ -1,14 +1,14 @@
-//! Words that `docs/glossary.md` retires do not come back.
+//! Test that retired words of `docs/glossary.md` are not used.
 
 use std::path::{Path, PathBuf};
 
 use eomgen_tests::models::project;
 
-/// Folders whose comments may still contain retired words; their engines are to be replaced.
+/// Folders whose comments may still contain retired words.
 const EXCEPTIONS: [&str; 2] = ["discover", "sim/src"];
 
-/// Returns the retired phrases of two or more words. Rows with a remark in parentheses retire a word
-/// in one sense only and are skipped.
+/// Returns the retired phrases of two or more words. Rows with a remark in parentheses are skipped, because they retire
+/// a word in one sense only.
 fn retired_phrases(glossary: &str) -> Vec<String> {
     let (_, table) = glossary
         .split_once("## Retired words")
@@ -42,7 +42,7 @@ fn collect_files(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// Returns the prose of a file: all of Markdown, the comments of Rust, in lower case on one line.
+/// Returns the prose of a file in lower case on one line: the whole text of Markdown, or the comments of Rust.
 fn prose(path: &Path) -> String {
     let text = std::fs::read_to_string(path).expect("a file");
     let is_rust = path.extension().is_some_and(|kind| kind == "rs");

@@ -1,7 +1,6 @@
-//! Imports between the files of each crate: folders import in one direction, and
-//! `docs/architecture.md` lists the few import circles between files with a reason. An item used
-//! through a re-export counts as imported from its own file. The compiler excludes circles between
-//! crates.
+//! Test of the imports between the files of each crate. Folders import in one direction only, and
+//! `docs/architecture.md` lists the few import cycles between files with a reason. An item used through a re-export
+//! counts as imported from the file that defines it. The compiler excludes cycles between crates.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -79,7 +78,7 @@ fn collect_paths(tokens: &[TokenTree], prefix: &Names, found: &mut Vec<Names>) {
     }
 }
 
-/// Resolves a path written in `module` to one from the crate's root; `None` if it leaves the crate.
+/// Converts a path written in `module` to a path from the crate's root; `None` if it refers to another crate.
 fn resolve(path: &Names, module: &Names) -> Option<Names> {
     let first = path.first()?.as_str();
     let rest = |from: &[String], skipped: usize| [from, &path[skipped..]].concat();
@@ -200,13 +199,13 @@ impl Crate {
             .and_then(|name| file.exports.get(name))
         {
             Some(export) if export != path => self.file_of(export),
-            // The crate's root, or a name of another crate.
+            // The path refers to the crate's root or to another crate.
             _ if module.is_empty() => None,
             _ => Some(module.to_vec()),
         }
     }
 
-    /// Returns the sets of files that import each other, directly or indirectly.
+    /// Returns the import cycles: sets of files that import each other, directly or indirectly.
     fn circles(&self) -> BTreeSet<BTreeSet<String>> {
         let reach: BTreeMap<_, _> = (self
             .files
@@ -223,7 +222,7 @@ impl Crate {
         reach.keys().map(|file| circle(file)).collect()
     }
 
-    /// Returns the folders that import from themselves through others.
+    /// Returns the folders that import from themselves through other folders.
     fn folders_both_ways(&self) -> Vec<String> {
         let is_folder = |name: &String| self.files.keys().any(|m| m.len() > 1 && m[0] == *name);
         let mut arrows = BTreeMap::<String, BTreeSet<String>>::new();

@@ -1,4 +1,4 @@
-//! Installation of the program as documented in README.md.
+//! Test of the installation of the program as documented in README.md.
 
 use std::process::Command;
 
@@ -9,7 +9,7 @@ use eomgen_tests::program::{cargo, target, text};
 fn installed_program_prints_version_and_checks_specification() {
     let root = tempfile::tempdir().expect("a folder");
     let (target, profile) = target();
-    // The documented command, with a temporary root and the dependencies already built.
+    // The documented command is run with a temporary root and with dependencies that are already built.
     let output = cargo()
         .args(["install", "--path", "cli", "--offline", "--locked"])
         .args(["--profile", &profile, "--no-track", "--target-dir"])

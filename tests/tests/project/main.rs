@@ -1,4 +1,4 @@
-//! The program as a whole: options, files it writes, packages, documentation.
+//! Tests of the whole program: options, output files, packages, documentation.
 
 mod book;
 mod built_once;

@@ -1,5 +1,5 @@
-//! Packages as published: each has complete metadata, builds from its own files, and depends only
-//! on published packages.
+//! Tests of the packages to publish: each has complete metadata, builds from its own files, and depends only on
+//! published packages.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -143,7 +143,7 @@ fn published_packages_depend_on_published_packages_only() {
     let known: Vec<&str> = published.iter().map(name).collect();
     for package in &published {
         let needed = package["dependencies"].as_array().expect("a list");
-        // Dev-dependencies are not published.
+        // Development dependencies need not be published.
         let needed = needed.iter().filter(|needed| needed["kind"] != "dev");
         for needed in needed.filter(|needed| needed["path"].is_string()) {
             let shown = format!("{} needs {}", name(package), name(needed));

@@ -1,12 +1,12 @@
-//! Pictures of docs/: each is shown on a page, and docs/figures.md gives its command, or a command
-//! of its page writes it.
+//! Tests of the pictures in docs/: each is shown on a page. Its command is listed in docs/figures.md or is on the page
+//! itself.
 
 use std::path::{Path, PathBuf};
 
 use eomgen_tests::models::project;
 use eomgen_tests::pages::{files_in, is_recipe, links, name_in_project, pages};
 
-/// Figures in the docs under another name than that of the printed command.
+/// Figures whose file name in docs/ differs from the name in the printed command.
 const RENAMED: [(&str, &str); 1] = [("tour/trajectory.svg", "docs/tour.svg")];
 
 /// Returns the pictures of docs/.
@@ -29,7 +29,7 @@ fn shown_on(page: &str, text: &str) -> Vec<PathBuf> {
     pictures.map(|(target, _)| folder.join(target)).collect()
 }
 
-/// Returns whether docs/figures.md gives the command of a picture.
+/// Returns true if docs/figures.md lists the command of a picture.
 fn is_listed(picture: &Path, table: &str) -> bool {
     let name = picture.file_name().expect("a name").to_string_lossy();
     let name = format!("`{name}`");
@@ -37,8 +37,8 @@ fn is_listed(picture: &Path, table: &str) -> bool {
     rows.any(|row| row.contains("`cargo run --release -"))
 }
 
-/// Asserts that the pictures of a page equal those that its commands wrote to a folder. Returns the
-/// names of the compared ones.
+/// Asserts that the pictures of a page equal the pictures that its commands wrote to a folder. Returns the names of the
+/// compared pictures.
 pub fn assert_match(page: &str, text: &str, folder: &Path) -> Vec<String> {
     let written = files_in(folder);
     let mut compared = Vec::new();
@@ -61,8 +61,8 @@ pub fn assert_match(page: &str, text: &str, folder: &Path) -> Vec<String> {
     compared
 }
 
-/// Asserts that [`assert_match`] has compared every picture whose command is only on its page. The
-/// pictures of recipes have a test of their own.
+/// Asserts that [`assert_match`] has compared every picture whose command is only on its page. The pictures of recipes
+/// have a separate test.
 pub fn assert_all_compared(compared: &[String]) {
     let table = std::fs::read_to_string(project().join("docs/figures.md")).expect("a page");
     let unlisted = pictures()

@@ -1,7 +1,6 @@
-//! Commands printed in README.md and docs/. The commands of a page run in order in one folder, with
-//! the files that the page tells the reader to save, and their output must match. So must the
-//! pictures of the page that they write ([`pictures`]). Other commands must occur in `.ci/run`. A command of an
-//! unknown form fails the test.
+//! Tests of the commands in README.md and docs/. The commands of a page run in order in one folder, with the files that
+//! the page tells the reader to save. Their output and the pictures that they write ([`pictures`]) must match the page.
+//! Other commands must be in `.ci/run`. A command of an unknown form fails the test.
 //!
 //! The folders consist of links, and the commands need a Unix shell.
 #![cfg(unix)]
@@ -24,10 +23,10 @@ use super::pictures;
 
 const TIMEOUT: Duration = Duration::from_secs(300);
 
-/// Number of pages that run at the same time.
+/// Number of pages whose commands run in parallel.
 const THREADS: usize = 2;
 
-/// Replacements that reduce long-running commands.
+/// Replacements that shorten long-running commands.
 const REDUCED: [(&str, &str); 2] = [
     (
         "--vary b_sp,b_pr=0:100e-6:40 --vary omega=10:60:40",
@@ -39,7 +38,7 @@ const REDUCED: [(&str, &str); 2] = [
     ),
 ];
 
-/// Commands that another test runs, with its file.
+/// Commands that another test runs, with the file of the test.
 const TESTED_ELSEWHERE: [(&str, &str); 23] = [
     // The test compiles an image with two variants and lists them.
     (
@@ -58,7 +57,7 @@ const TESTED_ELSEWHERE: [(&str, &str); 23] = [
     // The test builds and runs them if `nvcc` is installed.
     ("examples/cuda/build ", "tests/tests/hosts/cuda/mod.rs"),
     ("examples/cuda/arms_double", "tests/tests/hosts/cuda/mod.rs"),
-    // The package's own page prints the same commands.
+    // The README of the package contains the same commands.
     ("python3 -m venv .venv", "tests/tests/hosts/python.rs"),
     ("pip install ./python", "tests/tests/hosts/python.rs"),
     // The test runs the script if MuJoCo is installed.
@@ -133,14 +132,14 @@ const TESTED_ELSEWHERE: [(&str, &str); 23] = [
         "EOMGEN_SMOOTH_MODELS=300 ",
         "tests/tests/equations/smooth_models.rs",
     ),
-    // The test without rewriting its records.
+    // The same test runs without rewriting its recorded results.
     (
         "EOMGEN_REFRESH=1 cargo test ",
         "benches/tests/benches/instructions.rs",
     ),
 ];
 
-/// Output shown without a command, and the file with which another test compares it.
+/// Output shown without a command, and the file of the test that compares it.
 const SHOWN_ELSEWHERE: [(&str, &str); 1] = [(
     // Compiler error for a mistake in a macro.
     "error: unknown name `thta`",
@@ -150,7 +149,7 @@ const SHOWN_ELSEWHERE: [(&str, &str); 1] = [(
 /// Commands that work from the first release on.
 const AFTER_RELEASE: [&str; 2] = ["cargo binstall eomgen-cli", "pip install eomgen"];
 
-/// Pages whose commands run in an empty folder.
+/// Pages whose commands run in a new empty folder.
 const IN_EMPTY_FOLDER: [&str; 1] = ["docs/first_machine.md"];
 
 /// Placeholders in commands, and their replacements.
@@ -160,7 +159,7 @@ const PLACEHOLDERS: [(&str, &str); 3] = [
     ("NAME.toml", "pendulum.toml"),
 ];
 
-/// Specification with the error that the pages show on line 16.
+/// Specification with the error that the pages show in line 16.
 const WRONG: &str = r#"[model]
 name = "wrong"
 
@@ -179,7 +178,7 @@ bob = "1/2*m*l^2*dot(theta)^2"
 spring = "1/2*k*theta^2"
 "#;
 
-/// Specification with the misspelling shown on line 19.
+/// Specification with the misspelling that the pages show in line 19.
 const MISSPELT: &str = r#"[model]
 name = "misspelt"
 
@@ -201,7 +200,7 @@ gravity = "-m*g*l*cos(theta)"
 friction = { on = "theta", value = "-c*dot(thta)" }
 "#;
 
-/// Specification with the circular definition shown on lines 4 and 5.
+/// Specification with the cycle of definitions that the pages show in lines 4 and 5.
 const CIRCLE: &str = r#"[model]
 name = "circle"
 [parameters]
@@ -213,9 +212,8 @@ x = { unit = "m" }
 mass = "1/2*a*dot(x)^2"
 "#;
 
-/// Returns the folder of a reader who has saved the files of a page. Unless the page begins in an
-/// empty folder, it has links to the project, records, and the specifications that several pages
-/// name.
+/// Returns the folder of a reader who has saved the files of a page. Unless the page begins in an empty folder, the
+/// folder also has links to the project, records, and the specifications that several pages name.
 fn reader_folder(page: &str, text: &str) -> Measured {
     // Records of a stage with dry friction, for `compare` and `discover`.
     let measured = match IN_EMPTY_FOLDER.contains(&page) {
@@ -261,8 +259,7 @@ fn words(command: &str) -> Vec<String> {
     words
 }
 
-/// Runs a command of the program; returns its stdout and stderr. With `refused` it must exit with
-/// an error status.
+/// Runs a command of the program; returns its stdout and stderr. If `refused`, it must exit with an error status.
 fn run_program(arguments: &str, folder: &Path, refused: bool) -> String {
     let output = assert_cmd::Command::new(program::path())
         .args(words(arguments))
@@ -276,7 +273,7 @@ fn run_program(arguments: &str, folder: &Path, refused: bool) -> String {
     said
 }
 
-/// Runs a line of compilers, compiled programs and `cat`; returns the output.
+/// Runs a shell line with compilers, compiled programs and `cat`; returns the output.
 fn run_compilers(line: &str, folder: &Path) -> String {
     let output = Command::new("sh")
         .args(["-c", line])
@@ -301,14 +298,14 @@ fn has_scipy() -> bool {
     there
 }
 
-/// Returns whether a command runs a Python script that imports NumPy.
+/// Returns true if a command runs a Python script that imports NumPy.
 fn needs_packages(command: &str) -> bool {
     let script = command.split(' ').nth(1).unwrap_or_default();
     let script = std::fs::read_to_string(project().join(script));
     script.is_ok_and(|script| script.contains("import numpy"))
 }
 
-/// Runs a Python example; returns its stdout and stderr. With `refused` it must exit with status 1.
+/// Runs a Python example; returns its stdout and stderr. If `refused`, it must exit with status 1.
 fn run_python(line: &str, folder: &Path, refused: bool) -> String {
     let output = Command::new("sh")
         .args(["-c", line])
@@ -325,8 +322,7 @@ fn run_python(line: &str, folder: &Path, refused: bool) -> String {
     said
 }
 
-/// Returns a line without the parts that vary between runs or machines: durations and rounding
-/// errors of checks.
+/// Removes the parts of a line that vary between runs or machines: durations and rounding errors of checks.
 fn without_variable_parts(line: &str) -> String {
     if line.starts_with("  passed ") {
         return line.split(" (").next().unwrap_or(line).to_owned();
@@ -356,7 +352,7 @@ fn assert_shows(shown: &[String], output: &str, command: &str) {
 /// Form of a printed command.
 enum Form<'a> {
     Program(&'a str),
-    /// Line of a shell with compilers, compiled programs or `cat`.
+    /// Shell line with compilers, compiled programs or `cat`.
     Compilers,
     /// Python example, which may need SciPy.
     Scipy,
@@ -364,9 +360,9 @@ enum Form<'a> {
     AfterRelease,
     /// Command listed in the constants above.
     Elsewhere(&'static str),
-    /// Tests of a package, or of one of its files, that the full test run includes.
+    /// Tests of a package, or of one file of its tests, which the full test run includes.
     Tests(&'a str),
-    /// Command for which `.ci/run` contains these words.
+    /// Command whose words must be in `.ci/run`.
     Ci(Vec<&'a str>),
 }
 
@@ -423,7 +419,7 @@ fn form(command: &str) -> Form<'_> {
     }
 }
 
-/// Returns the command with placeholders replaced and reduced arguments.
+/// Returns the command with replaced placeholders and shortened arguments.
 fn runnable_command(command: &str) -> String {
     let replaced = |command: String, (from, to): &(&str, &str)| command.replace(from, to);
     let command = PLACEHOLDERS.iter().fold(command.to_owned(), replaced);
@@ -451,7 +447,7 @@ fn assert_are_tests(command: &str) {
     }
 }
 
-/// Returns the names and texts of the pages outside docs/recipes/, which have a test of their own.
+/// Returns the names and texts of all pages except docs/recipes/, which have a separate test.
 fn pages() -> Vec<(String, String)> {
     let mut pages = eomgen_tests::pages::pages();
     pages.retain(|(page, _)| !is_recipe(page));
@@ -463,7 +459,7 @@ struct PageRun<'a> {
     folder: Measured,
     ci: &'a str,
     has_scipy: bool,
-    /// Outputs of the commands that have run.
+    /// Outputs of the commands that were run.
     outputs: BTreeMap<String, String>,
 }
 
@@ -546,8 +542,8 @@ fn printed_commands_give_the_printed_output() {
     pictures::assert_all_compared(&compared);
 }
 
-/// Commands with placeholders, in running text and in blocks of text, do not run. Their names and
-/// options are those of `--help`.
+/// Commands with placeholders, in running text and in blocks of text, are not run. Their names and options must be
+/// listed by `--help`.
 #[test]
 fn commands_in_running_text_exist() {
     let mut helps: BTreeMap<Vec<String>, String> = BTreeMap::new();
@@ -587,7 +583,7 @@ fn commands_page_lists_every_command() {
     let help = run_program("--help", project(), false);
     let (_, commands) = help.split_once("Commands:\n").expect("commands");
     let (commands, _) = commands.split_once("\n\n").expect("their end");
-    // Longer descriptions continue on further lines, with more spaces.
+    // Longer descriptions continue in further lines with larger indentation.
     let names = commands
         .lines()
         .filter_map(|line| line.strip_prefix("  "))
@@ -628,7 +624,7 @@ fn output_without_command_is_compared_in_another_test() {
             .find(|(first, _)| block.lines[0] == *first);
         let (_, file) = known.unwrap_or_else(|| panic!("output without a command: {block:#?}"));
         let kept = std::fs::read_to_string(project().join(file)).expect("the recorded message");
-        // The location is that of another file.
+        // The location refers to another file, so it is not compared.
         for line in block.lines.iter().take_while(|line| !line.contains("-->")) {
             assert!(kept.contains(line.trim()), "{line} is not in {file}");
         }

@@ -1,5 +1,5 @@
-//! Recipes in docs/recipes/. The commands of each page run in a new folder, which has links to
-//! `examples` and `model-spec`. Their output and the picture must equal those of the page.
+//! Tests of the recipes in docs/recipes/. The commands of each page run in a new folder with links to `examples` and
+//! `model-spec`. Their output and the picture must equal the output and the picture on the page.
 //!
 //! The folder consists of links, and the commands need a Unix shell.
 
@@ -35,7 +35,7 @@ fn run_line(line: &str, folder: &Path) -> Output {
         .expect("a shell")
 }
 
-/// Returns whether `lines` equal `shown`, in which `...` represents any number of lines.
+/// Returns true if `lines` equal `shown`, in which `...` represents any number of lines.
 fn matches(shown: &[&str], lines: &[&str]) -> bool {
     match shown {
         [] => lines.is_empty(),
@@ -53,7 +53,7 @@ fn has_numpy_and_scipy() -> bool {
     found.is_ok_and(|output| output.status.success())
 }
 
-/// Returns whether a line runs a Python script that cannot run here, and records the skip.
+/// Returns true if a line needs Python packages that are not installed, and reports the skip.
 fn lacks_packages(line: &str) -> bool {
     let Some(script) = line.strip_prefix("python3 ") else {
         return false;
@@ -100,7 +100,7 @@ fn assert_prints_shown_output(page: &(String, String), folder: &Path) {
     }
 }
 
-/// Returns the page's name without folder and ending.
+/// Returns the page's name without folder and file extension.
 fn stem(page: &str) -> &str {
     let path = Path::new(page);
     path.file_stem()
@@ -155,7 +155,7 @@ fn files_shown_in_recipes_are_those_of_the_project() {
             if language == "console" {
                 continue;
             }
-            // Sections are separate parts of the file, in its order.
+            // A page may show parts of a file, in the order of the file.
             let is_shown_from = |file: &String| {
                 let mut rest = file.as_str();
                 shown.split("\n\n").all(|part| {

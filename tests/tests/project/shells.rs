@@ -1,4 +1,4 @@
-//! Shell completions and man pages.
+//! Tests of shell completions and man pages.
 
 use eomgen_tests::program::{run, run_accepted, run_rejected, text};
 

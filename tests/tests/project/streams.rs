@@ -1,5 +1,5 @@
-//! Output streams: one JSON document on stdout with `--json`, messages on stderr, and closed or
-//! full streams.
+//! Tests of the output streams: one JSON document on stdout with `--json`, messages on stderr, and closed or full
+//! streams.
 
 use std::fs::File;
 use std::process::{Command, Stdio};
@@ -53,7 +53,7 @@ fn json_option_prints_one_document_for_every_command() {
             "{key}: {certificate}"
         );
     }
-    // The warning about the undriven force goes to stderr.
+    // The warning about the undriven force is printed to stderr.
     let simulated = document(&["simulate", &emps, "--until", "1", "--out", &table], 0);
     assert_eq!(simulated["rows"], 1001);
     for name in ["matrices.json", "matrices.npz"] {
@@ -142,7 +142,7 @@ fn full_device_is_an_error_for_stdout_only() {
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("cannot write to stdout"));
 
-    // Stderr is full as well: the warning and the error cannot be written.
+    // Stderr is full as well, so that warning and error cannot be written.
     let folder = tempfile::tempdir().expect("a folder");
     let simulate = |until: &str| {
         let mut command = Command::new(program::path());

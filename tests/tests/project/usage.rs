@@ -1,4 +1,4 @@
-//! Invalid use of the program: exit status 2 and a message with the remedy.
+//! Tests of invalid use of the program: exit status 2 and a message with the remedy.
 
 use eomgen_tests::measured::Measured;
 use eomgen_tests::models::path;
@@ -21,8 +21,7 @@ fn spec(name: &str) -> String {
     path(name).display().to_string()
 }
 
-/// Returns the arguments of a command on a specification, with its other required arguments; writes
-/// no files.
+/// Returns the arguments of a command for a specification, including the other required arguments.
 fn arguments(command: &'static str, name: &str, more: &[&str]) -> Vec<String> {
     let needed: &[&str] = match command {
         "generate" => &["--out", "never-made"],
@@ -68,7 +67,7 @@ fn assert_simulate_rejects(name: &str, options: &[&str], part: &str) {
     assert!(found.contains(part), "{options:?}: {found}");
 }
 
-/// Simulates the arm with options that stop the solver, before its start (exit status 2) or after
+/// Simulates the arm with options that cause an error before the solver starts (exit status 2) or stop the solver later
 /// (1); returns the message.
 fn stop_message(options: &[&str]) -> String {
     let folder = tempfile::tempdir().expect("a folder");
@@ -115,7 +114,7 @@ fn help_succeeds_and_has_an_example() {
         "tour",
     ]) {
         let help = run_accepted(&[command, "--help"]);
-        // The usage line contains the command, too.
+        // The usage line contains the command too, so only the example is searched.
         let example = help.split_once("Example").map(|(_, example)| example);
         assert!(
             example.is_some_and(|example| example.contains(&format!("eomgen {command} "))),
@@ -176,7 +175,7 @@ fn earlier_names_work_but_are_not_listed() {
     }
 }
 
-/// A motion that starts at the nearest equilibrium stays there.
+/// A motion that starts at the nearest equilibrium remains at it.
 #[test]
 fn simulate_starts_at_the_equilibrium_nearest_to_a_state() {
     let motion = run_accepted(&[
@@ -393,8 +392,8 @@ fn dataset_in_place_of_a_specification_is_recognised() {
     }
 }
 
-/// A coordinate without inertia in the initial state is rejected by all commands that compute
-/// accelerations, with its location. Its equations can be derived.
+/// All commands that compute accelerations reject a coordinate without inertia in the initial state, with its location.
+/// The equations can still be derived.
 #[test]
 fn coordinates_without_inertia_are_rejected() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -435,8 +434,8 @@ fn parameters_without_solution_are_rejected() {
     for assignment in ["r_s=0", "m=0"] {
         assert_simulate_rejects("planetary_arm", &["--set", assignment], "division by 0");
     }
-    // Values so extreme that a rate overflows or no step size is small enough: the general solver
-    // stops after its start.
+    // The values are so extreme that a rate overflows or no step size is small enough. The general solver stops after
+    // its start.
     for assignment in ["l=1e-300", "omega=1e300", "k_sp=1e300", "alpha=90"] {
         let general = ["--solver", "rk", "--set", assignment];
         let found = stop_message(&general);
@@ -455,7 +454,7 @@ fn parameters_without_solution_are_rejected() {
         let found = stop_message(&exact);
         assert!(found.contains(part), "{assignment}: {found}");
     }
-    // The general solver runs after the exact one and prints the reason of its stop.
+    // The general solver runs after the exact one has failed, and prints the reason why it stops.
     let found = stop_message(&["--set", "k_sp=1e300"]);
     assert!(found.starts_with("warning: not solved exactly"), "{found}");
     assert!(found.contains("at t = "), "{found}");
@@ -489,7 +488,7 @@ fn invalid_times_are_rejected() {
         let found = rejection(&given);
         assert!(found.contains(part), "{option} {value}: {found}");
     }
-    // Beyond the range of the sine in the motor's ripple: the general solver detects this during
+    // The argument of the sine in the motor's ripple leaves the supported range; the general solver detects this during
     // the run.
     let arm = spec("planetary_arm");
     for (solver, status, part) in [
@@ -538,7 +537,7 @@ fn exact_solver_rejects_nonlinear_models_and_ignores_tolerance() {
     assert_eq!(said("adams", "planetary_arm", &[]).0, "adams");
 }
 
-/// docs/commands.md lists the commands without `--json`: `schema`, `completions` and `man`.
+/// Commands without `--json` are listed in docs/commands.md: `schema`, `completions` and `man`.
 #[test]
 fn commands_on_a_specification_print_one_json_document() {
     for command in COMMANDS {
@@ -560,7 +559,7 @@ fn commands_on_a_specification_print_one_json_document() {
     }
 }
 
-/// Errors with `--json` are one document on stdout, with the message of stderr and the places.
+/// With `--json`, an error is one document on stdout with the message and the locations; the message is also on stderr.
 #[test]
 fn errors_with_json_are_documents() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! Comparisons of correct models with constraints, against records that are computed in independent coordinates.
+//! Tests of `compare` with correct models with constraints. The records are computed in independent coordinates.
 
 use eomgen_tests::constrained_machines::{four_bar, gears, pendulum, sleigh, slider_crank};
 use eomgen_tests::constrained_records::{Machine, Sampling};
@@ -35,7 +35,7 @@ fn compare<const S: usize, const C: usize>(
     run_on_texts("compare", texts)
 }
 
-/// Returns floor, training and test residual of a channel, in standard deviations of its noise.
+/// Returns noise floor, training residual and test residual of a channel, in standard deviations of the noise.
 fn gap(found: &Value, (channel, noise): (&str, f64)) -> [f64; 3] {
     let of = &found["gap"][channel];
     ["floor", "train", "test"].map(|key| of[key].as_f64().expect("a number") / noise)
@@ -81,7 +81,7 @@ fn sleigh_on_an_edge_leaves_the_noise() {
     assert_no_gap(&sleigh(0.0, false), WINDOWS);
 }
 
-/// Asserts that the specifications with constraints and in independent coordinates leave the same.
+/// Asserts that the specification with constraints and the one in independent coordinates have equal residuals.
 fn assert_same<const S: usize, const C: usize>(machine: &Machine<S, C>, sampling: Sampling) {
     let [own, other] = [false, true].map(|which| compare(machine, sampling, which));
     for channel in &machine.channels {

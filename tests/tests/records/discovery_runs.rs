@@ -1,4 +1,4 @@
-//! Runs of `discover`: a killed run leaves no partial file, and the same seed gives the same bytes.
+//! Tests of runs of `discover`: a killed run leaves no partial file, and the same seed gives the same bytes.
 
 use std::process::{Command, Stdio};
 use std::time::Duration;

@@ -1,5 +1,5 @@
-//! Simulations driven by a record: the motion of a ballscrew axis against its closed form, and
-//! invalid records rejected with their location.
+//! Tests of simulations driven by a record: comparison of a ballscrew axis with its closed form, and rejection of
+//! invalid records with their location.
 
 use std::path::{Path, PathBuf};
 
@@ -78,7 +78,7 @@ fn rows(path: &Path) -> Vec<[f64; 3]> {
     text.lines().skip(1).map(row).collect()
 }
 
-/// Advances M q'' = F - F_v q' with constant F: the speed tends to F/F_v.
+/// Advances the solution of M q'' = F - F_v q' with constant F; the speed tends to F/F_v.
 fn coast([q, v]: [f64; 2], force: f64, time: f64) -> [f64; 2] {
     let (mass, friction) = (95.0, 210.0);
     let (lasting, rate) = (force / friction, friction / mass);
@@ -89,7 +89,7 @@ fn coast([q, v]: [f64; 2], force: f64, time: f64) -> [f64; 2] {
     ]
 }
 
-/// Times in s and forces in N, held until the next.
+/// Times in s and forces in N; each force is held until the next time.
 const STEPS: [(f64, f64); 5] = [
     (0.0, 100.0),
     (0.3, -250.0),
@@ -315,7 +315,7 @@ fn input_without_record_is_zero_with_a_warning() {
     assert!(rows(&dataset.file("a.csv")).iter().all(|row| row[1] == 0.0));
 }
 
-/// Mass on a spring with prescribed motion of its foot: m (r'' + s'') + k r = 0.
+/// Mass on a spring whose foot has the prescribed motion s: m (r'' + s'') + k r = 0.
 const MOVED_FOOT: &str = r#"
 [model]
 name = "moved_foot"
@@ -386,7 +386,7 @@ fn prescribed_motion_by_expression_and_by_record_match_closed_form() {
     }
     let unit = last(&["--input", "s=10*sin(7*t) mm", "--until", "2"]);
     assert!(off(&unit) < 1e-11, "{unit:?}");
-    // The bounds are the errors of a cubic spline through samples of 5 ms.
+    // The bounds allow for the error of a cubic spline through samples with 5 ms spacing.
     let found = last(&["--record", &file("dataset.toml")]);
     assert!(off(&found[..2]) < 1e-6 && off(&found) < 1e-5, "{found:?}");
     let held = run_rejected(&[

@@ -1,9 +1,9 @@
-//! Free decays from states that the channels do not show.
+//! Tests of free decays from initial states that no channel measures.
 
 use eomgen_tests::program::{run_accepted, run_on_dataset};
 use eomgen_tests::random_numbers::Numbers;
 
-/// A motor with its winding drives a load over a shaft; only the motor's angle is measured.
+/// Motor with a winding that drives a load over an elastic shaft; only the motor's angle is measured.
 const DRIVE: &str = r#"
 [model]
 name = "drive"
@@ -45,7 +45,7 @@ noise = 5e-4
 length = 0.5
 "#;
 
-/// The shaft is twisted and the load turns: the first samples show neither.
+/// Initially the shaft is twisted and the load turns; the first samples do not show this.
 #[test]
 fn free_decay_from_an_unmeasured_state_is_explained() {
     let folder = tempfile::tempdir().expect("a folder");

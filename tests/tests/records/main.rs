@@ -1,4 +1,4 @@
-//! Measured records: reading, rejection, comparison with simulations.
+//! Tests of measured records: reading, rejection, comparison with simulations.
 
 mod constraints;
 mod discovery_runs;

@@ -1,6 +1,6 @@
-//! Channels of a driven mass on a spring with dry friction: acceleration only or with position,
-//! intervals at rest, and two proportional quantities such as both encoders of a joint. The records
-//! integrate Newton's and Coulomb's laws with small steps.
+//! Tests with channels of a driven mass on a spring with dry friction: only acceleration or also position, intervals at
+//! rest, and two proportional quantities such as two encoders of a joint. The records are from Newton's and Coulomb's
+//! laws, integrated with small steps.
 
 use eomgen_tests::program;
 use eomgen_tests::program::run_on_dataset;
@@ -72,11 +72,10 @@ noise = 1e-5
 
 const FRICTION: f64 = 2.0;
 
-/// Noise of the accelerometer, m/s^2, and of the position, m.
+/// Standard deviations of the noise of the accelerometer (m/s^2) and of the position (m).
 const NOISE: [f64; 2] = [5e-3, 1e-5];
 
-/// Returns a record of t, u, x, a. With `idle`, the force is too small to move the mass in every
-/// other half second.
+/// Returns a record of t, u, x, a. If `idle`, the force is too small to move the mass in every second half second.
 fn record(friction: f64, turn: f64, idle: bool) -> String {
     let (m, c, k) = (2.0, 6.0, 300.0);
     let (mut x, mut v, mut noise): (f64, f64, f64) = (0.0, 0.0, 0.3 + 0.1 * turn);
@@ -92,7 +91,7 @@ fn record(friction: f64, turn: f64, idle: bool) -> String {
             true => 0.0,
             false => wave,
         };
-        // At rest, friction balances the other forces up to its level.
+        // At rest, the friction balances the other forces up to its level.
         let acceleration = |x: f64, v: f64| {
             let others = u - c * v - k * x;
             match v == 0.0 {
@@ -183,7 +182,7 @@ fn both_encoders_of_a_joint_are_proportional_channels() {
         .replace("column = \"x\"", "column = \"a\"")
         .replace("1e-5", "2e-3");
     let dataset = format!("{begin}{POSITION}{motor}\n[initial]{end}");
-    // The second encoder replaces the accelerometer's column: coarser, with another gain.
+    // A second encoder replaces the accelerometer's column; it has a lower resolution and another gain.
     let both = |gain: f64, friction: f64, turn: f64| {
         let mut noise = 0.4;
         let mut text = "t,u,x,a\n".to_owned();
@@ -223,8 +222,8 @@ fn both_encoders_of_a_joint_are_proportional_channels() {
     }
 }
 
-/// Compares records of x'' = -x' - 100 x, from two positions, with the oscillator that the
-/// specification starts from 0.1 m.
+/// Compares records of x'' = -x' - 100 x from two initial positions with the oscillator, whose specification has the
+/// initial position 0.1 m.
 fn compare_free_vibrations(train: f64, test: f64, channel: &str, initial: &str) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let write = |name: &str, text: &str| {
@@ -236,7 +235,7 @@ fn compare_free_vibrations(train: f64, test: f64, channel: &str, initial: &str) 
             let t = f64::from(sample) * 0.01;
             let phase = frequency * t;
             let shape = phase.cos() + 0.5 / frequency * phase.sin();
-            // Rounding to 0.1 mm is the noise of the sensor.
+            // The noise of the sensor is the rounding to 0.1 mm.
             let y = first * (-0.5 * t).exp() * shape;
             format!("{t:.2},{:.4}\n", y)
         };
@@ -271,7 +270,7 @@ fn free_vibration_from_the_other_side_is_no_wrong_sign() {
 
 #[test]
 fn initial_state_that_a_record_contradicts_is_named() {
-    // (first position of the records, initial state, contradicted records)
+    // Each case contains the first positions of the records, the initial state, and the records that contradict it.
     let cases = [
         ([0.1, 0.05], "state = \"rest\"", vec!["test[0]"]),
         ([0.1, 0.1001], "state = \"rest\"", vec![]),
@@ -296,8 +295,8 @@ fn initial_state_that_a_record_contradicts_is_named() {
     }
 }
 
-/// A reversal of the friction that moves past a sample changes the acceleration there by its jump:
-/// no difference quotient by a small step shows a derivative.
+/// If a reversal of the friction moves past a sample, the acceleration at the sample changes by a jump. A difference
+/// quotient with a small step is then not a derivative.
 #[test]
 fn jumps_of_an_acceleration_do_not_narrow_intervals() {
     let with_friction = OSCILLATOR.replace(

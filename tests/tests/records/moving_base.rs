@@ -1,4 +1,4 @@
-//! Comparisons of correct models with records of machines on a moving base, whose prescribed motion is recorded.
+//! Tests of `compare` with correct models of machines on a moving base, whose prescribed motion is recorded.
 
 use eomgen_tests::moving_base::{Machine, Recording};
 use eomgen_tests::moving_machines::{mast, pendulum, slider, tower};

@@ -1,4 +1,4 @@
-//! Parquet records: same results as CSV records, and broken files are rejected.
+//! Tests of Parquet records: results equal those of CSV records, and damaged files are rejected.
 
 use eomgen_tests::measured::{Measured, record};
 use eomgen_tests::models::path;

@@ -1,5 +1,5 @@
-//! Implausible records are rejected with the reason by `compare` and `discover`; weaknesses of a
-//! record are noted.
+//! Tests that `compare` and `discover` reject implausible records with the reason, and print notes about weaknesses of
+//! a record.
 
 use eomgen_tests::measured::{DESCRIPTION, Measured, SAMPLES, record};
 
@@ -20,7 +20,7 @@ fn change_cells(change: impl Fn(usize, &mut Vec<String>)) -> String {
     text.lines().enumerate().map(line).collect()
 }
 
-/// Returns the record with `by` applied to column `column` of the lines from `from` on.
+/// Returns the record with `by` applied to the cells of column `column` in all lines from line `from` on.
 fn change_column(column: usize, from: usize, by: impl Fn(usize, &str) -> String) -> String {
     change_cells(|place, cells| {
         if place >= from.max(1) {
@@ -332,7 +332,7 @@ fn known_gain_of_a_sensor_is_part_of_the_expected_column() {
             result["verdict"], "no_significant_gap",
             "{gain}: {result:#}"
         );
-        // The same gain in the specification, and the opposite one.
+        // The specification has the same gain in one case and the opposite gain in the other.
         let unstated = DESCRIPTION.replacen("noise = 1e-6\n", &noise, 1);
         measured.write("dataset.toml", unstated.as_bytes());
         for (sign, is_right) in [(1.0, true), (-1.0, false)] {
@@ -419,7 +419,7 @@ fn output_folder_that_is_a_file_is_rejected_before_the_fit() {
 fn huge_records_are_rejected_before_reading() {
     let measured = Measured::stage(0.0);
     let file = std::fs::File::create(measured.file("train.csv")).expect("a file");
-    // A sparse file: a gigabyte that takes no disk space.
+    // The file is sparse: it has a gigabyte but takes no disk space.
     file.set_len(1 << 30).expect("a long file");
     let message = measured.rejection();
     assert!(
@@ -455,7 +455,7 @@ fn weaknesses_of_a_record_are_noted() {
         result["notes"].to_string().contains("missing"),
         "{result:#}"
     );
-    // The crests of the motion, a fortieth, are cut off.
+    // The peaks of the motion, a fortieth of the samples, are clipped.
     let clipped = change_column(2, 1, |_, cell| {
         let value: f64 = cell.parse().expect("a number");
         format!("{:?}", value.min(0.1))

@@ -1,6 +1,5 @@
-//! Declared errors of sensors in comparisons with a correct model: biases far from zero, gains, and
-//! delays under inputs that jump at each sample. The records integrate a pendulum with a hardening
-//! spring in small steps.
+//! Tests of `compare` with a correct model and declared sensor errors: large biases, gains, and delays under inputs
+//! that jump at each sample. The records are from a pendulum with a hardening spring, integrated with small steps.
 
 use eomgen_tests::program::{Texts, run_on_texts};
 use serde_json::Value;
@@ -41,18 +40,18 @@ const STEP: f64 = 0.04;
 /// Number of samples of a record.
 const SAMPLES: usize = 400;
 
-/// Fine steps per sample.
+/// Number of integration steps per sample.
 const PARTS: usize = 32;
 
-/// Noise of the angle, rad, and of the rate, rad/s.
+/// Standard deviations of the noise of the angle (rad) and of the rate (rad/s).
 const NOISE: [f64; 2] = [1e-3, 4e-3];
 
-/// A sensor of the angle or of the rate.
+/// Errors of a sensor of the angle or of the rate.
 #[derive(Clone, Copy)]
 struct Sensor {
     gain: f64,
     bias: f64,
-    /// In fine steps.
+    /// Delay, in integration steps.
     delay: i32,
 }
 
@@ -78,7 +77,7 @@ impl Noise {
     }
 }
 
-/// Returns the motion at each fine step, from two samples before the record to two after it, and the
+/// Returns the states at all integration steps, from two samples before the record to two samples after it, and the
 /// held inputs of these samples.
 fn motion(seed: u64) -> (Vec<[f64; 2]>, Vec<f64>) {
     let turn = seed as f64;
@@ -105,7 +104,7 @@ fn motion(seed: u64) -> (Vec<[f64; 2]>, Vec<f64>) {
     (states, inputs)
 }
 
-/// Returns a record of t, u, th, v.
+/// Returns a record with the columns t, u, th, v.
 fn record(sensors: [Sensor; 2], seed: u64) -> String {
     let (states, inputs) = motion(seed);
     let mut noise = Noise(seed + 11);
@@ -123,14 +122,14 @@ fn record(sensors: [Sensor; 2], seed: u64) -> String {
     text
 }
 
-/// Channels of a comparison, with the text that declares the errors of their sensors.
+/// Channels of a comparison, with the text that declares the errors of the sensors.
 #[derive(Clone, Copy)]
 enum Channels<'t> {
     Angle(&'t str),
     AngleAndRate,
 }
 
-/// Compares the pendulum with records of these sensors. `start`: source of the initial states.
+/// Compares the pendulum with records of these sensors. `start` is the source of the initial states.
 fn compare(sensors: [Sensor; 2], channels: Channels<'_>, start: &str) -> Value {
     let declared = match channels {
         Channels::Angle(declared) => declared,
@@ -160,7 +159,7 @@ fn compare(sensors: [Sensor; 2], channels: Channels<'_>, start: &str) -> Value {
     )
 }
 
-/// Asserts that residual and noise floor of a correct model are near the noise of the sensors.
+/// Asserts that residual and noise floor of a correct model are close to the noise of the sensors.
 fn assert_no_gap(found: &Value, noises: &[(&str, f64)], case: &str) {
     assert_eq!(
         found["verdict"], "no_significant_gap",

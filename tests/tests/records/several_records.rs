@@ -1,4 +1,4 @@
-//! Several records: contradictory records, and a search stopped by its time limit.
+//! Tests with several records: contradictory records, and a search that its time limit stops.
 
 use eomgen_tests::measured::{DESCRIPTION, Measured, Moment, record_with_force};
 use eomgen_tests::program;
@@ -52,7 +52,7 @@ fn different_payload_in_one_record_is_reported() {
 
 #[test]
 fn effect_not_confirmed_by_held_out_record_is_reported() {
-    // Dry friction of 3 N in two records; the third is from a shaking bench.
+    // Two records have dry friction of 3 N; the third is from a vibrating bench.
     let dry = |at: Moment| -3.0 * (at.v / 1e-4).tanh();
     let shaken = |at: Moment| -3.0 * (at.v / 1e-4).tanh() + 90.0 * (61.0 * at.force).sin();
     let measured = Measured::stage(3.0);

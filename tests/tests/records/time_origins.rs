@@ -1,5 +1,5 @@
-//! Times of records: no result depends on the origin or the unit of the time. Records of an oscillator under held forces and
-//! of a pendulum with given motion, both in closed form.
+//! Tests that results do not depend on the origin or the unit of the time. The records are closed-form motions of an
+//! oscillator under piecewise constant forces and of a pendulum with given motion.
 
 use eomgen_tests::logistic_noise::LogisticNoise;
 use eomgen_tests::program::{Texts, run_accepted, run_on_texts};
@@ -53,15 +53,15 @@ k = { relative = 0.05 }
 length = 1
 "#;
 
-/// Noise of the position, m.
+/// Standard deviation of the noise of the position, in m.
 const NOISE: f64 = 1e-5;
 
-/// Times of a record, in ns.
+/// Sample times of a record, in ns.
 #[derive(Clone, Copy)]
 struct Times {
     origin: i128,
     step: i128,
-    /// Unit of the column and its length.
+    /// Unit of the time column, and its length in ns.
     unit: (&'static str, i128),
 }
 
@@ -74,7 +74,7 @@ impl Times {
         }
     }
 
-    /// Returns the decimals of a time.
+    /// Returns the time of a sample as decimal text.
     fn write(&self, sample: i128) -> String {
         let (t, (_, unit)) = (self.origin + sample * self.step, self.unit);
         let decimals = unit.ilog10() as usize;
@@ -99,7 +99,7 @@ fn swing([x, v]: [f64; 2], force: f64, time: f64) -> [f64; 2] {
     ]
 }
 
-/// Returns a record of t, u, x in mm, and the counts of an encoder of the angle with 1024 values.
+/// Returns a record of t, u, x in mm, and the counts of an angular encoder with 1024 values.
 fn oscillator_record(
     times: Times,
     samples: i128,
@@ -145,7 +145,7 @@ fn estimate(document: &Value, parameter: &str) -> [f64; 2] {
     ["value", "sd"].map(|key| found[key].as_f64().expect("a number"))
 }
 
-/// Asserts that two comparisons agree to a hundredth of a standard deviation.
+/// Asserts that two comparisons agree to within a hundredth of a standard deviation.
 fn assert_same(one: &Value, other: &Value, parameters: &[&str], what: &str) {
     assert_eq!(one["verdict"], "no_significant_gap", "{what} {one:#}");
     assert_eq!(one["verdict"], other["verdict"], "{what} {other:#}");
@@ -319,7 +319,7 @@ fn given_motion_does_not_depend_on_origin_and_unit_of_time() {
         let found = compare(unit.0, &|k| times.write(k));
         assert_same(&right, &found, &["J", "c", "w"], unit.0);
     }
-    // A logger that adds up doubles, and misses rows.
+    // The logger accumulates the time in doubles and misses rows.
     let added = |k: i128| 1.7e9 + 0.002 * (k + 40 * i128::from(k > 900)) as f64;
     let found = compare("s", &|k| format!("{:.18e}", added(k)));
     let jumping = |k: i128| format!("{:.3}", 0.002 * (k + 40 * i128::from(k > 900)) as f64);
@@ -328,7 +328,7 @@ fn given_motion_does_not_depend_on_origin_and_unit_of_time() {
 
 #[test]
 fn wrapped_observable_starts_on_the_branch_of_the_initial_state() {
-    // The counter starts just below 0 or at a few counts, according to the noise.
+    // Depending on the noise, the counter starts just below 0 or at a few counts.
     let dataset = DATASET.replace(
         "[initial]",
         "[channels.angle]\ncolumn = \"n\"\nunit = \"1\"\nwrap = 1024\nnoise = 4\n\
@@ -362,7 +362,7 @@ fn wrapped_observable_starts_on_the_branch_of_the_initial_state() {
 
 #[test]
 fn thirty_kept_samples_per_period_are_enough() {
-    // The oscillator has 3.2 Hz, its input up to 4.7 Hz, the record 1 kHz.
+    // The natural frequency is 3.2 Hz, the input contains frequencies up to 4.7 Hz, and the sampling rate is 1 kHz.
     let times = Times::from_zero(1_000_000);
     for every in [2, 5, 7] {
         let dataset = DATASET.replace(

@@ -1,5 +1,5 @@
-//! Invalid specifications: the program exits with status 2 and a located message, and leaves no
-//! files. `model-spec` tests the texts of the messages.
+//! Tests of invalid specifications: the program exits with status 2 and a message with location, and leaves no files.
+//! The tests of `model-spec` check the texts of the messages.
 
 use std::path::{Path, PathBuf};
 
@@ -28,8 +28,7 @@ fn reject(command: &[&str], spec: &Path) -> String {
     message
 }
 
-/// Asserts that `check` and `generate` reject `spec` and that no folder is left; returns the
-/// message.
+/// Asserts that `check` and `generate` reject `spec` and leave no folder; returns the message.
 fn reject_without_files(spec: &Path) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out");

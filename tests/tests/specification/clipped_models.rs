@@ -1,4 +1,4 @@
-//! Certificates of models with powers of clipped expressions, in energies and in forces.
+//! Tests of certificates of models with powers of clipped expressions, in energies and in forces.
 
 use eomgen_tests::certified::{certify, check_model};
 use eomgen_validate::certificate::{Coverage, Verdict};
@@ -60,7 +60,7 @@ fn inertia_and_damping_along_clipped_powers_pass() {
     }
 }
 
-/// A product that is zero only on a surface does not rest at zero near it.
+/// A product that is zero only on a surface is not constantly zero near it.
 #[test]
 fn contacts_that_never_pull_pass_in_every_regime() {
     for (force, regimes) in [

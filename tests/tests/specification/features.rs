@@ -1,5 +1,5 @@
-//! Specifications with one language feature each, certified against an oracle that shares no code
-//! with the derivation. Each file in `features/` is one test with its orders listed below.
+//! Tests of specifications with one language feature each, certified with an oracle that shares no code with the
+//! derivation. Each file in `features/` is one test; its orders are listed below.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use eomgen_tests::models::{samples, variant};
 use eomgen_validate::model_certificate::certify_source;
 use eomgen_validate::sampler::Sample;
 
-/// Declares one test per file and a test that every file is listed.
+/// Declares one test for each file, and a test that every file is listed.
 macro_rules! features {
     (
         by_every_check { $($name:ident: $orders:expr;)* }
@@ -75,7 +75,7 @@ features! {
         states_of_first_order: [0, 1, 3];
         piecewise_linear_states: [0];
     }
-    // Forces do not account for the whole energy, so the power is also compared with central
+    // In these models the energy also changes by explicit time dependence, so the power is also compared with central
     // differences of the energy.
     also_by_differences {
         prescribed_motion: [0, 2];
@@ -132,8 +132,8 @@ fn certify(name: &str, orders: &[usize]) {
     assert!(failures.is_empty(), "{name}:\n{}", failures.join("\n"));
 }
 
-/// Compares the power with the central difference of the energy along the motion. With steps of
-/// about 1e-5 of the fastest period, truncation and rounding of E leave about 1e-8 of the terms.
+/// Compares the power with the central difference of the energy along the motion. With steps of about 1e-5 of the
+/// fastest period, truncation and rounding errors of E are about 1e-8 of the terms.
 fn assert_power_matches_energy_rate(name: &str, orders: &[usize]) {
     let model = load(name);
     for &order in orders {
@@ -150,7 +150,7 @@ fn assert_power_matches_energy_rate(name: &str, orders: &[usize]) {
                     .map(|(y, rate)| y + step * rate)
                     .collect();
                 let mut out = vec![0.0; count];
-                // Prescribed motion advances at its rates.
+                // Prescribed motion advances with its given rates.
                 let inputs = model
                     .inputs
                     .iter()

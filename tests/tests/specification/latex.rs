@@ -1,5 +1,5 @@
-//! Compilation of the LaTeX output of every specification, if LaTeX is installed. `codegen` tests
-//! the text itself.
+//! Test that the LaTeX output of every specification compiles, if LaTeX is installed. The tests of `codegen` check the
+//! text itself.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,4 +1,4 @@
-//! Exact compiler messages of the macro for each file in `tests/macro_errors/errors`. To rewrite them, run
+//! Tests of the exact compiler messages of the macro for each file in `tests/macro_errors/errors`. To rewrite them, run
 //! `EOMGEN_REFRESH=1 cargo test --release -p eomgen-tests --test specification macro_errors` and review the difference.
 
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::process::Command;
 use eomgen_tests::models::project;
 use eomgen_tests::program::compiled_library;
 
-/// Returns the compiler's messages for a file that must not compile, without their count.
+/// Returns the compiler's messages for a file that must not compile, without the summary line.
 fn messages(file: &Path, root: &Path, library: &Path, out: &Path) -> String {
     let dependencies = library.parent().expect("a folder");
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
@@ -18,7 +18,7 @@ fn messages(file: &Path, root: &Path, library: &Path, out: &Path) -> String {
         .arg(format!("-Ldependency={}", dependencies.display()))
         .arg(file)
         .current_dir(root)
-        // Paths of specifications start here.
+        // Paths of specifications are relative to this folder.
         .env("CARGO_MANIFEST_DIR", root)
         .output()
         .expect("rustc can be run");

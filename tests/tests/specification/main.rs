@@ -1,4 +1,4 @@
-//! Reading specifications: grammar, units, ranges, every feature of the language.
+//! Tests of specifications: grammar, units, ranges, every feature of the language.
 
 mod broken_specs;
 mod clipped_models;

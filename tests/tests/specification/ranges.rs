@@ -1,4 +1,4 @@
-//! Ranges of a model: `simulate` warns at the first time at which a value leaves its range.
+//! Tests of ranges: `simulate` warns with the first time at which a value leaves its range.
 
 use eomgen_tests::program::eomgen;
 

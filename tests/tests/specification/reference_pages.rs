@@ -1,5 +1,5 @@
-//! The tables of sections and keys in the documentation match the tables of the readers.
-//! `EOMGEN_BLESS=1 cargo test -p eomgen-tests --test specification reference_pages` rewrites them.
+//! Test that the tables of sections and keys in the documentation match the tables of the parsers. `EOMGEN_BLESS=1
+//! cargo test -p eomgen-tests --test specification reference_pages` rewrites them.
 
 use eomgen_model_spec::keys::{Key, Keys, Kind};
 use eomgen_model_spec::schema::kinds;
@@ -32,7 +32,7 @@ fn meaning(key: &Key) -> String {
     }
 }
 
-/// Returns the kind of a value, and the keys that replace or need each other.
+/// Returns the kind of a value with its allowed keys.
 fn value(kind: Kind) -> String {
     let listed = |names: &[&str]| {
         let quoted = names.iter().map(|name| format!("`{name}`"));
@@ -59,7 +59,7 @@ fn value(kind: Kind) -> String {
     }
 }
 
-/// Returns the rows of the keys of a table; `path` precedes their names.
+/// Returns one row for each key of a table; `path` is the prefix of the names.
 fn rows(keys: &Keys, path: &str) -> String {
     let same = |one: &Key, other: &Key| one.doc == other.doc && one.heading == other.heading;
     let groups = keys.list.chunk_by(|one, other| same(one, other));
@@ -76,7 +76,7 @@ fn rows(keys: &Keys, path: &str) -> String {
     rows.collect()
 }
 
-/// Returns the rows of a file: each section before its keys.
+/// Returns the rows of a kind of file: each section, followed by its keys.
 fn table(file: &Keys) -> String {
     let sections = file.list.iter().map(|section| match section.kind {
         Kind::Table(keys) | Kind::Entries(keys) => {
@@ -106,7 +106,7 @@ fn legend() -> String {
     rows
 }
 
-/// Compares the part of a page between the marks with the table, or rewrites it.
+/// Compares the part of a page between the markers with the table, or rewrites it.
 #[track_caller]
 fn compare(page: &str, table: &str) {
     let path = project().join("docs").join(page);

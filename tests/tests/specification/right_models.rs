@@ -1,6 +1,5 @@
-//! Correct models that are difficult to check: terms of a row cancel, functions have a domain, the
-//! energy grows by work of a force, the motion comes to rest, switches drop out. Their certificates
-//! pass and report the coverage.
+//! Tests of correct models that are difficult to check: terms of a row cancel, functions have a domain, a force
+//! increases the energy, the motion comes to rest, switches cancel. Their certificates pass and report the coverage.
 
 use eomgen_tests::certified::{certify, check_model};
 use eomgen_validate::certificate::{Certificate, Check, Coverage, SkipKind, Verdict};
@@ -13,7 +12,7 @@ fn assert_passes(text: &str) -> Certificate {
     certificate
 }
 
-/// Asserts that the equations of `text` fail once `part` is replaced by `changed`.
+/// Asserts that the certificate of `text` fails if `part` is replaced by `changed` in the derived model.
 fn assert_change_fails(text: &str, part: &str, changed: &str) {
     assert!(text.contains(part), "{part} in\n{text}");
     let (model, subject) = (check_model(text), check_model(&text.replace(part, changed)));
@@ -94,7 +93,7 @@ fn functions_are_checked_inside_their_domain() {
         "k*L^2*ln(x/L)",
         "k*L^2*(x/L)^1.5",
         "k*L^2*sqrt(0.5 - x/L)",
-        // The domain is a twentieth of the interval of the sampled states.
+        // The domain is a twentieth of the interval in which states are sampled.
         "k*L^2*asin(20*(x/L - 0.42))",
     ] {
         let text = masses(potential);
@@ -230,7 +229,7 @@ fn switches_that_drop_out_of_the_equations_need_no_guard() {
     let text = masses("k*L^2*contact(x, L/2)*sin(sqrt(k/m)*t)");
     let model = check_model(&text);
     let certificate = certify(&model, &model);
-    // The energy jumps at the switch, and no check covers the jump of the rates there.
+    // The energy jumps at the switch, and no check covers the jump of the rates.
     let kind = |check: &Check| check.skipped.as_ref().map(|skip| skip.kind);
     let not_passed = certificate.checks.iter().filter(|check| !check.passed);
     let applicable = not_passed.filter(|check| kind(check) != Some(SkipKind::NotApplicable));
@@ -238,7 +237,7 @@ fn switches_that_drop_out_of_the_equations_need_no_guard() {
     assert_eq!(names, ["corners"], "{text}");
     assert_eq!(kind(find(&certificate, "corners")), Some(SkipKind::NotRun));
     assert_eq!(certificate.verdict, Verdict::Partial);
-    // A force with the same switch does appear in the equations and needs a guard.
+    // A force with the same switch appears in the equations and needs a guard.
     let force =
         masses("k*x^2") + "[forces]\nstep = { on = \"x\", value = \"k*L*contact(x, L/2)\" }\n";
     assert_passes(&force);
@@ -253,7 +252,7 @@ fn power_balance_holds_for_time_dependent_and_gyroscopic_energies() {
     );
     let certificate = assert_passes(&gyroscopic);
     assert!(find(&certificate, "power_balance").passed);
-    // At small x the term is negligible, but its rate is not.
+    // At small x the term is negligible, but its derivative is not.
     let steep = masses("k*x^2").replace(
         "[potential]",
         "gyro = \"m*L*sqrt(k/m)*dot(y)*(x/L)^21\"\n[potential]",
@@ -268,8 +267,8 @@ fn power_balance_holds_for_time_dependent_and_gyroscopic_energies() {
     assert!(find(&certificate, "power").passed);
 }
 
-/// Cylinder behind a valve that feeds from p_s above u_0, drains to p_t below -u_0, and is closed
-/// in between.
+/// Cylinder with a valve. For u > u_0 the valve connects it to the supply p_s, for u < -u_0 to the tank p_t; between
+/// these values it is closed.
 const VALVE: &str = r#"
 [model]
 name = "valve"
@@ -305,7 +304,7 @@ fn coverage(regimes: u64, sampled: u64, unreachable: u64) -> Option<Coverage> {
 
 #[test]
 fn all_reachable_regimes_of_valve_are_sampled() {
-    // Two directions, three ranges of the input and three ranges of the pressure: 18 of 32 regimes.
+    // Two directions, three ranges of the input and three ranges of the pressure give 18 of 32 regimes.
     assert_eq!(assert_passes(VALVE).coverage, coverage(18, 18, 14));
     let in_kilopascal = VALVE.replace("2e7, unit = \"Pa\"", "2e4, unit = \"kPa\"");
     assert_eq!(assert_passes(&in_kilopascal).coverage, coverage(18, 18, 14));
@@ -372,7 +371,7 @@ fn late_or_small_regime_is_reached() {
 
 #[test]
 fn regime_neither_reached_nor_excluded_makes_certificate_partial() {
-    // theta exp(-theta^2) < 0.43, but the bounds of the factors do not show it.
+    // theta exp(-theta^2) < 0.43, but bounds of the separate factors do not prove it.
     let text = ROTOR.to_owned()
         + "[forces]\nf = { on = \"theta\", value = \"k*above(theta*exp(-theta^2) - 0.5)\" }\n";
     let model = check_model(&text);

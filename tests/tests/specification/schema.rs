@@ -1,4 +1,4 @@
-//! `eomgen schema` against the reader of specifications: both accept the same files and both reject
+//! Comparison of `eomgen schema` with the parser of specifications: both accept the same files, and both reject
 //! misspelt keys, values of the wrong type and missing keys.
 
 use std::path::{Path, PathBuf};
@@ -42,7 +42,7 @@ fn json(path: &Path) -> Option<Value> {
     toml_edit::de::from_str(&text).ok()
 }
 
-/// Returns the reader's diagnostics; empty if the specification is valid.
+/// Returns the parser's diagnostics; empty if the specification is valid.
 fn diagnose(document: &Value) -> String {
     let text = toml_edit::ser::to_string(document).expect("TOML");
     match eomgen_model_spec::check(Source::new("a.toml", text)) {
@@ -51,7 +51,7 @@ fn diagnose(document: &Value) -> String {
     }
 }
 
-/// Returns a copy of the document per key, changed there by `change`, with the path of the key.
+/// Returns, for each key, its path and a copy of the document in which `change` was applied to the key's value.
 fn change_each_key(document: &Value, change: impl Fn(&mut Value, &str)) -> Vec<(String, Value)> {
     let mut all = Vec::new();
     let tables = document.as_object().expect("a table");

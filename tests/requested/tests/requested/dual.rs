@@ -1,5 +1,5 @@
-//! Dual numbers with one derivative over any scalar; nested, they have second derivatives. They
-//! share only the emitted functions with the symbolic derivatives.
+//! Dual numbers with one derivative over any scalar; nested dual numbers have second derivatives. They share no code
+//! with the symbolic derivatives except the emitted functions.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

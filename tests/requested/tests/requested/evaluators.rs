@@ -1,4 +1,4 @@
-//! The same variants in this process, interpreted and as machine code.
+//! Evaluators of the tested variants, interpreted and as machine code.
 
 use std::cell::RefCell;
 use std::collections::HashMap;

@@ -1,4 +1,4 @@
-//! Every lane has the bits of a scalar computation on all instruction sets: all functions of the
+//! Tests that every SIMD lane is bit-identical to a scalar computation on all instruction sets: all functions of the
 //! language, and a model with contacts whose regimes differ between lanes.
 
 use eomgen_lanes::{LANES, Lanes, Registers, Task, Vector};
@@ -14,8 +14,8 @@ mod arm {
 }
 eomgen_lanes::scalar!(arm);
 
-/// Runs on a thread with a large stack. Without optimisation, all inlined functions have separate
-/// stack slots.
+/// Runs `run` on a thread with a large stack, because unoptimised builds need separate stack slots for all inlined
+/// functions.
 fn run_with_large_stack<T: Send>(run: impl FnOnce() -> T + Send) -> T {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(1 << 28);
@@ -46,7 +46,7 @@ macro_rules! bits {
                     }
                 }
                 let lane = |i: usize| -> [f64; LANES] {
-                    // Magnitudes on both sides of every limit.
+                    // The magnitudes are on both sides of every threshold.
                     std::array::from_fn(|k| {
                         let number = numbers[i * LANES + k];
                         $scale * number * 10_f64.powf(4.0 * number)

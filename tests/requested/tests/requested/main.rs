@@ -1,5 +1,5 @@
-//! Requested outputs against independent computations: dual numbers through the emitted functions,
-//! and identities of the equations.
+//! Comparison of requested outputs with independent computations: emitted functions evaluated with dual numbers, and
+//! identities of the equations.
 
 #![allow(
     clippy::reversed_empty_ranges,
@@ -18,14 +18,14 @@ use eomgen_codegen::program::evaluator::Point as EvaluatorPoint;
 use proptest::prelude::*;
 use tracked::Tracked;
 
-/// Source of numbers with magnitudes between 1e-5 and 1.
+/// Source of random numbers with magnitudes between 1e-5 and 1.
 struct NumberSource<'a> {
     numbers: &'a [f64],
     next: usize,
 }
 
 impl NumberSource<'_> {
-    /// Returns the next number from -1 to 1.
+    /// Returns the next number, uniform from -1 to 1.
     fn even(&mut self) -> f64 {
         self.next += 1;
         self.numbers[(self.next - 1) % self.numbers.len()]
@@ -41,7 +41,7 @@ impl NumberSource<'_> {
     }
 }
 
-/// Returns more numbers than any model here needs.
+/// Returns more random numbers than any of the models needs.
 fn numbers() -> impl Strategy<Value = Vec<f64>> {
     prop::collection::vec(-1.0..1.0_f64, 331)
 }
@@ -69,9 +69,8 @@ fn slopes<const N: usize>(duals: &[TrackedDual; N]) -> [Tracked; N] {
 
 const MAX_RELATIVE_DIFFERENCE: f64 = 1e-12;
 
-/// Factor of the bound of the expected number's rounding error, plus one. If terms cancel, rounding
-/// dominates; the other number, from other operations on the same quantities, may have eight times
-/// as much.
+/// Maximum difference of two numbers, in bounds of the rounding error of the expected number. The compared number is
+/// computed by other operations on the same quantities; its rounding error may be eight times as large.
 const MAX_ROUNDING_RATIO: f64 = 9.0;
 
 fn assert_agree(what: &str, found: &[f64], expected: &[Tracked]) -> Result<(), TestCaseError> {
@@ -92,7 +91,7 @@ fn column<const R: usize, const C: usize>(matrix: &[[f64; C]; R], index: usize) 
     matrix.map(|row| row[index])
 }
 
-/// Returns the numbers of a struct in the order of `names`, parsed from its debug output.
+/// Returns the values of a struct's fields in the order of `names`, parsed from its debug output.
 fn parse_fields<const N: usize>(fields: &impl std::fmt::Debug, names: &[&str; N]) -> [f64; N] {
     let printed = format!("{fields:?}");
     std::array::from_fn(|i| {
@@ -118,7 +117,7 @@ macro_rules! checks {
                 coefficients: model::Coefficients,
             }
 
-            /// Returns a point with a positive definite mass matrix.
+            /// Draws a point with a positive definite mass matrix.
             fn point(drawn: &mut NumberSource<'_>) -> Result<Point, TestCaseError> {
                 let defaults = defaults();
                 let parameters: [f64; PARAMETERS] =
@@ -143,8 +142,7 @@ macro_rules! checks {
                     model::rates(self.t, &self.state, &self.inputs.into(), &self.coefficients)
                 }
 
-                /// Returns the derivatives of rates and observables along a direction of states,
-                /// inputs and parameters.
+                /// Returns the directional derivatives of rates and observables by states, inputs and parameters.
                 fn along(
                     &self,
                     state: &[f64; STATES],
@@ -209,7 +207,8 @@ macro_rules! checks {
                     let product = model::jacobian_vector_product(t, x, u, c, &dx, &du.into());
                     let (expected, _) = p.along(&dx, &du, &[0.0; PARAMETERS]);
                     assert_agree("direction", &product, &expected)?;
-                    // The gradient in a direction is the weighted product with it.
+                    // The product of the weighted gradient with a direction equals the weighted derivative along the
+                    // direction.
                     let weights: [f64; STATES] = drawn.array();
                     let (by_state, by_inputs) = model::vector_jacobian_product(t, x, u, c, &weights);
                     let weighted = |rates: &[Tracked; STATES]| {
@@ -242,7 +241,7 @@ macro_rules! checks {
                     let mass = model::mass_matrix(t, x, u, c);
                     let missing = model::inverse_dynamics(t, x, u, c, &a);
                     let bias = model::bias_forces(t, x, u, c);
-                    // A sweep sums in another order, so results agree up to rounding.
+                    // The recursive sweep sums in another order, so results agree only up to rounding.
                     let held = model::inverse_dynamics(t, x, u, c, &[0.0; DEGREES_OF_FREEDOM]);
                     for i in 0..DEGREES_OF_FREEDOM {
                         let inertia: f64 = (0..DEGREES_OF_FREEDOM).map(|j| (mass[i][j] * a[j]).abs()).sum();
@@ -251,7 +250,7 @@ macro_rules! checks {
                             "{i}: {:e} of {inertia:e} and {:e}", missing[i], bias[i]
                         );
                     }
-                    // Other accelerations need M times the difference.
+                    // For other accelerations, the forces differ by M times the difference of the accelerations.
                     let b: [f64; DEGREES_OF_FREEDOM] = drawn.array();
                     let forces = model::inverse_dynamics(t, x, u, c, &b);
                     for i in 0..DEGREES_OF_FREEDOM {

@@ -1,4 +1,4 @@
-//! The shipped specifications with all requestable outputs, each at its own order.
+//! Shipped specifications with all outputs that can be requested, each at its declared order.
 
 use crate::dual::scalar_of;
 use crate::tracked::tracked_scalar_of;

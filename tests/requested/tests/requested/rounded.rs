@@ -1,5 +1,5 @@
-//! Numbers with a bound of their rounding error (running error analysis: N. J. Higham, Accuracy and
-//! Stability of Numerical Algorithms, section 3.3), computed in double precision.
+//! Numbers with a bound of their rounding error, computed in double precision (running error analysis: N. J. Higham,
+//! Accuracy and Stability of Numerical Algorithms, section 3.3).
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -12,7 +12,7 @@ pub struct Rounded<const DIGITS: u32> {
 }
 
 impl<const DIGITS: u32> Rounded<DIGITS> {
-    /// Half a unit in the last place of 1.
+    /// Unit roundoff for `DIGITS` binary digits.
     const UNIT: f64 = 1.0 / (1_u64 << DIGITS) as f64;
 
     pub fn exact(number: impl Into<f64>) -> Self {
@@ -22,7 +22,7 @@ impl<const DIGITS: u32> Rounded<DIGITS> {
         }
     }
 
-    /// Returns a result with the error of its operands, plus its own rounding.
+    /// Returns a result; its error is the propagated error plus the rounding error of the operation.
     pub fn result(number: f64, error: f64) -> Self {
         Self {
             number,

@@ -1,5 +1,5 @@
-//! Double precision with a bound of its rounding error. In dual numbers it bounds the error of a
-//! derivative with cancelling terms.
+//! Double-precision numbers with a bound of the rounding error. As scalars of dual numbers, they also bound the errors
+//! of derivatives with cancelling terms.
 
 use crate::rounded::Rounded;
 

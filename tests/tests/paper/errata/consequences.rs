@@ -1,8 +1,8 @@
-//! Errata that are not coefficients, judged by their consequences: scales, dead band, mode shapes,
-//! positioning error, Table I, nomenclature.
+//! Tests of errata that are not coefficients, by their consequences: scales, dead band, mode shapes, positioning error,
+//! Table I, nomenclature.
 //!
-//! Not included: quantities that the paper omits (I, a_m, b_m, F_w, c_sp, c_pr, b_c, the initial
-//! state). They have assumed values and cannot be compared.
+//! Quantities that the paper omits (I, a_m, b_m, F_w, c_sp, c_pr, b_c, the initial state) have assumed values and
+//! cannot be compared.
 
 #![allow(non_snake_case, reason = "names as in the paper")]
 
@@ -13,10 +13,10 @@ use eomgen_validate::references::planetary_arm::dimensionless_equation_22::Equat
 use eomgen_validate::references::planetary_arm::mesh::f_k;
 use eomgen_validate::references::planetary_arm::mode_shapes::ModeShape;
 
-/// Time scale of the paper, rad/s: sqrt(k_sp/M_sp) with Table I.
+/// Frequency omega_n = sqrt(k_sp/M_sp) of the paper's time scale with the values of Table I, in rad/s.
 const OMEGA_N: f64 = 3.0885e4;
 
-/// Displacement scale, m (assumed).
+/// Displacement scale in m (assumed).
 const B_C: f64 = 25e-6;
 
 pub fn add_rows(sources: &Sources, derived: &DerivedModel<'_>, table: &mut ErrataTable) {
@@ -30,8 +30,8 @@ pub fn add_rows(sources: &Sources, derived: &DerivedModel<'_>, table: &mut Errat
     nomenclature(sources, table);
 }
 
-/// Compares Eq. (13)-(15) and the lines below Eq. (22): one state through the dimensionless
-/// equations and back, with the printed and with the corrected scales.
+/// Compares Eq. (13)-(15) and the lines below Eq. (22). One state is converted to dimensionless form, evaluated and
+/// converted back, with the printed and with the corrected scales.
 fn scales(sources: &Sources, derived: &DerivedModel<'_>, table: &mut ErrataTable) {
     let state = [
         6e-5, -7e-5, 0.3, 2e-4, -3e-5, 1e-5, 4e-6, 0.02, -0.01, 0.5, 0.05, 0.02, -0.03, 0.01,
@@ -71,7 +71,7 @@ fn scales(sources: &Sources, derived: &DerivedModel<'_>, table: &mut ErrataTable
     );
 }
 
-/// Compares f_k(X) of Eq. (16) and (22): at half the distance to contact there is no force.
+/// Compares f_k(X) of Eq. (16) and (22): at half the distance to contact the force must be zero.
 fn dead_band(sources: &Sources, table: &mut ErrataTable) {
     let b = sources.parameters.b_sp;
     let inside = 0.5 * b / B_C;
@@ -84,7 +84,7 @@ fn dead_band(sources: &Sources, table: &mut ErrataTable) {
     );
 }
 
-/// Computes stiffness over mass of mode `i`, 1/s^2, from accelerations, without the coupling to the
+/// Computes the ratio of stiffness and mass of mode `i` in 1/s^2 from accelerations, without the coupling to the
 /// carrier.
 fn frequency_squared(sources: &Sources, i: usize) -> f64 {
     let by_force = &sources.flexible.spring[0];
@@ -100,7 +100,7 @@ fn beta_l(sources: &Sources, i: usize) -> f64 {
     fourth_power.powf(0.25)
 }
 
-/// Computes int x phi_1 dx/int phi_1^2 dx of the derived model, m.
+/// Computes int x phi_1 dx/int phi_1^2 dx of the derived model, in m.
 fn first_coupling(sources: &Sources) -> f64 {
     let by_force = &sources.flexible.spring[0];
     -by_force.entry(3) / by_force.entry(2) * sources.parameters.r_c_cos_alpha()
@@ -145,7 +145,7 @@ fn amplitude_ratio(sources: &Sources, table: &mut ErrataTable) {
     }
 }
 
-/// Compares Eq. (21): without the rotation in the velocity of the arm, modes do not couple to the
+/// Compares Eq. (21): if the velocity of the arm did not contain the rotation, the modes would not be coupled to the
 /// carrier.
 fn coupling(sources: &Sources, table: &mut ErrataTable) {
     let integrals = ModeShape::clamped_free(1).integrals();
@@ -160,8 +160,8 @@ fn coupling(sources: &Sources, table: &mut ErrataTable) {
     );
 }
 
-/// Compares Eq. (23) and (24) by the geometry of one state: the position of the end point less its
-/// nominal position from the sun.
+/// Compares Eq. (23) and (24) by the geometry of one state: the position of the end point minus its nominal position,
+/// computed from the angle of the sun.
 fn positioning_error(sources: &Sources, table: &mut ErrataTable) {
     let parameters = &sources.parameters;
     let (x_sp, x_pr, x_c, w) = (4e-5, 3e-5, 0.2, 1e-4);
@@ -183,7 +183,7 @@ fn positioning_error(sources: &Sources, table: &mut ErrataTable) {
     );
 }
 
-/// Computes the inertia that turns with the carrier in the derived rigid model, kg m^2.
+/// Computes the inertia that turns with the carrier in the derived rigid model, in kg m^2.
 fn carrier_inertia(sources: &Sources) -> f64 {
     let r_c = sources.parameters.r_c_cos_alpha();
     3.0 * r_c * r_c * sources.parameters.k_sp / sources.rigid.spring[0].entry(2)

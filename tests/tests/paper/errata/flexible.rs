@@ -1,4 +1,4 @@
-//! Errata of the flexible arm: coefficients of Eq. (22) at S = 4.
+//! Tests of the errata of the flexible arm: coefficients of Eq. (22) at S = 4.
 
 #![allow(non_snake_case, reason = "names as in the paper")]
 
@@ -168,7 +168,7 @@ fn inertias(sources: &Sources, table: &mut ErrataTable) {
     }
 }
 
-/// Compares a_31 .. a_38, each over a_30.
+/// Compares a_31 .. a_38, each divided by a_30.
 fn carrier_row(sources: &Sources, table: &mut ErrataTable) {
     let a = &sources.coefficients;
     let measured = &sources.flexible;
@@ -198,7 +198,8 @@ fn carrier_row(sources: &Sources, table: &mut ErrataTable) {
     }
 }
 
-/// Compares the row of mode `i` (from 0), each coefficient over that of the mode's acceleration.
+/// Compares the row of mode `i` (counted from 0). Each coefficient is divided by the coefficient of the mode's
+/// acceleration.
 fn mode_row(sources: &Sources, i: usize, table: &mut ErrataTable) {
     let a = &sources.coefficients;
     let measured = &sources.flexible;

@@ -1,7 +1,7 @@
-//! Measurement of the coefficients of a right-hand side from its values at chosen states.
+//! Computes the coefficients of a right-hand side from its values at chosen states.
 //!
-//! In a regime of the meshes the accelerations are linear in the state. Half the difference between
-//! a state and its negative gives a column of coefficients without the constant terms.
+//! In a regime of the meshes the accelerations are linear in the state. Half the difference between the accelerations
+//! at a state and at its negative is a column of coefficients without the constant terms.
 
 use eomgen_validate::references::planetary_arm::parameters::PlanetaryArmParameters;
 
@@ -9,11 +9,11 @@ use eomgen_validate::references::planetary_arm::parameters::PlanetaryArmParamete
 /// (parameters, order, t, state). The state has the coordinates in m, then their rates in m/s.
 pub type DerivedModel<'a> = dyn Fn(&PlanetaryArmParameters, usize, f64, &[f64]) -> Vec<f64> + 'a;
 
-/// Compression of a mesh beyond its dead band, m: its spring force is then of the order of its
+/// Compression of a mesh beyond its dead band, in m. At this compression the spring force is comparable with the
 /// damping force at 1 m/s.
 const PROBE_COMPRESSION_M: f64 = 1e-6;
 
-/// Change of all accelerations per unit of one quantity.
+/// Derivatives of all accelerations by one quantity.
 #[derive(Clone, Debug)]
 pub struct Response(Vec<f64>);
 
@@ -29,7 +29,7 @@ impl Response {
     }
 }
 
-/// Responses of a model of one order.
+/// Responses of the derived model at one order.
 #[derive(Clone, Debug)]
 pub struct Responses {
     /// Accelerations at rest with open meshes at t = 0.
@@ -49,7 +49,7 @@ pub struct Responses {
 }
 
 impl Responses {
-    /// Measures `derived` at `order`.
+    /// Computes the responses of `derived` at `order`.
     pub fn measure(
         derived: &DerivedModel<'_>,
         parameters: &PlanetaryArmParameters,
@@ -110,8 +110,8 @@ impl Probe<'_> {
         Response((self.derived)(self.parameters, self.order, t, &state))
     }
 
-    /// Computes half the difference between `entries` and their negatives, per `unit`, with `held`
-    /// equal on both sides.
+    /// Computes half the difference of the accelerations between `entries` and their negatives, divided by `unit`. The
+    /// entries `held` have the same sign in both states.
     fn slope(&self, entries: &[(usize, f64)], unit: f64, held: &[(usize, f64)]) -> Response {
         let with = |sign: f64| {
             let signed = entries.iter().map(|(index, value)| (*index, sign * value));

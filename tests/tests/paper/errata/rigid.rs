@@ -1,4 +1,4 @@
-//! Errata of the rigid arm: Eq. (10), (12) and (16).
+//! Tests of the errata of the rigid arm: Eq. (10), (12) and (16).
 
 #![allow(non_snake_case, reason = "names as in the paper")]
 
@@ -198,11 +198,11 @@ fn equation_12_rows_2_and_3(sources: &Sources, table: &mut ErrataTable) {
     );
 }
 
-/// Time scale other than sqrt(k_sp/M_sp), rad/s: only for that one does the printed coefficient 1
-/// of f_k(X_sp) hold.
+/// Frequency of the time scale in rad/s. It differs from sqrt(k_sp/M_sp), because the printed coefficient 1 of
+/// f_k(X_sp) is correct for this frequency only.
 const OMEGA_N: f64 = 1e4;
 
-/// Displacement scale, m.
+/// Displacement scale, in m.
 const B_C: f64 = 25e-6;
 
 /// Compares row 1 of Eq. (16), solved for X_sp''.

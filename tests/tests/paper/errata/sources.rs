@@ -1,4 +1,4 @@
-//! Corrected values and responses of the derived model.
+//! Corrected coefficients, and responses of the derived model.
 
 use eomgen_validate::references::planetary_arm::equation_12::EquivalentMasses;
 use eomgen_validate::references::planetary_arm::equation_22::Coefficients;
@@ -19,7 +19,7 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// Measures the derived model at orders 0 and 4.
+    /// Computes the responses of the derived model at orders 0 and 4.
     pub fn measure(derived: &DerivedModel<'_>) -> Self {
         let parameters = distinct_parameters();
         Self {
@@ -32,8 +32,8 @@ impl Sources {
     }
 }
 
-/// Returns the values of the paper with different meshes: with equal stiffness, damping and
-/// backlash, exchanged meshes would remain undetected.
+/// Returns the values of the paper, but with different values for the two meshes. With equal stiffness, damping and
+/// backlash, exchanged meshes would not be detected.
 fn distinct_parameters() -> PlanetaryArmParameters {
     PlanetaryArmParameters {
         k_pr: 1.3e8,

@@ -1,23 +1,22 @@
-//! Table of errata with outcomes.
+//! Table of errata with the results of the comparison.
 
 use std::fmt;
 
 use eomgen_validate::references::evaluation::relative;
 
-/// Largest deviation of equal values: rounding of differences of accelerations, a few hundred
-/// operations at 1e-16.
+/// Largest relative deviation of equal values: rounding errors of a few hundred operations at 1e-16.
 const MAX_EQUAL_DEVIATION: f64 = 1e-11;
 
-/// Smallest deviation of different values: far above rounding, below the smallest misprint (beta_4
-/// of Eq. (18), 3e-6).
+/// Smallest relative deviation of different values. It is far above rounding errors and below the smallest misprint
+/// (beta_4 of Eq. (18), 3e-6).
 const MIN_DIFFERENT_DEVIATION: f64 = 1e-6;
 
 /// Printed or corrected statement, with its value at the parameters of the table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statement {
-    /// Formula in ASCII.
+    /// Formula as ASCII text.
     pub text: String,
-    /// Value, SI.
+    /// Value in SI.
     pub value: f64,
 }
 
@@ -32,9 +31,9 @@ pub struct ErratumOutcome {
     pub corrected: Statement,
     /// Value of the derived model.
     pub derived: f64,
-    /// |derived - corrected| relative to the larger of the stated magnitudes.
+    /// |derived - corrected| relative to the larger magnitude of the corrected and the printed value.
     pub deviation_from_corrected: f64,
-    /// |derived - printed| relative to the larger magnitude, if the printed statement is wrong.
+    /// |derived - printed| relative to the same magnitude, if the printed statement is wrong.
     pub deviation_from_printed: Option<f64>,
 }
 
@@ -44,13 +43,13 @@ impl ErratumOutcome {
         self.deviation_from_corrected <= MAX_EQUAL_DEVIATION
     }
 
-    /// Returns true if the derived value differs from a wrong printed value, or if none is wrong.
+    /// Returns true if the derived value differs from the wrong printed value, or if the printed value is correct.
     pub fn differs_from_printed(&self) -> bool {
         self.deviation_from_printed
             .is_none_or(|deviation| deviation > MIN_DIFFERENT_DEVIATION)
     }
 
-    /// Returns true if both conditions hold.
+    /// Returns true if the derived value agrees with the corrected one and differs from the printed one.
     pub fn passed(&self) -> bool {
         self.agrees_with_corrected() && self.differs_from_printed()
     }
@@ -59,7 +58,7 @@ impl ErratumOutcome {
 /// Rows in the order of the paper.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ErrataTable {
-    /// Rows.
+    /// Rows in the order of the paper.
     pub rows: Vec<ErratumOutcome>,
 }
 
