@@ -8,10 +8,10 @@ use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::rust::{Packaging, emit};
 use eomgen_codegen::variant::Variant;
 
-/// Orders, the same as in the macro of `benches/rates.rs`.
+/// Emitted orders; equal to the orders in the macro of `benches/rates.rs`.
 const ORDERS: [usize; 9] = [0, 1, 2, 4, 8, 16, 32, 64, 128];
 
-/// Orders with additional functions, the same as in the macros of `benches/jacobian.rs` and `lanes.rs`.
+/// Orders with additional functions; equal to the orders in the macros of `benches/jacobian.rs` and `lanes.rs`.
 const FULL_ORDERS: [usize; 3] = [4, 16, 64];
 
 /// Additional functions.

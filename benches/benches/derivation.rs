@@ -1,4 +1,5 @@
-//! Derivation, lowering and emission of the arm, separately and together, at a small and at the largest order.
+//! Benchmark of derivation, lowering and emission of the arm, separately and together, at a small and at the largest
+//! order.
 
 use std::path::Path;
 

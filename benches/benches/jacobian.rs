@@ -1,12 +1,12 @@
-//! Jacobian of the arm's rates by the state and its products with a vector, compared with a right-hand side, and the time
-//! per structural nonzero.
+//! Benchmark of the Jacobian of the arm's rates by the state and of its products with a vector, compared with the
+//! right-hand side. The time per structural nonzero is measured too.
 
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use eomgen_benches::{generated, state, variants};
 
-/// Results are observed in place, so that the time of a copy is not included.
+/// Results are passed to `black_box` by reference, so that the time of a copy is not included.
 macro_rules! compare {
     ($criterion:ident, $($order:literal $module:ident),*) => {$({
         use variants::$module as arm;

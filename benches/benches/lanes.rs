@@ -1,6 +1,6 @@
-//! The arm at many states, one by one and 8-wide in every kind of registers of this machine. Prints nanoseconds per state
-//! and the throughput relative to one by one. The fastest of many rounds counts, because other work only lengthens a
-//! round.
+//! Benchmark of the arm at many states, scalar and 8-wide with every SIMD instruction set of this machine. It prints
+//! nanoseconds per state and the throughput relative to scalar calls. The fastest of many rounds counts, because other
+//! work can only lengthen a round.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -8,7 +8,8 @@ use std::time::Instant;
 use eomgen_benches::{generated, state};
 use eomgen_lanes::{LANES, Lanes, Registers, Task, Vector};
 
-/// Emitted in this crate: `scalar!` implements traits of the emitted module, which must be local.
+/// The variants are emitted in this crate, because `scalar!` implements traits of the emitted module, which must be
+/// local.
 #[allow(dead_code)]
 mod variants {
     include!(concat!(env!("OUT_DIR"), "/variants.rs"));
@@ -21,7 +22,7 @@ mod variants {
 /// Number of states.
 const STATES: usize = 16;
 
-/// Calls per state in a round. The states remain in lanes throughout, as in the integration of a motion.
+/// Number of calls per state in a round. The states remain in SIMD vectors, as in the integration of a motion.
 const PASSES: usize = 32;
 
 /// Number of rounds; the fastest counts.
@@ -36,7 +37,7 @@ fn best(mut round: impl FnMut()) -> f64 {
     (0..ROUNDS).map(seconds).fold(f64::INFINITY, f64::min) / (PASSES * STATES) as f64 * 1e9
 }
 
-/// Returns slightly different times, so that all lanes differ.
+/// Returns slightly different times for the lanes.
 fn times(place: usize) -> [f64; LANES] {
     std::array::from_fn(|k| 0.3 + 1e-3 * (LANES * place + k) as f64)
 }

@@ -1,5 +1,5 @@
-//! Right-hand side of the arm as emitted Rust, as machine code generated in the process, and interpreted; and the time
-//! to generate the machine code.
+//! Benchmark of the arm's right-hand side as emitted Rust, as just-in-time compiled machine code, and interpreted, and
+//! of the time to generate the machine code.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -25,7 +25,7 @@ fn program(order: usize) -> Program {
     lower(&model, &equations, &values)
 }
 
-/// Results are observed in place, so that the time of a copy is not included.
+/// Results are passed to `black_box` by reference, so that the time of a copy is not included.
 macro_rules! compare {
     ($criterion:ident, $($order:literal $module:ident),*) => {$({
         use variants::$module as arm;

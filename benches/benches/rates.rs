@@ -1,5 +1,5 @@
-//! Right-hand side of the arm in one run: generated, hand-written in O(S), and hand-assembled Eq. (22), with prepared
-//! coefficients and the same sine, and the floor: one sine and a copy of the rates. Each is a call that is not inlined.
+//! Benchmark of the arm's right-hand side: generated, hand-written in O(S), and hand-assembled Eq. (22), with prepared
+//! coefficients and the same sine. The floor is one sine and a copy of the rates. No call is inlined.
 
 use std::hint::black_box;
 
@@ -10,7 +10,7 @@ use eomgen_benches::{at_all_orders, generated, state, variants};
 use eomgen_validate::references::planetary_arm::dimensionless_equation_22::Equation22;
 use eomgen_validate::references::planetary_arm::parameters::PlanetaryArmParameters;
 
-/// Results are observed in place, so that the time of a copy is not included.
+/// Results are passed to `black_box` by reference, so that the time of a copy is not included.
 macro_rules! compare {
     ($criterion:ident, $($order:literal $module:ident),*) => {$({
         use variants::$module as arm;

@@ -1,4 +1,4 @@
-//! Energies of a model as expressions of a CasADi module in Python.
+//! Writes the energies of a model as a Python module with CasADi expressions.
 
 use std::fmt::Write;
 
@@ -6,7 +6,7 @@ use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::ids::{DefinitionId, ParameterId};
 use eomgen_model_spec::model::{Expr, ExprKind, Model, ParameterValue};
 
-/// Returns the module, or none for an expression that rigid trees do not need.
+/// Returns the text of the module; `None` if the model contains an expression that rigid trees do not need.
 pub fn definitions(model: &Model) -> Option<String> {
     let mut text = String::from("import casadi as ca\n\n\ndef energies():\n");
     let degrees = model.coordinates.len();

@@ -14,7 +14,8 @@ use crate::eliminated_arm::EliminatedArm;
 use crate::instructions::CALLS;
 use crate::{state, variants};
 
-/// Defines a function for each contender at an order, and one that prepares and calls them. Preparation is not counted.
+/// Defines a function for each contender at an order, and a function that prepares and calls them. Preparation is not
+/// counted.
 macro_rules! right_hand_sides {
     ($($order:literal $module:ident $generated:ident $hand_written:ident $equation_22:ident),* $(,)?) => {
         $(
@@ -75,7 +76,7 @@ right_hand_sides!(
     128 order_128 generated_128 hand_written_128 equation_22_128,
 );
 
-/// Repeats the counted call.
+/// Repeats the counted call [`CALLS`] times.
 #[inline(always)]
 fn repeat(mut call: impl FnMut()) {
     for _ in 0..CALLS {
@@ -83,7 +84,7 @@ fn repeat(mut call: impl FnMut()) {
     }
 }
 
-/// Derives and emits a model with every field at an order.
+/// Derives and emits a model with all fields at an order.
 fn emitted(model: &Model, order: usize) {
     let variant = Variant::derive(model, &vec![order; model.fields.len()]);
     let Ok(variant) = variant else {

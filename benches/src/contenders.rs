@@ -1,11 +1,11 @@
-//! Code that generated code is compared with. Each contender is a call that is not inlined, as emitted functions are not
-//! inlined into other crates. All write their result to memory of the caller.
+//! Contenders: code that generated code is compared with. Each contender is a call that is not inlined, because emitted
+//! functions are not inlined into other crates either. All contenders write their result to memory of the caller.
 
 use eomgen_validate::references::planetary_arm::dimensionless_equation_22::Equation22;
 
 use crate::eliminated_arm::copy_in_pairs;
 
-/// Calls a macro with every compared order and its module of [`crate::variants`].
+/// Calls a macro for every compared order with the order's module of [`crate::variants`].
 #[macro_export]
 macro_rules! at_all_orders {
     ($with:ident) => {
@@ -16,7 +16,7 @@ macro_rules! at_all_orders {
     };
 }
 
-/// Defines `generated`, a call of the rates of an emitted module in scope.
+/// Defines the function `generated`, which calls the rates of an emitted module in scope.
 #[macro_export]
 macro_rules! generated {
     ($arm:ident) => {

@@ -1,9 +1,8 @@
-//! Eq. (22) written for speed. The modes are eliminated first (their block of the mass matrix is
-//! diagonal), which leaves one division by a_30, and every row costs O(S). All coefficients are
-//! prepared once; nothing is allocated.
+//! Eq. (22), optimised by hand. The modes are eliminated first, because their block of the mass matrix is diagonal. One
+//! division by a_30 remains, and every row needs O(S) operations. All coefficients are prepared once; nothing is
+//! allocated.
 //!
-//! Generated code is measured against this code. It uses the coefficients of Eq. (22) and nothing
-//! from the derivation.
+//! Generated code is compared with this code, which uses the coefficients of Eq. (22) and no code of the derivation.
 
 use eomgen_validate::references::planetary_arm::equation_22::Coefficients;
 use eomgen_validate::references::planetary_arm::mesh::{f_c, f_k};
@@ -39,7 +38,7 @@ pub struct EliminatedArm<const S: usize> {
     sun: f64,
     /// 1/M_p, 1/kg
     planet: f64,
-    /// 3 r_c cos(alpha)/a_30, 1/kg: acceleration of the carrier per force.
+    /// 3 r_c cos(alpha)/a_30, 1/kg: acceleration of the carrier per unit force.
     carrier: f64,
     /// a_3i/(3 r_c cos alpha), N/m: force of a mode at the carrier.
     bending: [f64; S],
@@ -88,7 +87,7 @@ impl<const S: usize> EliminatedArm<S> {
         }
     }
 
-    /// Returns all prepared numbers in the order of the fields, for the same equations in C
+    /// Returns all prepared numbers in the order of the fields, for the C version of these equations
     /// (`benches/c/by_hand.h`).
     pub fn prepared_numbers(&self) -> Vec<f64> {
         let mesh = |mesh: Mesh| [mesh.stiffness, mesh.damping, mesh.half_width];
@@ -111,9 +110,8 @@ impl<const S: usize> EliminatedArm<S> {
             .collect()
     }
 
-    /// Writes the rates of `state` (x_sp, x_pr, x_c, q_1 .. q_S in m, then their rates in m/s) at
-    /// time `t` (s). The sine of the motor is used last. Not inlined, like emitted functions in
-    /// other crates.
+    /// Writes the rates of `state` (x_sp, x_pr, x_c, q_1 .. q_S in m, then their rates in m/s) at time `t` (s). The
+    /// motor's sine is used last. The function is not inlined, like emitted functions in other crates.
     #[inline(never)]
     pub fn rates<const N: usize>(&self, t: f64, state: &[f64; N], rates: &mut [f64; N]) {
         const { assert!(N == 2 * (3 + S)) };
@@ -164,9 +162,9 @@ fn sum_of_products<const S: usize>(a: &[f64; S], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Computes the sum of a_i b_i in eight partial sums, which avoids one chain of additions. The
-/// halves are added, because for neighbouring partial sums the compiler shuffles all factors. Not
-/// inlined: inlined, the compiler vectorises across the surrounding loops and spills registers.
+/// Computes the dot product in eight partial sums, which avoids a single dependent chain of additions. The two halves
+/// are added, because adding neighbouring partial sums would make the compiler shuffle all factors. The function is not
+/// inlined. Otherwise the compiler would vectorise across the surrounding loops and spill registers.
 #[inline(never)]
 fn sum_in_blocks(a: &[f64], b: &[f64]) -> f64 {
     let ((a_blocks, a_rest), (b_blocks, b_rest)) = (a.as_chunks::<8>(), b.as_chunks::<8>());

@@ -1,4 +1,4 @@
-//! History of times and instruction counts of the contenders: table lines and figures.
+//! History of times and instruction counts of the contenders, as table lines and figures.
 
 use std::fmt::Write;
 
@@ -6,18 +6,18 @@ use eomgen_plot::{Axes, Frame, Panel, Plate, PlotError, Series, plate};
 
 use crate::instructions::Count;
 
-/// Fastest of many calls at one order.
+/// Shortest times of many calls at one order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Times {
-    /// Order S.
+    /// Truncation order S.
     pub order: usize,
-    /// Independent calls, which overlap in the processor.
+    /// Times of independent calls, whose execution overlaps in the processor.
     pub overlapping: Contenders,
-    /// Dependent calls: each takes its time t from the previous result.
+    /// Times of dependent calls: the time t of a call depends on the previous result.
     pub waiting: Contenders,
 }
 
-/// Time of a call of each contender, s.
+/// Time per call of each contender, in s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contenders {
     /// One sine and a copy of the rates.
@@ -30,10 +30,10 @@ pub struct Contenders {
     pub equation_22: f64,
 }
 
-/// Named curves.
+/// Curves with their names.
 type Named<'a> = Vec<(String, &'a [f64])>;
 
-/// Orders with recorded ratios.
+/// Orders whose time ratios are recorded.
 const KEPT: [usize; 3] = [4, 16, 64];
 
 /// Cases with recorded instruction counts.
@@ -45,7 +45,7 @@ const COUNTED: [&str; 5] = [
     "derive_and_emit_128",
 ];
 
-/// First columns of the table, before those of orders and counts.
+/// First columns of the table; the columns of orders and counts follow.
 const FIRST: &str = "date,commit,features,floor_4_ns";
 
 /// Returns the header of the table.
@@ -70,8 +70,8 @@ pub fn heading() -> String {
     line + "\n"
 }
 
-/// Returns a line of the table. `run` is date, commit and target features. Fields of missing counts are empty. The floor
-/// is that of order 4, with the same kind of calls as the contender.
+/// Returns a line of the table. `run` contains date, commit and target features. Fields of missing counts are empty.
+/// The floor of order 4 is measured with the same kind of calls as the contender.
 pub fn line(run: &[String; 3], times: &[Times], counts: &[Count]) -> String {
     let at = |order: usize| times.iter().find(|times| times.order == order);
     let floor_of = |way: fn(&Times) -> Contenders| at(4).map_or(f64::NAN, |t| way(t).floor);
@@ -108,7 +108,7 @@ pub fn line(run: &[String; 3], times: &[Times], counts: &[Count]) -> String {
     line + "\n"
 }
 
-/// Returns the times of a run as a table, ns.
+/// Returns the times of a run as a table in ns.
 pub fn table(times: &[Times]) -> String {
     let line = |order: usize, calls: &str, c: &Contenders| {
         let all = [c.floor, c.generated, c.hand_written, c.equation_22].map(|time| 1e9 * time);
@@ -123,7 +123,7 @@ pub fn table(times: &[Times]) -> String {
     format!("order,calls,floor,generated,hand_written,equation_22\n{lines}")
 }
 
-/// Draws the times of overlapping calls over the order, as SVG.
+/// Draws the times of overlapping calls as a function of the order (SVG).
 ///
 /// # Errors
 /// An empty figure.
@@ -148,7 +148,7 @@ pub fn curves(times: &[Times]) -> Result<String, PlotError> {
     )
 }
 
-/// Draws ratios and counts of all runs of a table, as SVG.
+/// Draws ratios and counts of all runs in a table (SVG).
 ///
 /// # Errors
 /// An empty figure.

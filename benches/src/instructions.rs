@@ -1,5 +1,5 @@
-//! Instruction counts of [`crate::cases`] by callgrind. They do not depend on other work of the machine, but on the
-//! compiler, and for derivations slightly on the seeds of hash maps.
+//! Instruction counts of [`crate::cases`] by callgrind. They do not depend on other work of the machine. They depend on
+//! the compiler and, for derivations, slightly on the seeds of hash maps.
 
 use std::path::Path;
 use std::process::Command;
@@ -10,10 +10,10 @@ pub const CALLS: u64 = 100;
 /// Prefix of cases that run once.
 const ONCE: &str = "derive_and_emit";
 
-/// Case and its instructions per call.
+/// Name of a case and its instructions per call.
 pub type Count = (String, u64);
 
-/// Argument with which a counted program runs the cases.
+/// Command-line argument with which the counted program runs the cases.
 pub const ARGUMENT: &str = "cases";
 
 /// Counts the instructions of every case in `program`, in the order of `names`.
@@ -41,7 +41,7 @@ pub fn counted(program: &Path, folder: &Path, names: &[String]) -> Result<Vec<Co
         .collect()
 }
 
-/// Returns whether this machine has valgrind.
+/// Returns true if valgrind is installed.
 pub fn available() -> bool {
     run(Command::new("valgrind").arg("--version")).is_ok()
 }
@@ -57,8 +57,8 @@ fn run(command: &mut Command) -> Result<String, String> {
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Returns the inclusive instructions of a function in callgrind's table. Its lines are a number with commas, a share in
-/// parentheses, and a place with the function's name.
+/// Returns the inclusive instructions of a function from callgrind's table. Each line has a number with commas, a
+/// percentage in parentheses, and a location with the function's name.
 fn total(table: &str, name: &str) -> Option<u64> {
     let line = table.lines().find(|line| {
         line.match_indices("cases::").any(|(place, prefix)| {
@@ -71,7 +71,7 @@ fn total(table: &str, name: &str) -> Option<u64> {
     number.replace(',', "").parse().ok()
 }
 
-/// Parses a table of counts with a case and its number per line.
+/// Parses a table of counts with a case and its count in each line.
 pub fn read(text: &str) -> Vec<Count> {
     let parts = text.lines().filter_map(|line| line.split_once(','));
     parts

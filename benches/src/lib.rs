@@ -1,6 +1,6 @@
 //! Common code of the benchmarks: the planetary arm emitted for orders from 0 to 128 ([`variants`]), the other
-//! [`contenders`], counts of [`instructions`], and the [`history`] of times and counts. [`rigid_specifications`] and
-//! [`casadi_contender`] are for the benchmark of rigid trees.
+//! [`contenders`], counts of [`instructions`], and the [`history`] of times and counts. The benchmark of rigid trees
+//! uses [`rigid_specifications`] and [`casadi_contender`].
 
 pub mod casadi_contender;
 pub mod cases;
@@ -10,7 +10,7 @@ pub mod history;
 pub mod instructions;
 pub mod rigid_specifications;
 
-/// One module per order, emitted by the build script.
+/// Emitted modules, one for each order, from the build script.
 pub mod variants {
     include!(concat!(env!("OUT_DIR"), "/variants.rs"));
 }

@@ -1,11 +1,11 @@
-//! Generated specifications of rigid trees: planar arms with Cartesian definitions and with energies simplified by hand,
-//! chains of pendulums, and the first joints of the shipped PUMA 560.
+//! Generated specifications of rigid trees: planar arms (with Cartesian definitions, and with energies simplified by
+//! hand), chains of pendulums, and the first joints of the shipped PUMA 560.
 
 use std::fmt::Write;
 
 use eomgen_model_spec::models::PUMA_560;
 
-/// Returns a planar arm with a torque at every joint and energies in Cartesian positions.
+/// Returns a planar arm with a torque at every joint; energies are written in Cartesian positions.
 pub fn planar_arm(links: usize) -> String {
     let mut text = head(&format!("planar_{links}r"), links);
     text += "[definitions]\n";
@@ -33,7 +33,7 @@ pub fn planar_arm(links: usize) -> String {
     text + &torques(links)
 }
 
-/// Returns the same arm with energies simplified by hand, in angles between links.
+/// Returns the planar arm with energies simplified by hand, in the angles between links.
 pub fn planar_arm_by_hand(links: usize) -> String {
     let mut text = head(&format!("planar_{links}r_by_hand"), links);
     text += "[definitions]\n";
@@ -97,14 +97,14 @@ fn torques(links: usize) -> String {
     String::from("[forces]\n") + &joints.collect::<String>()
 }
 
-/// Returns a spherical pendulum in Cartesian positions.
+/// Returns a spherical pendulum with energies in Cartesian positions.
 pub fn spherical_pendulum() -> String {
     SPHERICAL_HEAD.to_owned()
         + "[definitions]\nx = \"l*sin(theta)*cos(phi)\"\ny = \"l*sin(theta)*sin(phi)\"\nz = \"-l*cos(theta)\"\n\
            [kinetic]\nbob = \"1/2*m*(dot(x)^2 + dot(y)^2 + dot(z)^2)\"\n[potential]\nbob = \"m*g*z\"\n"
 }
 
-/// Returns the same pendulum with energies simplified by hand.
+/// Returns the spherical pendulum with energies simplified by hand.
 pub fn spherical_pendulum_by_hand() -> String {
     SPHERICAL_HEAD.to_owned()
         + "[kinetic]\nbob = \"1/2*m*l^2*(dot(theta)^2 + sin(theta)^2*dot(phi)^2)\"\n\

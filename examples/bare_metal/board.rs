@@ -1,5 +1,5 @@
-//! The controller on a Cortex-M without operating system, standard library or allocator. Prints the bits of the motion,
-//! the instructions per call and the stack depth. `controller` is the one in Rust or in C.
+//! Runs the controller on a Cortex-M without operating system, standard library or allocator. It prints the bits of the
+//! motion, the instructions per call and the stack depth. The crate `controller` is the version in Rust or in C.
 #![no_std]
 #![no_main]
 
@@ -19,7 +19,7 @@ const SHOWN: u32 = 50;
 /// Number of hexadecimal digits.
 const DIGITS: usize = 2 * size_of::<Real>();
 
-/// Separate function, to measure its stack.
+/// The function is separate, so that its stack can be measured.
 #[inline(never)]
 fn prepared_from(parameters: &Parameters) -> Coefficients {
     controller::prepared_from(parameters)

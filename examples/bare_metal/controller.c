@@ -1,8 +1,8 @@
-/* The controller of controller.rs in C, with the emitted C. Operations and their order are equal, so the motion
- * has the same bits. Compile with -std=c99 or -ffp-contract=off. */
+/* The controller of controller.rs in C, with the emitted C. The operations have the same order, so the motion
+ * is bit-identical. Compile with -std=c99 or -ffp-contract=off. */
 #include "planetary_arm_rig.h"
 #ifdef PREPARED_IN_DOUBLE
-/* The arm in double precision under another name, see `run`. */
+/* The arm in double precision, emitted under another name; see `run`. */
 #include "arm_in_double.h"
 #include <stddef.h>
 #endif
@@ -14,7 +14,7 @@ enum { STATES = planetary_arm_rig_STATES };
 /* Step size, s. */
 static const real STEP = (real)20e-6;
 
-/* Torque per state, N m per m and N m per m/s, see controller.rs. */
+/* Gain, in N m per m and N m per m/s; see controller.rs. */
 static const real GAIN[STATES] = {
     (real)192.6589,  (real)456.0491,  (real)998.8651,   (real)-312.1875,   (real)-105.3722,
     (real)20.75653,  (real)457.063,   (real)1.629354,   (real)5.443445,    (real)23.76957,
@@ -32,7 +32,7 @@ void controller_prepare(const parameters_in_double *parameters, coefficients *pr
 void controller_displaced(real *state);
 void controller_step(real t, const real *state, const coefficients *arm, real *next);
 
-/* The specification's values. */
+/* Sets the default parameters. */
 void controller_default_parameters(parameters_in_double *parameters) {
 #ifdef PREPARED_IN_DOUBLE
     arm_in_double_default_parameters(parameters);
@@ -41,10 +41,10 @@ void controller_default_parameters(parameters_in_double *parameters) {
 #endif
 }
 
-/* The arm's coefficients, prepared in double precision whatever the precision of the rest. */
+/* Prepares the arm's coefficients in double precision, also if the other functions use single precision. */
 void controller_prepare(const parameters_in_double *parameters, coefficients *prepared) {
 #ifdef PREPARED_IN_DOUBLE
-    /* Numbers, and a flag behind them. */
+    /* The structure contains numbers, followed by a flag. */
     enum { NUMBERS = offsetof(coefficients, positive_definite) / sizeof(real) };
     arm_in_double_coefficients in_double;
     const double *from = (const double *)&in_double;
@@ -59,7 +59,7 @@ void controller_prepare(const parameters_in_double *parameters, coefficients *pr
 #endif
 }
 
-/* Where a run begins: the carrier displaced by 2 mm, at rest, the meshes loaded. */
+/* Sets the initial state: at rest, with the carrier displaced by 2 mm and loaded meshes. */
 void controller_displaced(real *state) {
     for (int i = 0; i < STATES; ++i) {
         state[i] = 0;
@@ -68,7 +68,7 @@ void controller_displaced(real *state) {
     state[2] = (real)2e-3;
 }
 
-/* The torque of the motor for a state, N m. */
+/* Returns the torque of the motor for a state, in N m. */
 static real torque(const real *state) {
     real sum = 0;
     for (int i = 0; i < STATES; ++i) {
@@ -77,15 +77,15 @@ static real torque(const real *state) {
     return -sum;
 }
 
-/* state + h rate */
+/* Computes state + h rate. */
 static void moved(const real *state, real h, const real *rate, real *to) {
     for (int i = 0; i < STATES; ++i) {
         to[i] = state[i] + h * rate[i];
     }
 }
 
-/* One step of the closed loop at time `t`, s: the torque for `state`, held while the arm moves
- * by the classical method of Runge and Kutta. */
+/* Computes one step of the closed loop at time `t` (in s) by the classical Runge-Kutta method. The torque for `state`
+ * is constant during the step. */
 void controller_step(real t, const real *state, const coefficients *arm, real *next) {
     planetary_arm_rig_inputs inputs;
     real at[STATES], at_begin[STATES], at_middle[STATES], again[STATES], at_end[STATES];

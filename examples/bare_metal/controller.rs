@@ -1,5 +1,5 @@
-//! State feedback for the planetary arm on its test rig, in a loop with the emitted arm. The motion has the same bits on a
-//! microcontroller and on any other machine.
+//! State feedback for the planetary arm on its test rig, in a loop with the emitted arm. The motion is bit-identical on
+//! a microcontroller and on any other machine.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -19,15 +19,15 @@ pub type Coefficients = arm::Coefficients<Real>;
 /// Inputs of the arm.
 pub type Inputs = arm::Inputs<Real>;
 
-/// State: deflections, path of the carrier, modes, and their rates.
+/// State: mesh deflections, displacement of the carrier, modes, and their rates.
 pub type State = [Real; STATES];
 
-/// Step size, s.
+/// Step size, in s.
 pub const STEP: Real = 20e-6;
 
-/// Torque per state, N m per m and N m per m/s: u = -GAIN x. Gain of the linear-quadratic regulator of the arm with both
-/// meshes in contact on their positive sides, discretised over a step, with the costs (x/1 mm)^2 of positions,
-/// (rate/1 m/s)^2 of rates, and (u/1 N m)^2. The test `bare_metal_gain` recomputes it.
+/// Gain of u = -GAIN x in N m per m and N m per m/s. It is the gain of the discrete linear-quadratic regulator for one
+/// step of the arm with both meshes in contact on their positive sides. The costs are (x/1 mm)^2 of positions, (rate/1
+/// m/s)^2 of rates, and (u/1 N m)^2. The test `bare_metal_gain` recomputes it.
 pub const GAIN: State = [
     192.6589, 456.0491, 998.8651, -312.1875, -105.3722, 20.75653, 457.063, 1.629354, 5.443445,
     23.76957, -1.397188, -0.8054563, -0.8642767, -0.8870597,
@@ -39,12 +39,12 @@ pub fn prepared_from(parameters: &Parameters) -> Coefficients {
     arm::Coefficients::prepare(parameters).cast()
 }
 
-/// Prepares the coefficients of the specification's parameters.
+/// Prepares the coefficients for the default parameters.
 pub fn prepared() -> Coefficients {
     prepared_from(&Parameters::default())
 }
 
-/// Returns the initial state: at rest, with a displacement of the carrier of 2 mm and loaded meshes.
+/// Returns the initial state: at rest, with the carrier displaced by 2 mm and loaded meshes.
 pub fn displaced() -> State {
     let mut state = [0.0; STATES];
     state[0] = 30e-6;
@@ -53,7 +53,7 @@ pub fn displaced() -> State {
     state
 }
 
-/// Returns the torque of the motor for a state, N m.
+/// Returns the torque of the motor for a state, in N m.
 pub fn torque(state: &State) -> Real {
     let mut sum = 0.0;
     for i in 0..STATES {
@@ -62,12 +62,13 @@ pub fn torque(state: &State) -> Real {
     -sum
 }
 
-/// Computes a step of the closed loop at time `t`, s, with a constant torque.
+/// Computes one step of the closed loop at time `t` (in s); the torque is constant during the step.
 pub fn step(t: Real, state: &State, coefficients: &Coefficients) -> State {
     driven(t, state, torque(state), coefficients)
 }
 
-/// Returns the state a step after time `t`, s, under a constant torque, N m, by the classical Runge-Kutta method.
+/// Returns the state one step after time `t` (in s) for a constant torque (in N m), by the classical Runge-Kutta
+/// method.
 #[inline(always)]
 pub fn driven(t: Real, state: &State, torque: Real, coefficients: &Coefficients) -> State {
     let inputs = Inputs { u: torque };

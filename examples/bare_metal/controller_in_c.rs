@@ -1,4 +1,4 @@
-//! Controller in C (`controller.c`) with the interface of the one in Rust, for the same board and host programs.
+//! Controller in C (`controller.c`) with the interface of the controller in Rust, for the same board and host programs.
 #![no_std]
 
 use core::ffi::c_int;
@@ -13,13 +13,13 @@ pub type Real = f32;
 /// Number of states.
 pub const STATES: usize = 14;
 
-/// State: deflections, path of the carrier, modes, and their rates.
+/// State: mesh deflections, displacement of the carrier, modes, and their rates.
 pub type State = [Real; STATES];
 
-/// Step size, s.
+/// Step size, in s.
 pub const STEP: Real = 20e-6;
 
-/// Number of values in a structure of the emitted C, which `run` obtains from the C compiler.
+/// Parses the number of values in a structure of the emitted C. The script `run` obtains it from the C compiler.
 const fn count(text: &str) -> usize {
     match usize::from_str_radix(text, 10) {
         Ok(count) => count,
@@ -35,7 +35,7 @@ pub struct Parameters([f64; count(env!("ARM_PARAMETERS"))]);
 #[repr(C)]
 pub struct Coefficients {
     numbers: [Real; count(env!("ARM_COEFFICIENTS"))],
-    /// 1 if the mass matrix is positive definite, else 0.
+    /// 1 if the mass matrix is positive definite, otherwise 0.
     pub positive_definite: c_int,
 }
 
@@ -81,7 +81,7 @@ pub fn prepared_from(parameters: &Parameters) -> Coefficients {
     prepared
 }
 
-/// Prepares the coefficients of the specification's parameters.
+/// Prepares the coefficients for the default parameters.
 pub fn prepared() -> Coefficients {
     prepared_from(&Parameters::default())
 }
@@ -108,7 +108,7 @@ pub fn rates_into(
     unsafe { planetary_arm_rig_rates(t, state, inputs, coefficients, rates) };
 }
 
-/// Computes a step of the closed loop at time `t`, s.
+/// Computes one step of the closed loop at time `t` (in s).
 #[inline]
 pub fn step(t: Real, state: &State, coefficients: &Coefficients) -> State {
     let mut next = [0.0; STATES];

@@ -50,7 +50,7 @@ global_asm!(
 );
 
 unsafe extern "C" {
-    /// Undefined symbol: a program that can panic does not link.
+    /// Undefined symbol. If the program contains a panic, it does not link.
     fn a_panic_is_left_in_the_program() -> !;
     static stack_bottom: u32;
 }
@@ -90,10 +90,10 @@ pub fn print(name: &[u8; 16], number: u64, digits: usize) {
     semihosting(0x04, line.as_ptr() as usize);
 }
 
-/// Returns the ticks of `work`.
+/// Returns the number of timer ticks that `work` takes.
 #[inline(never)]
 fn ticks(mut work: impl FnMut()) -> u32 {
-    // SAFETY: registers of the timer, which no other code uses.
+    // SAFETY: no other code uses the registers of the timer.
     unsafe {
         write_volatile(SYSTICK_RELOAD, SYSTICK_LARGEST);
         write_volatile(SYSTICK_CURRENT, 0);
@@ -106,7 +106,7 @@ fn ticks(mut work: impl FnMut()) -> u32 {
     }
 }
 
-/// Returns the instructions per call, averaged over `CALLS` calls, without the loop.
+/// Returns the number of instructions per call, averaged over `CALLS` calls. Instructions of the loop are subtracted.
 pub fn instructions(mut call: impl FnMut()) -> u32 {
     let calls = ticks(|| {
         for _ in 0..CALLS {
@@ -130,18 +130,18 @@ fn bottom() -> *mut u32 {
 #[inline(always)]
 fn stack_pointer() -> usize {
     let pointer: usize;
-    // SAFETY: reads a register.
+    // SAFETY: the instruction only reads a register.
     unsafe { asm!("mov {}, sp", out(reg) pointer, options(nomem, nostack)) };
     pointer
 }
 
-/// Returns the bytes of stack that `work` uses below its caller.
+/// Returns the number of bytes of stack that `work` uses below its caller.
 #[inline(never)]
 pub fn stack_depth(work: impl FnOnce()) -> u32 {
     let here = stack_pointer();
     let mut place = bottom();
     while (place as usize) < here {
-        // SAFETY: between the program's data and the stack pointer.
+        // SAFETY: the addresses are between the program's data and the stack pointer.
         unsafe {
             write_volatile(place, PAINT);
             place = place.add(1);
@@ -149,7 +149,7 @@ pub fn stack_depth(work: impl FnOnce()) -> u32 {
     }
     work();
     let mut place = bottom();
-    // SAFETY: as above.
+    // SAFETY: the addresses are between the program's data and the stack pointer.
     unsafe {
         while (place as usize) < here && read_volatile(place) == PAINT {
             place = place.add(1);

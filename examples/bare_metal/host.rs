@@ -1,10 +1,10 @@
-//! The controller on the development machine: prints the bits of the same motion.
+//! Runs the controller on the development machine and prints the bits of the motion, for comparison with the board.
 
 use controller::{Real, State, displaced, prepared, step};
 
 fn main() {
     let coefficients = prepared();
-    // `bool` in Rust, an integer in C.
+    // The flag is `bool` in Rust and an integer in C.
     assert_eq!(i32::from(coefficients.positive_definite), 1);
     let mut state: State = displaced();
     for count in 1..=250_u32 {

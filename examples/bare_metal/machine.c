@@ -1,5 +1,5 @@
-/* Rates of an emitted machine in single precision behind an interface that does not depend on its sizes. MODEL is the
- * name of the model, MODEL_H its header. The coefficients are those of `baked.h`, in read-only memory. */
+/* Rates of an emitted machine in single precision, with an interface that does not depend on the number of states. MODEL
+ * is the name of the model, MODEL_H its header. The coefficients are constants from `baked.h`, in read-only memory. */
 #include MODEL_H
 #include "vectors.h"
 

@@ -1,20 +1,20 @@
-//! Rates of an emitted machine in single precision behind an interface that does not depend on its sizes. `machine.c`
-//! has the same interface for emitted C.
+//! Rates of an emitted machine in single precision, with an interface that does not depend on the number of states.
+//! `machine.c` has the same interface for emitted C.
 #![no_std]
 #![forbid(unsafe_code)]
 
 use arm::{Inputs, Parameters, STATES};
 
-/// Largest number of states.
+/// Maximum number of states.
 pub const MOST_STATES: usize = 32;
 
-/// State or rates; the first numbers are used.
+/// State or rates; only the first numbers are used.
 pub type Numbers = [f32; MOST_STATES];
 
-/// Coefficients, prepared in double precision.
+/// Machine: coefficients, prepared in double precision.
 pub struct Machine(arm::Coefficients<f32>);
 
-/// Prepares the coefficients of the specification's parameters.
+/// Prepares the coefficients for the default parameters.
 pub fn prepared() -> Machine {
     Machine(arm::Coefficients::prepare(&Parameters::default()).cast())
 }
@@ -24,8 +24,9 @@ mod vectors {
     include!(concat!(env!("ARM_FOLDER"), "/vectors.rs"));
 }
 
-/// Compares the emitted code with its test vectors in single and in double precision. Returns 0 if no bit differs, else the
-/// place of the first number, counted from 1, and beyond 1 000 000 for double precision.
+/// Compares the emitted code with its test vectors in single and in double precision. Returns 0 if all numbers are
+/// bit-identical. Otherwise returns the index of the first different number, counted from 1, plus 1 000 000 for double
+/// precision.
 pub fn self_test() -> u32 {
     match (vectors::self_test_single(), vectors::self_test()) {
         (Some(place), _) => place as u32 + 1,

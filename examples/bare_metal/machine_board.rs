@@ -1,5 +1,6 @@
-//! Rates of a machine on a Cortex-M without operating system, standard library or allocator. Prints the result of the
-//! self-test, the bits of the rates and the instructions per call at several states. `machine` is the one in Rust or in C.
+//! Computes rates of a machine on a Cortex-M without operating system, standard library or allocator. It prints the
+//! result of the self-test, the bits of the rates and the instructions per call at several states. The crate `machine`
+//! is the version in Rust or in C.
 #![no_std]
 #![no_main]
 

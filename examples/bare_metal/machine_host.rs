@@ -1,4 +1,4 @@
-//! Rates of a machine on the development machine: prints the bits of the same calls as the board.
+//! Computes rates of a machine on the development machine and prints their bits, for the same calls as on the board.
 
 mod positions;
 

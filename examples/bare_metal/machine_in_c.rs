@@ -1,15 +1,15 @@
-//! Machine in C (`machine.c`) with the interface of the one in Rust, for the same board and host programs.
+//! Machine in C (`machine.c`) with the interface of the machine in Rust, for the same board and host programs.
 #![no_std]
 
 use core::ffi::c_int;
 
-/// Largest number of states.
+/// Maximum number of states.
 pub const MOST_STATES: usize = 32;
 
-/// State or rates; the first numbers are used.
+/// State or rates; only the first numbers are used.
 pub type Numbers = [f32; MOST_STATES];
 
-/// Coefficients, which are constants of the C.
+/// Machine without data: its coefficients are constants of the C code.
 pub struct Machine;
 
 unsafe extern "C" {
@@ -18,21 +18,21 @@ unsafe extern "C" {
     fn machine_rates(state: *const f32, rates: *mut f32);
 }
 
-/// Returns the machine with the specification's parameters.
+/// Returns the machine with the default parameters.
 pub fn prepared() -> Machine {
     Machine
 }
 
-/// Compares the emitted code with its test vectors in single precision. Returns 0 if no bit differs, else the place of the
-/// first number, counted from 1.
+/// Compares the emitted code with its test vectors in single precision. Returns 0 if all numbers are bit-identical,
+/// otherwise the index of the first different number, counted from 1.
 pub fn self_test() -> u32 {
-    // SAFETY: reads constants.
+    // SAFETY: the function only reads constants.
     unsafe { machine_self_test() as u32 }
 }
 
 /// Returns the number of states.
 pub fn states() -> usize {
-    // SAFETY: returns a constant.
+    // SAFETY: the function only returns a constant.
     unsafe { machine_states() as usize }
 }
 

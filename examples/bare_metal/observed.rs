@@ -1,5 +1,5 @@
-//! The arm under the torque of the observer's feedback, for half a second. The run has the same bits on a microcontroller
-//! and on any other machine. The observer receives sensor values only, and some of them are NaN.
+//! Simulates the arm with feedback of the observer's estimate for half a second. The run is bit-identical on a
+//! microcontroller and on any other machine. The observer receives only sensor values, and some of them are NaN.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -17,18 +17,18 @@ const LOST: u32 = 7;
 /// Range of measurements in which all sensors return NaN.
 const ALL_LOST: core::ops::Range<u32> = 200..220;
 
-/// Arm and observer.
+/// Arm with its observer.
 pub struct Rig {
     /// State of the arm.
     pub arm: State,
-    /// Observer.
+    /// Observer of the arm.
     pub observer: Observer,
     measurements: u32,
     noise: u64,
 }
 
 impl Rig {
-    /// Creates the arm with a displacement of the carrier of 2 mm, unknown to the observer.
+    /// Creates the arm with the carrier displaced by 2 mm; the observer does not know the displacement.
     pub fn new(coefficients: &Coefficients) -> Self {
         Self {
             arm: displaced(),
@@ -38,7 +38,7 @@ impl Rig {
         }
     }
 
-    /// Returns a number of mean 0 and standard deviation 1: the sum of three uniform ones from -1 to 1.
+    /// Returns a random number with mean 0 and standard deviation 1: the sum of three uniform numbers from -1 to 1.
     fn noise(&mut self) -> f64 {
         let mut sum = 0.0;
         for _ in 0..3 {
@@ -52,7 +52,7 @@ impl Rig {
         sum
     }
 
-    /// Simulates up to the next measurement and updates the observer.
+    /// Simulates until the next measurement and updates the observer.
     pub fn measure(&mut self, coefficients: &Coefficients) {
         let begin = self.measurements * STEPS;
         for count in begin..begin + STEPS {

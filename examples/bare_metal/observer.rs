@@ -1,15 +1,15 @@
-//! Extended Kalman filter for the planetary arm on its test rig, with emitted rates and Jacobians. Its estimate is the
-//! input of the state feedback in `controller`.
+//! Extended Kalman filter for the planetary arm on its test rig, with emitted rates and Jacobians. The state feedback
+//! in `controller` uses its estimate.
 //!
-//! Method: A. Gelb (ed.), "Applied Optimal Estimation", 1974, section 6.1, continuous motion and discrete measurements,
-//! with sequential updates.
+//! Method: A. Gelb (ed.), "Applied Optimal Estimation", 1974, section 6.1, continuous-discrete filter with sequential
+//! updates.
 #![no_std]
 #![forbid(unsafe_code)]
 
 use arm::{OBSERVABLES, OBSERVABLES_BY_STATE, RATES_BY_STATE, STATES};
 use controller::{Coefficients, Inputs, STEP, State, driven, torque};
 
-/// Number of positions, and of rates.
+/// Number of positions, which equals the number of rates.
 const HALF: usize = STATES / 2;
 
 /// Square matrix of the state's size, row by row.
@@ -17,30 +17,30 @@ type Matrix = [State; STATES];
 
 /// Number of sensors.
 pub const SENSORS: usize = 3;
-/// Indices of the measured observables: angles of the sun and of the carrier, rad, and deflection of the arm's end, m, by
-/// a strain gauge.
+/// Indices of the measured observables: angles of the sun and of the carrier (rad), and deflection of the arm's end
+/// (m), measured by a strain gauge.
 pub const MEASURED: [usize; SENSORS] = [0, 2, 3];
-/// Standard deviations of the sensor noise, rad, rad and m.
+/// Standard deviations of the sensor noise (rad, rad, m).
 pub const DEVIATION: [f64; SENSORS] = [1e-4, 2e-5, 2e-5];
 
-/// Standard deviations of the initial state: deflections of the meshes, path of the carrier and modes, m, then their rates,
-/// m/s.
+/// Standard deviations of the initial state: deflections of the meshes, displacement of the carrier and modes (m), then
+/// their rates (m/s).
 const BEGIN: State = [
     3e-5, 3e-5, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1,
 ];
-/// White noise of the mesh forces, which covers changes of contact that the linearisation lacks, as an equivalent
-/// deflection, m s^(1/2).
+/// White noise of the mesh forces, as an equivalent deflection in m s^(1/2). It accounts for changes of contact, which
+/// the linearisation does not contain.
 const FORCES: f64 = 1e-7;
 
-/// Estimate of the state and covariance of its error.
+/// Observer: estimate of the state, and covariance of the estimation error.
 pub struct Observer {
-    /// Estimate.
+    /// Estimate of the state.
     pub state: State,
     /// Covariance of the estimation error, SI.
     covariance: Matrix,
-    /// Derivatives of the rates by the deflection of each mesh, with both in contact.
+    /// Derivatives of the rates by the deflection of each mesh, for both meshes in contact.
     by_meshes: [State; 2],
-    /// Number of skipped measured values, which were NaN.
+    /// Number of measured values that were skipped because they were NaN.
     pub left_out: u32,
 }
 
@@ -50,7 +50,7 @@ fn jacobian(t: f64, state: &State, torque: f64, coefficients: &Coefficients) -> 
     RATES_BY_STATE.dense(&arm::rates_by_state(t, state, &inputs, coefficients))
 }
 
-/// Adds factor from.
+/// Adds `factor` times `from` to `to`.
 fn add(to: &mut State, factor: f64, from: &State) {
     for (number, other) in to.iter_mut().zip(from) {
         *number += factor * other;
@@ -67,8 +67,8 @@ fn transposed(matrix: &Matrix) -> Matrix {
     transposed
 }
 
-/// Computes a step of the linearised motion for each column of a matrix, by the symplectic Euler method: rates first, then
-/// positions with the new rates. Oscillations then do not grow.
+/// Computes one step of the linearised motion for each column of a matrix by the symplectic Euler method: rates first,
+/// then positions with the new rates. With this method, amplitudes of oscillations do not grow.
 fn carried(matrix: &Matrix, jacobian: &Matrix) -> Matrix {
     let mut carried = *matrix;
     for i in 0..HALF {
@@ -84,7 +84,7 @@ fn carried(matrix: &Matrix, jacobian: &Matrix) -> Matrix {
 }
 
 impl Observer {
-    /// Creates an observer with an estimate at rest.
+    /// Creates an observer whose initial estimate is at rest.
     pub fn new(coefficients: &Coefficients) -> Self {
         let mut contact = [0.0; STATES];
         (contact[0], contact[1]) = (1e-3, 1e-3);
@@ -103,18 +103,18 @@ impl Observer {
         }
     }
 
-    /// Returns the torque of the controller for the estimate, N m.
+    /// Returns the torque of the controller for the estimate, in N m.
     pub fn torque(&self) -> f64 {
         torque(&self.state)
     }
 
-    /// Propagates the estimate over a step after time `t`, s, under a torque, N m.
+    /// Propagates the estimate over one step after time `t` (in s) for a torque (in N m).
     pub fn step(&mut self, t: f64, torque: f64, coefficients: &Coefficients) {
         let jacobian = jacobian(t, &self.state, torque, coefficients);
         let half = transposed(&carried(&self.covariance, &jacobian));
         let both = carried(&half, &jacobian);
-        // Symmetrised: otherwise the rounding error of the asymmetry grows, and the filter fails within a third of a
-        // second.
+        // The covariance is symmetrised. Otherwise its asymmetry, a rounding error, would grow, and the filter would
+        // fail within a third of a second.
         let other = transposed(&both);
         for i in 0..STATES {
             let mut row = [0.0; STATES];
@@ -128,7 +128,7 @@ impl Observer {
         self.state = driven(t, &self.state, torque, coefficients);
     }
 
-    /// Updates the estimate with the sensor values at time `t`, s. NaN values are skipped and counted.
+    /// Updates the estimate with the sensor values at time `t` (in s). NaN values are skipped and counted.
     pub fn measured(&mut self, t: f64, values: &[f64; SENSORS], coefficients: &Coefficients) {
         let inputs = Inputs::default();
         for sensor in 0..SENSORS {
@@ -145,7 +145,8 @@ impl Observer {
         }
     }
 
-    /// Updates the estimate with the residual of a measured quantity, given its derivatives.
+    /// Updates the estimate with the residual `larger` of a measured quantity; `slopes` are the derivatives of the
+    /// quantity by the state.
     fn taken(&mut self, slopes: &State, larger: f64, deviation: f64) {
         let mut direction = [0.0; STATES];
         let mut variance = deviation * deviation;

@@ -1,5 +1,5 @@
-//! The observer on a Cortex-M without operating system, standard library or allocator. Prints the bits of the run, the
-//! instructions per step and per measurement, and the stack depth.
+//! Runs the observer on a Cortex-M without operating system, standard library or allocator. It prints the bits of the
+//! run, the instructions per step and per measurement, and the stack depth.
 #![no_std]
 #![no_main]
 
@@ -12,7 +12,7 @@ use cortex::{end, instructions, print, stack_depth};
 use observed::{MEASUREMENTS, Rig, SHOWN};
 use observer::{Observer, SENSORS};
 
-/// Separate functions, to measure their stacks.
+/// The functions are separate, so that their stacks can be measured.
 #[inline(never)]
 fn step(observer: &mut Observer, coefficients: &Coefficients) {
     observer.step(black_box(0.1), black_box(0.1), coefficients);

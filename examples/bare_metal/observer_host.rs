@@ -1,11 +1,13 @@
-//! The observer on the development machine: prints the bits of the same run, prints the estimation errors, and asserts
-//! their limits.
+//! Runs the observer on the development machine, prints the bits of the run and the estimation errors, and asserts
+//! limits of the errors.
 
 use controller::prepared;
 use observed::{MEASUREMENTS, Rig, SHOWN};
 
-/// Indices of the carrier's path and of the first mode in the state.
+/// Index of the carrier's displacement in the state.
 const CARRIER: usize = 2;
+
+/// Index of the first mode in the state.
 const MODE: usize = 3;
 
 fn main() {
@@ -32,7 +34,7 @@ fn main() {
         }
     }
     eprintln!("{} measured values were NaN", rig.observer.left_out);
-    // 20 measurements without all three values, and 69 without the first.
+    // In 20 measurements all three values are missing; in 68 others, every seventh, the first value is missing.
     assert_eq!(rig.observer.left_out, 20 * 3 + 500 / 7 - 3);
     assert!(off(&rig, CARRIER).abs() < 5.0 && off(&rig, MODE).abs() < 30.0);
     assert!(rig.arm[CARRIER].abs() < 50e-6);

@@ -2,10 +2,10 @@
 
 use machine::{MOST_STATES, Numbers};
 
-/// Sizes of the coordinates, from small angles to many turns.
+/// Magnitudes of the coordinates, from small angles to many turns.
 pub const SIZES: [f32; 7] = [1e-3, 0.3, 1.0, 3.0, 10.0, 100.0, 3e4];
 
-/// Returns a state with coordinates of a size and rates of about one.
+/// Returns a state with coordinates of magnitude `size` and rates of about one.
 pub fn state(size: f32) -> Numbers {
     let half = machine::states() / 2;
     let mut state = [0.0; MOST_STATES];

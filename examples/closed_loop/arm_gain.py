@@ -3,7 +3,7 @@
     eomgen linearise SPEC --state x_sp=1e-3 --state x_pr=1e-3 --discrete 0.001 --out arm.json
     python3 examples/closed_loop/arm_gain.py arm.json
 
-The torque of the sample before is one more state. Prints the gain K of u = -K x, which minimises the sum of (x/1 mm)^2,
+The torque of the previous sample is an additional state. Prints the gain K of u = -K x, which minimises the sum of (x/1 mm)^2,
 (rate/1 m/s)^2 and (u/1 N m)^2 over all samples, by the doubling algorithm (E. K.-W. Chu, H.-Y. Fan, W.-W. Lin,
 C.-S. Wang, Int. J. Control 77 (2004) 767-788).
 """

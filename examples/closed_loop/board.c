@@ -1,5 +1,5 @@
-/* The loop on a Cortex-M7 without operating system or library. Prints the bits of the states that host.c prints, through
-   the semihosting of a debugger or emulator. */
+/* Runs the loop on a Cortex-M7 without operating system or library. It prints the bits of the same states as host.c
+   through the semihosting of a debugger or emulator. */
 #include "loop.h"
 
 extern unsigned stack_top;
@@ -42,7 +42,7 @@ __attribute__((naked)) void reset(void) {
     __asm__ volatile("ldr r0, =0xe000ed88\n ldr r1, [r0]\n orr r1, r1, #0xf00000\n str r1, [r0]\n dsb\n isb\n b run");
 }
 
-/* The compiler may call these. */
+/* The compiler may insert calls of these functions. */
 void *memset(void *to, int value, __SIZE_TYPE__ count) {
     for (char *at = to; count > 0; --count) {
         *at++ = (char)value;

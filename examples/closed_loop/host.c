@@ -1,5 +1,5 @@
-/* The loop on this machine: compares every row of a table of `eomgen simulate` bit for bit, and prints the bits of some
-   states for the comparison with the board. */
+/* Runs the loop on this machine. It compares every row of a table of `eomgen simulate` bit for bit, and prints the bits
+   of some states for the comparison with the board. */
 #include "loop.h"
 #include <stdio.h>
 #include <stdlib.h>

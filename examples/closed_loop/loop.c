@@ -1,5 +1,5 @@
-/* Samples, delay and hold in steps, as in `eomgen simulate --solver fixed --step 1e-4`. The delay is shorter than the
-   period, so that at most one output waits. */
+/* Sampling, delay and hold with fixed steps, as in `eomgen simulate --solver fixed --step 1e-4`. The delay is shorter
+   than the period, so that at most one output is pending. */
 #include "loop.h"
 
 static long steps_of(double time) {

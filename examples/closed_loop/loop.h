@@ -3,10 +3,10 @@
 #define LOOP_H
 #include "regulator.h"
 
-/* Length of a step, s. */
+/* Step size, in s. */
 #define STEP 1e-4
 
-/* Runs the loop for a number of steps, and calls `show` at every `interval`th one with its number and the state. */
+/* Runs the loop for a number of steps. Calls `show` after every `interval` steps with the number of the step and the state. */
 void run_loop(long steps, long interval, void (*show)(long step, const double *state));
 
 #endif

@@ -14,9 +14,9 @@ static double torque(const double *gain, const double *state) {
     return u;
 }
 
-/* Simulates with steps of `step`, s, by the classical Runge-Kutta method, from the first row of `states`.
- * Each step writes a further row. `play` is the half backlash of both meshes, m. Returns 0 if the
- * parameters are not admissible. */
+/* Simulates with steps of `step` s by the classical Runge-Kutta method, from the first row of `states`.
+ * Each step writes one row. `play` is half the backlash of both meshes, in m. Returns 0 if the
+ * parameters are invalid. */
 int closed_loop(double play, const double *gain, double step, int steps, double *states) {
     static const double along[4] = {0, 0.5, 0.5, 1}, weight[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
     planetary_arm_rig_parameters parameters;

@@ -1,22 +1,25 @@
-//! Computed torque for the two-link arm, from its emitted inverse dynamics, compared with the same gains without inverse
-//! dynamics. The controlled arms are the rigid arm of the controller's model, one with a heavier tip, and one with
-//! flexible links. `rigid` and `flexible` are emitted by `eomgen generate`, see docs/controllers.md.
+//! Computed-torque control of the two-link arm with its emitted inverse dynamics, compared with control by the same
+//! gains without inverse dynamics. Three arms are controlled: the rigid arm of the controller's model, an arm with a
+//! heavier tip, and an arm with flexible links. `rigid` and `flexible` are emitted by `eomgen generate`, see
+//! docs/controllers.md.
 //!
 //! Method: M. W. Spong, S. Hutchinson and M. Vidyasagar, "Robot Modeling and Control", 2006,
 //! section 8.3.
 
-/// Step size and sample time of the torques, s.
+/// Step size and sample time of the torques, in s.
 const STEP: f64 = 2.5e-4;
-/// Duration of the motion and of a run, s.
+/// Duration of the reference motion, in s.
 const WAY: f64 = 2.0;
+/// Duration of a run, in s.
 const DURATION: f64 = 2.5;
-/// Start and end of the motion, rad, from hanging down.
+/// Start of the reference motion in rad; the arm hangs down.
 const BEGIN: [f64; 2] = [-std::f64::consts::FRAC_PI_2, 0.0];
+/// End of the reference motion, in rad.
 const END: [f64; 2] = [0.3, 1.0];
-/// Natural frequency of the critically damped error of a joint, rad/s.
+/// Natural frequency of the critically damped error dynamics of a joint, in rad/s.
 const BANDWIDTH: f64 = 20.0;
 
-/// Returns angles, rates and accelerations of both joints at time `t` on the minimum-jerk path.
+/// Returns angles, rates and accelerations of both joints at time `t` on the minimum-jerk trajectory.
 fn path(t: f64) -> [[f64; 2]; 3] {
     let s = (t / WAY).clamp(0.0, 1.0);
     let along = s * s * s * (10.0 - 15.0 * s + 6.0 * s * s);
@@ -30,7 +33,7 @@ fn path(t: f64) -> [[f64; 2]; 3] {
     ]
 }
 
-/// Returns accelerations that reduce the error of the joints.
+/// Returns the feedback accelerations for the errors of the joints.
 fn back(t: f64, angles: [f64; 2], rates: [f64; 2]) -> [f64; 2] {
     let [wanted, wanted_rates, _] = path(t);
     let back = |j: usize| {
@@ -39,7 +42,7 @@ fn back(t: f64, angles: [f64; 2], rates: [f64; 2]) -> [f64; 2] {
     [back(0), back(1)]
 }
 
-/// Returns the torques of the gains, N m, with the initial inertia at each joint, kg m^2.
+/// Returns the torques (N m) of the gains without inverse dynamics, with the initial inertia at each joint (kg m^2).
 fn gains_alone(arm: &rigid::Coefficients, t: f64, angles: [f64; 2], rates: [f64; 2]) -> [f64; 2] {
     let begin = [BEGIN[0], BEGIN[1], 0.0, 0.0];
     let inertia = rigid::mass_matrix(0.0, &begin, &rigid::Inputs::default(), arm);
@@ -47,7 +50,7 @@ fn gains_alone(arm: &rigid::Coefficients, t: f64, angles: [f64; 2], rates: [f64;
     [inertia[0][0] * back[0], inertia[1][1] * back[1]]
 }
 
-/// Returns the computed torques, N m, by inverse dynamics of the rigid arm.
+/// Returns the computed torques (N m) by inverse dynamics of the rigid arm.
 fn computed(arm: &rigid::Coefficients, t: f64, angles: [f64; 2], rates: [f64; 2]) -> [f64; 2] {
     let back = back(t, angles, rates);
     let [_, _, ahead] = path(t);
@@ -56,13 +59,13 @@ fn computed(arm: &rigid::Coefficients, t: f64, angles: [f64; 2], rates: [f64; 2]
     rigid::inverse_dynamics(t, &state, &rigid::Inputs::default(), arm, &accelerations)
 }
 
-/// Largest error of both joints during the motion and at the end, rad.
+/// Largest error of both joints during the motion and at the end, in rad.
 struct Tracking {
     way: f64,
     end: f64,
 }
 
-/// Computes a step of the classical Runge-Kutta method.
+/// Computes one step of the classical Runge-Kutta method.
 fn stepped<const N: usize>(
     t: f64,
     state: &[f64; N],
@@ -96,7 +99,7 @@ fn followed<const N: usize>(
     tracking
 }
 
-/// Runs both control laws on a machine, prints and returns their errors.
+/// Simulates a machine with both control laws; prints and returns their errors.
 fn compared<const N: usize>(
     name: &str,
     known: &rigid::Coefficients,

@@ -25,26 +25,26 @@ typedef struct {
 
 /* Times and driven inputs of the controller. */
 typedef struct {
-    /* Time between two samples, s. Set it. */
+    /* Time between two samples, in s; must be set. */
     double period;
-    /* Time of the first sample, s; 0 if not set. */
+    /* Time of the first sample, in s; 0 if not set. */
     double offset;
-    /* Time between a sample and the action of its outputs, s; 0 if not set. */
+    /* Time between a sample and the change of the inputs that its outputs drive, in s; 0 if not set. */
     double delay;
-    /* Number of driven inputs. Set it. */
+    /* Number of driven inputs; must be set. */
     uint32_t outputs;
-    /* Index of each driven input. Write `outputs` of them; the array has room for every input of the model. */
+    /* Index of each driven input. Write `outputs` indices; the array has one element for each input of the model. */
     uint32_t *driven;
 } eomgen_controller_schedule;
 
 /* Returns EOMGEN_CONTROLLER_ABI. */
 uint32_t eomgen_controller_abi(void);
 
-/* Sets the times and the driven inputs, and resets the controller. Returns 0, or another number to reject the model. */
+/* Sets the times and the driven inputs, and resets the controller. Returns 0; any other number rejects the model. */
 int32_t eomgen_controller_start(const eomgen_controller_model *model, eomgen_controller_schedule *schedule);
 
-/* Computes the outputs of a sample at time t (s) from the values before it, in the order of `driven`. Returns 0, or another
-   number to stop the simulation. */
+/* Computes the outputs of a sample at time t (in s), in the order of `driven`, from the values before the sample. Returns 0;
+   any other number stops the simulation. */
 int32_t eomgen_controller_sample(
     double t, const double *state, const double *observables, const double *inputs, double *outputs);
 

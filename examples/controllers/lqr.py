@@ -97,7 +97,7 @@ def main():
         late = states[round(0.75 * len(states)) :, 2]
         print(f"play of {2e6 * play:.0f} um: cost {cost:.3f} times that of the Riccati equation")
         print(f"    the carrier within {1e6 * abs(late).max():.2f} um after {0.75 * DURATION} s")
-        # Without play the arm is linear and has the predicted cost. Within the play no force acts on it.
+        # Without play the arm is linear and the cost equals the prediction. Within the play no force acts on the arm.
         assert abs(cost - 1) < (0.05 if play else 1e-3) and abs(late).max() < (play or 1e-6)
 
 

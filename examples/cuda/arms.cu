@@ -1,4 +1,4 @@
-// The motions of a million arms on a CUDA device and on all processors of the host, with the same bits.
+// Simulates a million arms on a CUDA device and on all processors of the host. The results are bit-identical.
 //
 // Usage: arms [ARMS [STEPS]]
 #include <chrono>
@@ -54,7 +54,7 @@ int main(int count, char **words) {
         std::fprintf(stderr, "error: ARMS and STEPS must be positive integers\n");
         return 2;
     }
-    // Each arm starts with other rates, rad/s: some meshes stay in contact, others lose it.
+    // Each arm starts with different rates (rad/s): some meshes stay in contact, others lose contact.
     std::vector<Number> host(arms * planetary_arm_STATES, Number(0));
     for (size_t arm = 0; arm < arms; ++arm) {
         Number *state = host.data() + arm * planetary_arm_STATES;

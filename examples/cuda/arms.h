@@ -1,4 +1,4 @@
-/* The motions of many arms on the host, for comparison with the device. */
+/* Simulation of many arms on the host, for comparison with the device. */
 #ifndef ARMS_H
 #define ARMS_H
 #include <stddef.h>
@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-/* Advances the arms `begin` to `end` (exclusive) by `steps` steps of length `h`, s. `states` has STATES numbers for each arm. */
+/* Advances the arms `begin` to `end` (exclusive) by `steps` steps of length `h` (in s). `states` has STATES numbers for each arm. */
 void advance_on_host(
     planetary_arm_REAL *states, size_t begin, size_t end, int steps, planetary_arm_REAL h
 );

@@ -5,8 +5,8 @@
 
 MuJoCo's toolbox `mujoco.sysid` fits the parameters that its user declares: first mass, damping and stiffness, which are
 the parameters of a stage without dry friction, then dry friction too. `eomgen discover` gets the model without dry friction.
-The table shows the estimates with the half-widths of their 95 % intervals. The RMS residuals are those of a simulation of
-each whole record from rest. Every fit uses first.csv only. The environment variable EOMGEN_PROGRAM may name the program
+The table shows the estimates with the half-widths of their 95 % intervals. The RMS residuals are from simulations of
+the complete records from rest. Every fit uses first.csv only. The environment variable EOMGEN_PROGRAM may name the program
 `eomgen`; otherwise it is searched on the path.
 
 Exit status: 0 if the table was printed, 2 if MuJoCo, its toolbox or `eomgen` is missing.
@@ -29,7 +29,7 @@ START = {"mass": 4.0, "damping": 12.0, "stiffness": 1.0, "friction": 1.0}
 STEP = 5e-4  # s, of MuJoCo's integrator; the records have samples every 5 ms
 NORMAL_95 = 1.96  # half-width of a 95 % interval in standard deviations
 
-# Dry friction is a soft constraint in MuJoCo: `solref` is its time constant, s, and damping ratio.
+# Dry friction is a soft constraint in MuJoCo. `solref` contains its time constant in s and its damping ratio.
 STAGE = """
 <mujoco model="stage">
   <option timestep="{step}" integrator="implicitfast" gravity="0 0 0"/>
@@ -85,13 +85,13 @@ RECORDS = {name: read_record(name) for name in ("first.csv", "second.csv")}
 
 
 def build(parameters, time_constant):
-    """Returns MuJoCo's model of the stage; parameters that are not given have no effect on it."""
+    """Returns MuJoCo's model of the stage. Effects of parameters that are not given are absent."""
     values = {"mass": TRUTH["mass"], "damping": 0.0, "stiffness": 0.0, "friction": 0.0} | parameters
     return mujoco.MjSpec.from_string(STAGE.format(step=STEP, time_constant=time_constant, **values))
 
 
 def residual_function(name, time_constant):
-    """Returns the toolbox's residual function of a record that starts from rest."""
+    """Returns the residual function of the toolbox for a record that starts from rest."""
     t, force, position = RECORDS[name]
     spec = build({}, time_constant)
     model = spec.compile()
@@ -155,13 +155,13 @@ def discover():
 
 
 def processor_time():
-    """Returns the processor time of this process and of its finished subprocesses, s."""
+    """Returns the processor time of this process and of its finished subprocesses in s."""
     used = os.times()
     return used.user + used.system + used.children_user + used.children_system
 
 
 def show(title, fit, missing):
-    """Runs a fit and prints its row of the table; `missing` replaces the estimates that it does not give."""
+    """Runs a fit and prints its row of the table; `missing` is printed for estimates that the fit does not return."""
     start = processor_time()
     estimates, remaining = fit()
     seconds = processor_time() - start

@@ -19,17 +19,17 @@ NOISE = 20e-6  # m
 
 
 def force(t, turn):
-    """Returns the force of the motor, N."""
+    """Returns the force of the motor in N."""
     return 9.0 * math.cos(2.9 * t + turn) + 6.0 * math.sin(7.3 * t * (1.0 + 0.2 * turn))
 
 
 def acceleration(pushed, v):
-    """Returns the acceleration, m/s^2. Dry friction changes its sign over 0.1 mm/s."""
+    """Returns the acceleration in m/s^2. Dry friction changes its sign over 0.1 mm/s."""
     return (pushed - VISCOUS * v - DRY * math.tanh(v / 1e-4)) / MASS
 
 
 def record(name, turn):
-    """The text of a record."""
+    """Returns the text of a record."""
     noise = random.Random(name)
     lines = ["Bench 2, linear stage", f"File: {name}", "Time;Force;Position", "s;N;mm"]
     x = v = 0.0

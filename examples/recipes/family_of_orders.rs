@@ -1,6 +1,6 @@
-//! Four orders of one specification in one program: the response of the beam to a torque pulse.
+//! Compares four orders of one specification in one program: the response of the beam to a torque pulse.
 
-/// Torque on the hub, N m: 0.1 for a tenth of a second, then the reverse.
+/// Torque on the hub in N m: 0.1 for a tenth of a second, then -0.1 for a tenth of a second.
 fn torque(t: f64) -> f64 {
     match t {
         t if t < 0.1 => 0.1,

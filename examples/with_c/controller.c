@@ -1,4 +1,4 @@
-/* The arm starts from rest with twice the specified play. `arm4` is the output folder of
+/* Simulates the arm from rest with twice the specified play. `arm4` is the output folder of
  * `eomgen generate --target c99`, see docs/embedding.md. */
 #include "planetary_arm.h"
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* Turns the hub of `hub_beam_tip_mass` to an angle with a PD controller. The indices have names, so this file drives
- * the same coordinate at every order: compile it with -DMODEL=PREFIX -DHEADER='"PREFIX.h"', see docs/families.md. */
+/* Turns the hub of `hub_beam_tip_mass` to an angle with a PD controller. It uses named indices, so this file drives
+ * the same coordinate at every order. Compile it with -DMODEL=PREFIX -DHEADER='"PREFIX.h"', see docs/families.md. */
 #include HEADER
 #include <stdio.h>
 

@@ -61,7 +61,7 @@ def equilibrium(rates, p, modes):
 
 
 def bending_frequency(rates, p, modes):
-    """Returns the lowest natural frequency with fixed joints, Hz."""
+    """Returns the lowest natural frequency with fixed joints in Hz."""
     rest, u = equilibrium(rates, p, modes)
     by_state = np.array(rates.factory("by", ["t", "x", "u", "p"], ["jac:rates:x"])(0, rest, u, p))
     degrees = 2 + 2 * modes
@@ -80,7 +80,7 @@ def step(rates, p, h, name="step"):
 
 
 class Controller:
-    """Optimal control over the horizon, solved at each sample, starting from the previous solution."""
+    """Optimal control problem over the horizon. It is solved at each sample, starting from the previous solution."""
 
     def __init__(self, rates, p):
         states = rates.size1_in(1)

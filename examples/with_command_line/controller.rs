@@ -1,4 +1,4 @@
-//! The arm starts from rest with twice the specified play. `arm4` is emitted by `eomgen generate`, see
+//! Simulates the arm from rest with twice the specified play. `arm4` is emitted by `eomgen generate`, see
 //! docs/embedding.md.
 
 use arm4::{Coefficients, Inputs, Parameters, STATE_NAMES, STATES, rates};

@@ -1,5 +1,5 @@
-//! The arm at S = 4 for the general solvers: the compiled model with its switching surfaces, and the same motion
-//! in variables with a continuous right-hand side.
+//! Arm at S = 4 for the general solvers: the compiled model with switching surfaces, and equations in variables with a
+//! continuous right-hand side.
 
 use std::cell::RefCell;
 use std::path::Path;
@@ -13,7 +13,7 @@ pub const STATES: usize = g::STATES;
 
 const DEGREES: usize = STATES / 2;
 
-/// Compiled model, as `simulate` runs it; both ends of each play are switching surfaces.
+/// Compiled model as in `simulate`; both ends of each play are switching surfaces.
 pub struct Located {
     model: CompiledModel,
 }
@@ -42,33 +42,33 @@ impl Located {
     }
 }
 
-/// Row of accelerations, padded to full lanes.
+/// Row of accelerations, padded to full SIMD registers.
 type Lanes = [f64; DEGREES + 1];
 
-/// Equations in momentum-like variables.
+/// Equations of motion in momentum-like variables.
 ///
-/// The damping force of a mesh is c times the rate of its compression, so with
-/// u = q' + d_sp psi(x_sp) + d_pr psi(x_pr), u' is the acceleration without mesh damping. Here psi(x) is the compression
-/// and -d the acceleration per rate of compression. Unlike the acceleration, u' is continuous when a mesh opens or closes.
+/// The damping force of a mesh is c times the rate of its compression. With u = q' + d_sp psi(x_sp) + d_pr psi(x_pr),
+/// u' is therefore the acceleration without mesh damping. Here psi(x) is the compression, and -d is the acceleration
+/// per unit rate of compression. Unlike the acceleration, u' is continuous when a mesh opens or closes.
 pub struct Momentum {
     half_width: [f64; 2],
     /// d_sp and d_pr, 1/s.
     damping: [Lanes; 2],
-    /// Accelerations per compression of each mesh, 1/s^2.
+    /// Accelerations per unit compression of each mesh, 1/s^2.
     stiffness: [Lanes; 2],
-    /// Accelerations per deflection of each mode, 1/s^2.
+    /// Accelerations per unit deflection of each mode, 1/s^2.
     modes: [Lanes; 4],
-    /// Constant part and ripple amplitude of the motor in x_sp'', m/s^2.
+    /// Constant part and ripple amplitude of the motor's contribution to x_sp'', m/s^2.
     motor: [f64; 2],
-    /// Decrease of the motor's acceleration per x_sp' + x_pr' + 2 x_c', 1/s.
+    /// Decrease of the motor's acceleration per unit of x_sp' + x_pr' + 2 x_c', 1/s.
     fall: f64,
     /// Angular frequency of the ripple, rad/s.
     omega: f64,
 }
 
 impl Momentum {
-    /// Creates the reference case. The coefficients follow from the generated equations, which are linear within a
-    /// regime.
+    /// Creates the reference case. The coefficients are computed from the generated equations, which are linear within
+    /// a regime.
     pub fn new() -> Self {
         let damped = g::Parameters::default();
         let undamped = g::Parameters {
@@ -105,7 +105,7 @@ impl Momentum {
         }
     }
 
-    /// Computes the rates of x_sp, x_pr, x_c, q_1 .. q_4 (m) and of their u (m/s).
+    /// Computes the rates of x_sp, x_pr, x_c, q_1 .. q_4 (m) and of the corresponding u (m/s).
     #[inline]
     pub fn rates(&self, t: f64, y: &[f64; STATES]) -> [f64; STATES] {
         let sp = compression(y[0], self.half_width[0]);
@@ -130,7 +130,7 @@ impl Momentum {
     }
 }
 
-/// Returns deadzone(x), m.
+/// Returns the compression deadzone(x) in m.
 fn compression(x: f64, half_width: f64) -> f64 {
     x - x.clamp(-half_width, half_width)
 }

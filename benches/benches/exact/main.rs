@@ -1,9 +1,10 @@
-//! The exact propagator and general solvers at equal error. First a table lists the required tolerance of each peer, its
-//! error, and the time per simulated second; then Criterion measures the same.
+//! Benchmark of the exact propagator and of general solvers at equal error. First a table lists the required tolerance
+//! of each peer, its error, and the time per simulated second. Then Criterion measures the times.
 //!
-//! The case is the arm at S = 4, b = 25 um, omega = 10 pi, one second from rest. The error is the largest
-//! |x_sp - reference| on a grid of 1 ms, with the exact propagator as the reference. The table ends with its distance
-//! from the most accurate peer. `arm` has the right-hand sides, `peers` the solvers, `table` the search for tolerances.
+//! The case is the arm at S = 4, b = 25 um, omega = 10 pi, one second from rest. The error is the largest |x_sp -
+//! reference| on a grid of 1 ms, with the exact propagator as the reference. The last line of the table is the distance
+//! of the exact propagator from the most accurate peer. `arm` has the right-hand sides, `peers` the solvers, `table`
+//! the search for tolerances.
 
 mod arm;
 mod peers;
@@ -18,7 +19,7 @@ use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::Trajectory;
 use eomgen_sim::piecewise_linear::{PiecewiseLinear, Propagator};
 
-/// Orders at which the cost of a switch is printed.
+/// Orders at which the time per switch is printed.
 const ORDERS: [usize; 4] = [0, 4, 16, 64];
 
 /// Exact propagator at one order.

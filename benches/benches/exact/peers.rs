@@ -1,4 +1,5 @@
-//! General solvers under test. Each computes one second from rest at a tolerance, and x_sp on a grid of times.
+//! General solvers (peers). Each simulates one second from rest with a given tolerance and returns x_sp on a grid of
+//! times.
 
 use differential_equations::methods::{Adaptive, DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
@@ -7,7 +8,7 @@ use eomgen_sim::ode::{Method, Settings};
 
 use crate::arm::{Located, Momentum, STATES};
 
-/// First step size, s; the error estimate corrects it.
+/// First step size in s; the error estimate corrects it.
 const FIRST_STEP: f64 = 1e-6;
 
 type State = [f64; STATES];
@@ -16,7 +17,7 @@ type Dopri5 = ExplicitRungeKutta<Ordinary, DormandPrince, f64, State, 5, 7, 7>;
 type Verner6 = ExplicitRungeKutta<Ordinary, Adaptive, f64, State, 6, 9, 10>;
 type Verner7 = ExplicitRungeKutta<Ordinary, Adaptive, f64, State, 7, 10, 13>;
 
-/// All peers.
+/// All peers of the benchmark.
 pub const ALL: [Peer; 6] = [
     Peer::Located(Method::DormandPrince853),
     Peer::Located(Method::Adams),
@@ -31,7 +32,7 @@ pub const ALL: [Peer; 6] = [
 pub enum Peer {
     /// Solver of this project with the compiled model; every switch is located.
     Located(Method),
-    /// Crate `differential-equations`, in momentum-like variables. Its error control handles switches as
+    /// Crate `differential-equations`, with momentum-like variables. Its error control treats switches as
     /// discontinuities of the second derivative.
     Continuous(Scheme),
 }
@@ -39,13 +40,13 @@ pub enum Peer {
 /// Embedded Runge-Kutta pair.
 #[derive(Clone, Copy)]
 pub enum Scheme {
-    /// Dormand and Prince, order 8(5,3).
+    /// Method of Dormand and Prince of order 8(5,3).
     Dop853,
-    /// Dormand and Prince, order 5(4).
+    /// Method of Dormand and Prince of order 5(4).
     Dopri5,
-    /// Verner's "most efficient", order 6(5).
+    /// Verner's "most efficient" method of order 6(5).
     Verner6,
-    /// Verner's "most efficient", order 7(6).
+    /// Verner's "most efficient" method of order 7(6).
     Verner7,
 }
 
@@ -53,12 +54,13 @@ pub enum Scheme {
 pub struct Problem {
     located: Located,
     momentum: Momentum,
-    /// Largest magnitude of each state, the scale of its tolerance. Users of a general solver do not have it.
+    /// Largest magnitude of each state, used as the scale of the tolerance. Users of a general solver do not know it in
+    /// advance.
     pub magnitudes: State,
 }
 
 impl Problem {
-    /// Creates the reference case with the magnitudes of its states.
+    /// Creates the reference case with these magnitudes of the states.
     pub fn new(magnitudes: State) -> Self {
         Self {
             located: Located::new(),
@@ -69,7 +71,7 @@ impl Problem {
 }
 
 impl Peer {
-    /// Name in the table.
+    /// Returns the name in the table.
     pub fn name(self) -> &'static str {
         match self {
             Self::Located(Method::DormandPrince853) => "DOP853, located",
@@ -123,7 +125,7 @@ impl Scheme {
     }
 }
 
-/// Simulates one second from rest with located switches. Returns x_sp at the end and at `times`.
+/// Simulates one second from rest with event location. Returns x_sp at the end and at `times`.
 fn locate(arm: &Located, method: Method, tolerance: f64, times: &[f64]) -> Option<(f64, Vec<f64>)> {
     let settings = Settings {
         method,
@@ -171,8 +173,8 @@ fn drive<M: OrdinaryNumericalMethod<f64, State>>(
     Some((method.y()[0], samples))
 }
 
-/// Returns x_sp at `time` within a step from `t`, by a shorter step of order 8, because the interpolation of the crate has
-/// a lower order.
+/// Returns x_sp at `time` within a step that starts at `t`. A shorter step of order 8 is used, because the dense output
+/// of the crate has a lower order.
 fn inside(arm: &Momentum, t: f64, y: &State, time: f64) -> Option<f64> {
     let length = time - t;
     if length <= 0.0 {

@@ -1,4 +1,4 @@
-//! Loosest tolerance of each peer that meets the error, and the table of times.
+//! Search for the loosest tolerance of each peer that satisfies the error limit, and the table of times.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -9,29 +9,31 @@ use crate::Exact;
 use crate::arm::STATES;
 use crate::peers::{ALL, Peer, Problem};
 
-/// Error limit of all peers, m.
+/// Error limit of all peers, in m.
 const ERROR: f64 = 1e-9;
 
-/// Range of tolerances, searched from the loosest on and refined at the first that meets the error.
+/// Loosest tolerance of the search.
 const LOOSEST: f64 = 1e-4;
+
+/// Tightest tolerance of the search.
 const TIGHTEST: f64 = 1e-12;
 
-/// Number of rounds; each measures all peers, under the same load of the machine.
+/// Number of rounds. Each round measures all peers, so that all are measured under the same load of the machine.
 const ROUNDS: usize = 12;
 
-/// Duration of every measurement, s. It is equal for all, because other work on the machine disturbs long measurements
-/// more.
+/// Duration of each measurement in s. It is equal for all peers, because other work on the machine disturbs long
+/// measurements more.
 const MEASURED: f64 = 0.04;
 
-/// Peers with their tolerances.
+/// Peers with the tolerances that satisfy the error limit.
 pub struct Tuned {
-    /// Problem.
+    /// Equations to solve.
     pub problem: Problem,
-    /// Peers that meet the error.
+    /// Peers that satisfy the error limit, with their tolerances.
     pub peers: Vec<(Peer, f64)>,
 }
 
-/// Finds the tolerances and prints the tables; `orders` holds order 4.
+/// Finds the tolerances and prints the tables; `orders` must contain order 4.
 pub fn print(orders: &mut [Exact]) -> Tuned {
     let times: Vec<f64> = (0..=1000).map(|i| f64::from(i) / 1000.0).collect();
     let arm = orders.iter_mut().find(|arm| arm.order == 4);
@@ -118,9 +120,9 @@ fn seconds<T>(mut work: impl FnMut() -> T) -> f64 {
     }
 }
 
-/// Returns the loosest tolerance with an error of at most [`ERROR`], and the error. The search goes by decades until the
-/// error is met, then by tenths of the previous decade. The first tolerance that meets the error counts, even if a
-/// tighter one does not: errors jump at switches that are not located.
+/// Returns the loosest tolerance with an error of at most [`ERROR`], and the error. The tolerance is decreased by
+/// decades until the error limit is satisfied, then by tenths within the last decade. The first tolerance that
+/// satisfies the limit is used, even if a tighter one does not, because errors jump at switches that are not located.
 fn find_loosest_tolerance(error: impl Fn(f64) -> f64) -> Option<(f64, f64)> {
     let step = |from: f64, tenths: i32| from * 10.0_f64.powf(-f64::from(tenths) / 10.0);
     let decades = (0..).map(|decade| step(LOOSEST, 10 * decade));

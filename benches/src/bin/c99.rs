@@ -1,9 +1,9 @@
-//! Times of emitted C, emitted Rust and hand-written C for the same states of the planetary arm, with contact in half of
-//! the meshes:
+//! Measures emitted C, emitted Rust and hand-written C for the same states of the planetary arm, with contact in half
+//! of the meshes:
 //!
 //!     cargo run --release -p eomgen-benches --bin c99
 //!
-//! The Rust is compiled with this program, the C by `cc` with the flags in the table.
+//! The Rust code is compiled with this program, the C code by `cc` with the flags in the table.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -20,19 +20,20 @@ use eomgen_validate::references::planetary_arm::parameters::PlanetaryArmParamete
 
 /// Number of states in a pass.
 const STATES: usize = 1024;
-/// Number of passes per turn, and of turns per program. The fastest pass counts: other work disturbs it least.
+/// Number of passes per turn. The fastest pass counts, because other work disturbs it least.
 const PASSES: usize = 200;
+/// Number of turns per program. Programs are measured in turns.
 const TURNS: usize = 8;
-/// Flags without fused or reordered operations, for which C and Rust give the same bits.
+/// Flags without fused or reordered operations. With these, C and Rust are bit-identical.
 const FLAGS: [&[&str]; 3] = [
     &["-std=c99", "-O3"],
     &["-std=c99", "-O3", "-march=native"],
     &["-std=c99", "-O3", "-march=native", "-ffast-math"],
 ];
-/// Largest relative difference of the rates of the two C programs, which sum in different orders.
+/// Largest accepted relative difference between the rates of the two C programs, which sum in different orders.
 const MAX_DIFFERENCE: f64 = 1e-12;
 
-/// Returns a fixed sequence of numbers in (-1, 1).
+/// Returns a generator of a fixed sequence of numbers in (-1, 1).
 fn numbers() -> impl FnMut() -> f64 {
     let mut state = 1_u64;
     move || {
@@ -56,7 +57,7 @@ fn states<const N: usize>() -> Vec<[f64; N]> {
         .collect()
 }
 
-/// Shortest times of a call, ns.
+/// Shortest times of a call, in ns.
 #[derive(Clone, Copy)]
 struct Times {
     rust: f64,
@@ -74,7 +75,7 @@ fn run(command: &mut Command) -> Result<String, Box<dyn Error>> {
     Ok(String::from_utf8(output.stdout)?)
 }
 
-/// Compiles both C programs with given flags.
+/// Compiles both C programs with these flags.
 fn compile(order: usize, flags: &[&str], folder: &Path) -> Result<(), Box<dyn Error>> {
     let by_hand = Path::new(env!("CARGO_MANIFEST_DIR")).join("c");
     run(Command::new("cc")
@@ -91,7 +92,7 @@ fn compile(order: usize, flags: &[&str], folder: &Path) -> Result<(), Box<dyn Er
     Ok(())
 }
 
-/// Measures the times at one order with given flags.
+/// Measures the times at one order with these flags.
 fn measure_flags(
     flags: &[&str],
     order: usize,
@@ -174,7 +175,7 @@ macro_rules! order {
     }};
 }
 
-/// Emits the C of an order.
+/// Emits the C code of an order.
 fn emit(model: &Model, order: usize, folder: &Path) -> Result<(), Box<dyn Error>> {
     let variant = Variant::derive(model, &[order]).map_err(|found| found.render(false))?;
     let files = c::emit(&variant.program)?;

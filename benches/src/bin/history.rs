@@ -1,5 +1,5 @@
-//! Measures the right-hand sides, counts their instructions, appends a line to
-//! `benches/history.csv` and draws `docs/rates.svg` and `docs/history.svg`:
+//! Measures the right-hand sides, counts their instructions, appends a line to `benches/history.csv` and draws
+//! `docs/rates.svg` and `docs/history.svg`:
 //!
 //!     cargo run --release -p eomgen-benches --bin history
 
@@ -19,7 +19,7 @@ use eomgen_validate::references::planetary_arm::parameters::PlanetaryArmParamete
 
 /// Number of calls per measurement.
 const CALLS: u32 = 100;
-/// Number of measurements per contender. The fastest counts: other work disturbs it least.
+/// Number of measurements per contender. The fastest counts, because other work disturbs it least.
 const ROUNDS: usize = 600;
 
 /// Returns the time of the fastest call of each contender, s.
@@ -41,7 +41,7 @@ fn independent_time(_: f64) -> f64 {
     black_box(0.3)
 }
 
-/// Returns the time t of a call that depends on the previous result, the rate with the sine.
+/// Returns the time t of a call that depends on the previous result: the rate that contains the sine.
 #[inline(always)]
 fn dependent_time(result: f64) -> f64 {
     0.3 + 0.0 * result
@@ -51,7 +51,7 @@ fn dependent_time(result: f64) -> f64 {
 macro_rules! calls {
     ($t:ident, $arm:ident, $state:ident, $inputs:ident, $coefficients:ident, $eliminated:ident, $equation:ident) => {{
         let [a, b, c, d] = &mut [$state; 4];
-        // Row with the motor's sine.
+        // Index of the rate that contains the motor's sine.
         let row = $arm::DEGREES_OF_FREEDOM;
         let [floor, generated, hand_written, equation_22] = fastest(&mut [
             &mut || {
@@ -132,7 +132,7 @@ fn features() -> &'static str {
     }
 }
 
-/// Returns the output of git, empty on a failure.
+/// Returns the output of git; empty if git fails.
 fn git(arguments: &[&str]) -> String {
     let output = Command::new("git").args(arguments).output();
     output.map_or_else(

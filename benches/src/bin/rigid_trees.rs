@@ -1,11 +1,12 @@
-//! Times of forward and inverse dynamics of rigid trees for the same states: emitted C, CasADi with the same expressions,
-//! and Pinocchio with the same arm:
+//! Measures forward and inverse dynamics of rigid trees for the same states: emitted C, CasADi with the same
+//! expressions, and Pinocchio with the same arm:
 //!
 //!     cargo run --release -p eomgen-benches --bin rigid_trees
 //!
-//! CasADi and Pinocchio are Python packages (`pip install casadi pin cmeel-eigen`) for the Python of the variable PYTHON,
-//! `python3` by default. If one is missing, the program prints a message and its columns are empty. The counts of
-//! operations per call, with a function counted as one, are of emitted code and of energies simplified by hand.
+//! CasADi and Pinocchio are Python packages (`pip install casadi pin cmeel-eigen`). The environment variable PYTHON
+//! selects the interpreter, `python3` by default. If a package is missing, the program prints a message and the columns
+//! of the package are empty. Operation counts per call are printed for emitted code and for energies simplified by
+//! hand; a function counts as one operation.
 
 use std::error::Error;
 use std::path::Path;
@@ -22,18 +23,19 @@ use eomgen_model_spec::source::Source;
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
-/// Largest difference of the contenders, relative to the largest number of a call; they sum in different orders.
+/// Largest accepted difference between contenders, relative to the largest result of a call. Contenders sum in
+/// different orders.
 const MAX_DIFFERENCE: f64 = 1e-10;
-/// Number of printed lines of a failed command.
+/// Maximum number of printed lines of a failed command's output.
 const MAX_LINES: usize = 20;
-/// Boost limits that Pinocchio requires, according to its package.
+/// Compiler definitions with limits of Boost that Pinocchio's package requires.
 const LIMITS: [&str; 4] = [
     "-DBOOST_MPL_LIMIT_LIST_SIZE=30",
     "-DBOOST_MPL_LIMIT_VECTOR_SIZE=30",
     "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS",
     "-DBOOST_FUSION_INVOKE_MAX_ARITY=12",
 ];
-/// PUMA 560 for Pinocchio: rotation about x, translation, mass, centre and inertia of each link.
+/// PUMA 560 for Pinocchio: rotation about x, translation, mass, centre of mass and inertia of each link.
 const ARM: &str = "\
 JOINT(M_PI / 2, 0, 0, 0, 0, 0, 0, 0, 0.35, 0.35, 0.35)
 JOINT(0, 0, 0, 0, 17.4, 0.4318 - 0.3638, 0.006, 0.2275, 0.13, 0.524, 0.539)
@@ -84,7 +86,7 @@ fn pinocchio() -> Option<String> {
         .then_some(folder)
 }
 
-/// Compiles Pinocchio's aba and rnea of the arm.
+/// Compiles a program with Pinocchio's `aba` (forward dynamics) and `rnea` (inverse dynamics) of the arm.
 fn compile_peer(sources: &Path, folder: &Path, package: &str) -> Outcome<()> {
     std::fs::write(folder.join("arm.h"), ARM)?;
     let include = |name: &str| format!("-I{package}/include{name}");
@@ -100,7 +102,8 @@ fn compile_peer(sources: &Path, folder: &Path, package: &str) -> Outcome<()> {
     Ok(())
 }
 
-/// Measures the shortest times of a call, ns: emitted, CasADi, Pinocchio (0 if missing), forward and then inverse.
+/// Measures the shortest times of a call in ns: forward and then inverse dynamics of emitted code, CasADi and Pinocchio
+/// (0 if missing).
 fn measure(model: &Model, program: &Program, peer: Option<&str>) -> Outcome<[f64; 6]> {
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("rigid_trees");
     let folder = tempfile::tempdir()?;

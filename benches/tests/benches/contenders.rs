@@ -1,14 +1,14 @@
-//! Agreement of the contenders of the bench `rates`.
+//! Test that the contenders of the benchmark `rates` agree.
 
 use eomgen_benches::eliminated_arm::EliminatedArm;
 use eomgen_benches::{state, variants};
 use eomgen_validate::references::planetary_arm::equation_22::Coefficients;
 use eomgen_validate::references::planetary_arm::parameters::PlanetaryArmParameters;
 
-/// Rounding error of some tens of operations, relative to the largest term of a row.
+/// Bound of the rounding error of some tens of operations, relative to the largest term of a row.
 const TOLERANCE: f64 = 1e-12;
 
-/// Mesh deflections with contact on each side and with separation, m.
+/// Mesh deflections in m: contact on each side, and separation.
 const DEFLECTIONS: [f64; 3] = [-3e-5, 1e-5, 4e-5];
 
 macro_rules! agree {

@@ -1,10 +1,10 @@
-//! Comparison of instruction counts with `benches/instructions.csv`. Skipped with a message without valgrind.
+//! Comparison of instruction counts with `benches/instructions.csv`. Skipped with a message if valgrind is missing.
 
 use std::path::Path;
 
 use eomgen_benches::instructions::{available, counted, format_counts, names, read};
 
-/// Largest accepted increase, percent.
+/// Largest accepted increase, in percent.
 const RISE: u64 = 5;
 
 #[test]

@@ -1,4 +1,4 @@
-//! Counts of the benchmarks: instructions, operations, contenders.
+//! Tests of the benchmarks: instruction counts, operation counts, agreement of contenders.
 
 mod contenders;
 mod instructions;

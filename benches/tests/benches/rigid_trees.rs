@@ -1,4 +1,4 @@
-//! Operation counts of rigid trees, and their expressions in CasADi.
+//! Tests of the operation counts of rigid trees, and of their expressions in CasADi.
 
 use eomgen_benches::casadi_contender::definitions;
 use eomgen_benches::rigid_specifications as specifications;

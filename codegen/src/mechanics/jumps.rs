@@ -370,8 +370,9 @@ fn rate_error(span: Span) -> DeriveError {
 fn field_error(span: Span) -> DeriveError {
     DeriveError {
         span,
-        message: "an energy jumps along a field: the rates of its modes would jump at every position"
-            .into(),
+        message:
+            "an energy jumps along a field: the rates of its modes would jump at every position"
+                .into(),
         help: Some("use a continuous function, such as max(p, 0) instead of p*above(p)".into()),
     }
 }

@@ -64,7 +64,9 @@ impl Obstacle {
             Cause::Cut => format!(
                 "the point of `atan2`{origin} may be on the negative half-axis, where the angle jumps"
             ),
-            Cause::NegativeWidth => format!("the half-width of a dead zone{origin} may be negative"),
+            Cause::NegativeWidth => {
+                format!("the half-width of a dead zone{origin} may be negative")
+            }
             Cause::Overflow => {
                 format!("a result{origin} may overflow, or its slope is unbounded: {between}")
             }

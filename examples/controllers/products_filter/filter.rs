@@ -3,7 +3,7 @@
 use crate::motion::State;
 use arm::Coefficients;
 
-/// Filter: propagation of the covariance and measurement update.
+/// Kalman filter: propagation of the covariance and measurement update.
 pub trait Filter {
     fn carried(&mut self, arm: &Coefficients, t: f64);
     fn taken(&mut self, arm: &Coefficients, t: f64, which: usize, value: f64, deviation: f64);

@@ -1,6 +1,6 @@
 //! Extended Kalman filter for the planetary arm with 16 modes, with emitted Jacobian-vector products. The covariance is
-//! S S'; a product propagates each column of S, so that no Jacobian is formed. The reference is the standard filter with
-//! the Jacobian. `arm` is emitted by `eomgen generate`, see docs/controllers.md.
+//! S S'. Each column of S is propagated by a product, so that no Jacobian is computed. The result is compared with the
+//! standard filter with the Jacobian. `arm` is emitted by `eomgen generate`, see docs/controllers.md.
 //!
 //! Method: M. Verlaan and A. W. Heemink, "Tidal flow forecasting using reduced rank square
 //! root filters", Stochastic Hydrology and Hydraulics 11, 1997; sequential measurement updates by
@@ -19,8 +19,8 @@ use motion::{MEASURED, MEASUREMENTS, STEP, STEPS, State, begin, expected, motion
 use products::Products;
 use textbook::Textbook;
 
-/// States whose RMS error over the second half of the run is printed: path of the carrier, m, its rate, m/s, and first
-/// mode of the arm, m.
+/// States whose RMS error over the second half of the run is printed: displacement of the carrier (m), its rate (m/s),
+/// and first mode of the arm (m).
 const JUDGED: [(usize, &str, &str); 3] = [
     (2, "carrier", "um"),
     (2 + STATES / 2, "its rate", "um/s"),
@@ -68,7 +68,7 @@ fn filtered(
     ]
 }
 
-/// Returns the largest difference of two lists, each entry relative to its size.
+/// Returns the largest difference of two states, each entry relative to `size` of its index.
 fn difference(one: &State, other: &State, size: impl Fn(usize) -> f64) -> f64 {
     (0..STATES)
         .map(|i| (one[i] - other[i]).abs() / size(i))

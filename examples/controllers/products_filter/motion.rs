@@ -1,24 +1,26 @@
-//! Simulated motion of the arm, measurements, and propagation of columns along the motion.
+//! Simulation of the arm, measurements, and propagation of columns along the motion.
 
 use arm::{Coefficients, Inputs, STATES};
 
 pub type State = [f64; STATES];
 
-/// Step size, s, steps per measurement, and number of measurements.
+/// Step size, in s.
 pub const STEP: f64 = 1e-5;
+/// Number of steps per measurement.
 pub const STEPS: usize = 100;
+/// Number of measurements.
 pub const MEASUREMENTS: usize = 100;
-/// Indices of the measured observables and standard deviations of the noise: angle of the sun, rad, angle of the carrier,
-/// rad, deflection of the arm's end, m.
+/// Indices of the measured observables and standard deviations of the noise: angle of the sun (rad), angle of the
+/// carrier (rad), deflection of the arm's end (m).
 pub const MEASURED: [(usize, f64); 3] = [(0, 1e-4), (2, 2e-5), (3, 1e-5)];
-/// Torque, N m, which keeps the meshes in contact on one side.
+/// Torque in N m that keeps the meshes in contact on one side.
 pub const TORQUE: f64 = 3.0;
-/// Standard deviation of the unknown torque disturbance, N m, which is drawn for each measurement.
+/// Standard deviation of the unknown torque disturbance in N m. The disturbance is drawn for each measurement.
 pub const DISTURBANCE: f64 = 0.05;
-/// Initial deflections of both meshes, m, in contact.
+/// Initial deflections of both meshes in m; both are in contact.
 pub const DEFLECTION: f64 = 25.5e-6;
-/// Indices and standard deviations of uncertain initial states: deflections of the meshes, path of the carrier, two modes
-/// (m), and rate of the carrier (m/s).
+/// Indices and standard deviations of uncertain initial states: deflections of the meshes, displacement of the carrier,
+/// two modes (m), and rate of the carrier (m/s).
 pub const UNCERTAIN: [(usize, f64); 6] = [
     (0, 1e-7),
     (1, 1e-7),
@@ -27,7 +29,7 @@ pub const UNCERTAIN: [(usize, f64); 6] = [
     (4, 1e-5),
     (21, 1e-2),
 ];
-/// Approximately standard normal numbers: sums of twelve uniform ones.
+/// Generator of approximately standard normal numbers: sums of twelve uniform numbers.
 struct Noise(u64);
 
 impl Noise {
@@ -48,8 +50,8 @@ pub fn moved(state: &State, by: f64, rate: &State) -> State {
     std::array::from_fn(|i| state[i] + by * rate[i])
 }
 
-/// Computes a Runge-Kutta step of a state and of columns, which follow the linearised motion at the state of each stage.
-/// `times` multiplies columns by the Jacobian.
+/// Computes a Runge-Kutta step of a state and of columns. The columns follow the equations linearised at the state of
+/// each stage. `times` multiplies columns by the Jacobian.
 pub fn stepped(
     arm: &Coefficients,
     t: f64,
@@ -82,7 +84,7 @@ pub fn stepped(
     }
 }
 
-/// Returns an observable of a state, or of a column, because measured observables are linear.
+/// Returns an observable of a state or of a column; the measured observables are linear.
 pub fn measured(arm: &Coefficients, t: f64, state: &State, which: usize) -> f64 {
     arm::observables(t, state, &Inputs::default(), arm)[which]
 }
@@ -94,7 +96,7 @@ pub fn expected() -> State {
     state
 }
 
-/// Returns columns of the initial covariance.
+/// Returns the columns S of the initial covariance S S'.
 pub fn begin() -> Vec<State> {
     let column = |(which, deviation): &(usize, f64)| {
         let mut column = [0.0; STATES];
@@ -104,8 +106,8 @@ pub fn begin() -> Vec<State> {
     UNCERTAIN.iter().map(column).collect()
 }
 
-/// Simulates the arm with its disturbance from a state that the filters do not know. Returns state and measurements after
-/// each period.
+/// Simulates the disturbed arm from a state that the filters do not know. Returns state and measurements after each
+/// measurement period.
 pub fn motion(arm: &Coefficients) -> Vec<(State, [f64; MEASURED.len()])> {
     let mut noise = Noise(7);
     let mut state = expected();

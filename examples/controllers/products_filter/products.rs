@@ -1,4 +1,4 @@
-//! Filter with Jacobian-vector products: the covariance is S S', and a product propagates each column of S.
+//! Filter with Jacobian-vector products. The covariance is S S'; each column of S is propagated by a product.
 
 use crate::filter::Filter;
 use crate::motion::{DISTURBANCE, STEP, STEPS, State, measured, moved, stepped};
@@ -7,7 +7,8 @@ use arm::{Coefficients, Inputs, STATES};
 /// Scales of positions and rates for the selection of columns: 1 mm and 1 m/s.
 const LARGE: [f64; 2] = [1e-3, 1.0];
 
-/// Computes the rates of the columns: a product with the Jacobian each; the last column includes the torque disturbance.
+/// Computes the rates of the columns, each by a product with the Jacobian. The last column also contains the torque
+/// disturbance.
 fn by_products(arm: &Coefficients) -> impl Fn(f64, &State, &Inputs, &[State]) -> Vec<State> {
     |t, state, inputs, columns| {
         let last = columns.len() - 1;
@@ -77,8 +78,8 @@ impl Filter for Products {
     }
 }
 
-/// Returns the largest orthogonal columns of S S', at most `rank`: S times the eigenvectors of S' S, by Jacobi rotations
-/// of columns.
+/// Returns at most `rank` orthogonal columns with the largest lengths: S times the eigenvectors of S' S, computed by
+/// Jacobi rotations of the columns.
 fn largest(columns: &[State], rank: usize) -> Vec<State> {
     let size = |i: usize| LARGE[usize::from(i >= STATES / 2)];
     let mut columns: Vec<State> = columns

@@ -4,8 +4,8 @@ use crate::filter::Filter;
 use crate::motion::{DISTURBANCE, STEP, STEPS, State, measured, moved, stepped};
 use arm::{Coefficients, Inputs, RATES_BY_INPUTS, RATES_BY_STATE, STATES};
 
-/// Computes the rates of the columns: the Jacobian by the state times each; the last column includes the torque
-/// disturbance.
+/// Computes the rates of the columns: each column is multiplied by the Jacobian by the state. The last column also
+/// contains the torque disturbance.
 fn by_jacobians(arm: &Coefficients) -> impl Fn(f64, &State, &Inputs, &[State]) -> Vec<State> {
     |t, state, inputs, columns| {
         let by_state = arm::rates_by_state(t, state, inputs, arm);
@@ -35,7 +35,7 @@ pub struct Textbook {
 
 impl Filter for Textbook {
     fn carried(&mut self, arm: &Coefficients, t: f64) {
-        // Columns of the transition matrix, and the effect of the disturbance.
+        // Columns of the transition matrix; the last column is the effect of the disturbance.
         let mut flow = vec![[0.0; STATES]; STATES + 1];
         for (k, column) in flow.iter_mut().take(STATES).enumerate() {
             column[k] = 1.0;

@@ -1,4 +1,4 @@
-//! The arm starts from rest with twice the specified play.
+//! Simulates the arm from rest with twice the specified play.
 
 use with_build_script::arm::{Coefficients, Inputs, Parameters, STATE_NAMES, STATES, rates};
 

@@ -1,4 +1,4 @@
-//! Two models at compile time: the planetary arm from its file, and a pendulum in the source.
+//! Two models emitted at compile time: the planetary arm from its file, and a pendulum from text in the source.
 #![no_std]
 
 /// The planetary arm with four modes.

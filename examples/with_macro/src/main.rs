@@ -1,4 +1,4 @@
-//! A motor damps a pendulum.
+//! Simulates a pendulum that is damped by a motor.
 
 use with_macro::pendulum::{Coefficients, Inputs, Parameters, energy, rates};
 

@@ -1,6 +1,6 @@
-//! Study `contacts`: stacks of two to five balls that fall on a floor and onto each other, and the
-//! boxes of `examples/impacts`, without and with friction, dropped at random. Every motion must reach its end without overlaps
-//! and without a rise of the energy, and the stacks must come to rest.
+//! Study `contacts`: stacks of two to five balls that fall on a floor and onto each other, and boxes of
+//! `examples/impacts`, without and with friction, dropped from random states. Every motion must reach the end without
+//! overlaps and without an increase of the energy, and the stacks must come to rest.
 
 use std::path::Path;
 
@@ -14,19 +14,19 @@ const UNTIL: f64 = 6.0;
 
 const SAMPLES: usize = 101;
 
-/// Largest rise of the energy between two samples, relative to its largest magnitude.
+/// Largest accepted increase of the energy between two samples, relative to its largest magnitude.
 const MAX_ENERGY_RISE: f64 = 1e-8;
 
-/// Deepest overlap of two bodies, relative to the size of the motion.
+/// Largest accepted overlap of two bodies, relative to the amplitude of the motion.
 const MAX_OVERLAP: f64 = 1e-9;
 
-/// Fastest rate of a stack at rest, m/s.
+/// Largest speed at which a stack counts as at rest, in m/s.
 const MAX_REST_SPEED: f64 = 1e-9;
 
 /// Runs the study and returns its summary.
 ///
 /// # Errors
-/// Returns a report of all motions that stop early, gain energy, overlap or do not come to rest.
+/// Returns a report of all motions that stop early, gain energy, have overlaps or do not come to rest.
 pub fn run(sample: &Sample) -> Result<String, String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/impacts");
     let load = |file| CompiledModel::load(folder.join(file), Orders::Declared);
@@ -84,7 +84,7 @@ fn drop_box(model: &CompiledModel, random: &mut Random, solver: Solver) -> Resul
     simulate(&run, &initial, solver).map(drop)
 }
 
-/// Returns a specification of balls of radius 0.1 m above each other.
+/// Returns the specification of a random stack of balls of radius 0.1 m.
 fn stack(random: &mut Random) -> String {
     let count = 2 + (4.0 * random.unit()) as usize;
     let [mut parameters, mut coordinates, mut impacts] = [const { String::new() }; 3];
@@ -142,7 +142,7 @@ fn drop_stack(text: &str, solver: Solver) -> Result<(), String> {
     }
 }
 
-/// Simulates to the end and checks overlaps and the energy.
+/// Simulates until the end and checks overlaps and the energy.
 fn simulate(run: &Instance<'_>, initial: &[f64], solver: Solver) -> Result<Motion, String> {
     let times: Vec<f64> = (0..SAMPLES)
         .map(|k| UNTIL * k as f64 / (SAMPLES - 1) as f64)

@@ -1,5 +1,5 @@
-//! Study `gradients`: gradients of the motions of random machines against differences of motions along random directions
-//! of parameters, initial state and inputs.
+//! Study `gradients`: comparison of gradients of the motions of random machines with differences of motions along
+//! random directions of parameters, initial state and inputs.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -18,19 +18,20 @@ const TOLERANCE: f64 = 1e-12;
 
 const SAMPLES: usize = 7;
 
-/// Steps of the differences, relative to all quantities.
+/// Step sizes of the differences, relative to the quantities.
 const STEPS: [f64; 5] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
 
-/// Largest error relative to the sum of the magnitudes of all contributions. The error of the differences adds to it.
+/// Largest accepted error, relative to the sum of the magnitudes of all contributions. The estimated error of the
+/// differences is added.
 const ALLOWED_ERROR: f64 = 1e-6;
 
-/// Text by which messages of rejected models begin.
+/// Beginning of the message about a rejected model.
 const REJECTED_MODEL: &str = "no gradient of the trajectory: this model has ";
 
 enum Outcome {
-    /// Error relative to the contributions.
+    /// Gradient and differences agree; the error is relative to the contributions.
     Equal(f64),
-    /// The model or the motion has no gradient, for this reason.
+    /// The model or the motion has no gradient; the text is the reason.
     None(String),
 }
 
@@ -38,7 +39,7 @@ enum Outcome {
 ///
 /// # Errors
 ///
-/// Returns a report of all machines with a gradient that is not that of differences.
+/// Returns a report of all machines whose gradient differs from the differences.
 pub fn run(sample: &Sample) -> Result<String, String> {
     let (mut equal, mut worst) = (0, 0.0_f64);
     let mut without: BTreeMap<String, usize> = BTreeMap::new();
@@ -81,7 +82,7 @@ pub fn run(sample: &Sample) -> Result<String, String> {
     }
 }
 
-/// A motion of a machine as a function of its quantities.
+/// Motion of a machine as a function of parameters, initial state and inputs.
 struct Case<'m> {
     model: &'m CompiledModel,
     run: Instance<'m>,
@@ -158,7 +159,7 @@ fn judge(machine: &Machine, random: &mut Random) -> Result<Outcome, String> {
     case.compare(&gradient)
 }
 
-/// Returns the kind of a feature, without its name.
+/// Returns the first word of a feature's description: its kind without its name.
 fn first_word(feature: &str) -> String {
     feature
         .split('`')
@@ -187,7 +188,7 @@ impl Case<'_> {
         recorded.gradient(&self.weights)
     }
 
-    /// Returns the weighted sum of the samples, with all quantities moved along their directions.
+    /// Returns the weighted sum of the samples for quantities changed by `step` along their directions.
     fn value(&self, step: f64) -> Result<f64, Error> {
         let names = self.model.parameter_names();
         let known = &self.model.model().parameters;
@@ -236,7 +237,7 @@ impl Case<'_> {
         let mut differences = Vec::new();
         for step in STEPS {
             let difference = pair(step).and_then(|near| Ok((4.0 * near - pair(2.0 * step)?) / 3.0));
-            // A large change may not move.
+            // With a large step, the simulation may fail.
             differences.extend(difference);
         }
         let pairs = differences.windows(2);

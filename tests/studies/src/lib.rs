@@ -1,5 +1,4 @@
-//! Studies of the program on many random machines and records. `.ci/run` runs a fixed sample of
-//! each.
+//! Studies of the program with many random machines and records. `.ci/run` runs a fixed sample of each study.
 
 pub mod alarms;
 pub mod bounds;

@@ -1,5 +1,5 @@
-//! `studies` runs one study on many random machines or records and prints a line for each failure
-//! and a summary. The exit status is 1 if a run fails.
+//! Program `studies`: runs one study with many random machines or records and prints a line for each failure and a
+//! summary. The exit status is 1 if a run fails.
 
 use std::process::ExitCode;
 
@@ -9,7 +9,7 @@ use eomgen_studies::{
     alarms, bounds, contacts, coverage, gradients, grazing, hosts, mutations, solvers,
 };
 
-/// Studies of the program on many random machines and records.
+/// Studies of the program with many random machines and records.
 #[derive(Parser)]
 #[command(after_help = "Example:\n  studies grazing --count 200 --seed 1")]
 struct Options {
@@ -19,21 +19,21 @@ struct Options {
 
 #[derive(Subcommand)]
 enum Study {
-    /// Gaps that `compare` reports for records of correct models, and of models without a friction
+    /// Gaps that `compare` reports for correct models and for models that lack a friction
     Alarms {
         #[command(flatten)]
         sample: Sample,
-        /// Size of the friction relative to that of about three noise floors
+        /// Size of the friction, relative to a friction with a residual of about three noise floors
         #[arg(long, default_value_t = 1.0)]
         friction: f64,
     },
-    /// Rounding errors of the shipped machines at random points against their bounds
+    /// Comparison of rounding errors of the shipped machines at random points with their bounds
     Bounds(Sample),
-    /// Energy and agreement of the solvers for passive machines that graze their stops
+    /// Energy and agreement of the solvers for passive machines that graze a stop
     Grazing(Sample),
     /// Stacks of balls and boxes that fall on a floor
     Contacts(Sample),
-    /// Faults in emitted code, which the checks of `eomgen verify` must notice
+    /// Faults in emitted code, which the checks of `eomgen verify` must detect
     Mutations(Sample),
     /// Coverage of the 90 % intervals of fitted parameters
     Coverage {
@@ -43,7 +43,7 @@ enum Study {
         #[arg(long, default_value = "")]
         machine: String,
     },
-    /// Gradients of motions against differences
+    /// Comparison of gradients of motions with differences
     Gradients(Sample),
     /// Agreement of all hosts on every shipped machine and on random ones
     Hosts(Sample),

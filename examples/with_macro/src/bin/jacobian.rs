@@ -1,4 +1,4 @@
-//! Nonzeros of a Jacobian with their indices, and rates in single precision.
+//! Prints nonzeros of a Jacobian with their indices, and rates in single precision.
 
 /// The planetary arm with its Jacobians.
 mod arm {
@@ -24,7 +24,7 @@ fn main() {
         dense.as_flattened().len()
     );
 
-    // Preparation in double precision makes every coefficient correctly rounded.
+    // Preparation in double precision gives correctly rounded coefficients in single precision.
     let single = coefficients.cast::<f32>();
     let rates = arm::rates(0.0_f32, &[1e-4; STATES], &Inputs::default(), &single);
     println!("{rates:?}");

@@ -1,4 +1,4 @@
-//! Rates in the regime of a state.
+//! Computes rates with the kernel of the regime of a state.
 
 /// The planetary arm with its regimes.
 mod arm {
@@ -9,7 +9,7 @@ mod arm {
 
 use arm::{Coefficients, Inputs, Parameters, STATES};
 
-/// Regime with both meshes within their play.
+/// Number of the regime with both meshes within their play.
 const WITHIN: u32 = 0b1010;
 
 fn main() {

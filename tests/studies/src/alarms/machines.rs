@@ -1,13 +1,13 @@
-//! Machines of the study and the frictions that their models lack.
+//! Machines of the study, with dry frictions that their models lack.
 
 use crate::coverage::machines::{Channel, MACHINES, Machine, PENDULUM};
 
-/// Machine with a missing effect.
+/// Machine with an effect that its model lacks.
 pub struct Case {
     pub machine: &'static Machine,
     /// Coordinate on which the input acts.
     pub driven: &'static str,
-    /// Dry friction on this coordinate that leaves about three noise floors, in the unit of the input.
+    /// Dry friction on this coordinate, in the unit of the input. The residual without it is about three noise floors.
     pub friction: f64,
 }
 
@@ -30,7 +30,7 @@ const fn case(machine: &'static Machine, driven: &'static str, friction: f64) ->
     }
 }
 
-/// Machines with nonlinear sensors, short windows and short records.
+/// Machines with nonlinear sensors, short windows or short records.
 static OTHERS: [Machine; 4] = [
     Machine {
         name: "lever with a measured height",

@@ -1,8 +1,8 @@
-//! Study `alarms`: frequency at which `compare` reports a gap, for records of a correct model and for
-//! records of a machine with a dry friction that the model lacks.
+//! Study `alarms`: relative frequency of gaps reported by `compare`, for records of a correct model and for records of
+//! a machine with dry friction that the model lacks.
 //!
-//! The records are those of the study `coverage`, simulated by the program with parameters and
-//! sensors drawn from their priors, and those of machines with nonlinear sensors and short windows.
+//! The machines are those of the study `coverage`, and machines with nonlinear sensors and short windows. The program
+//! simulates the records, with parameters and sensors drawn from their priors.
 
 mod machines;
 
@@ -24,25 +24,24 @@ use machines::Case;
 /// Accepted rate of false alarms.
 const ACCEPTED: f64 = 0.02;
 
-/// Accepted rate of reported frictions.
+/// Minimum accepted rate of reported frictions.
 const MIN_REPORTED: f64 = 0.98;
 
-/// Significance level of a failure of the study.
+/// Significance level: probability that the study fails by chance.
 const CHANCE: f64 = 1e-3;
 
-/// Residual of one run, in noise floors: the larger one of training and test records.
+/// Residual of one run in noise floors, the larger of the training and the test residual.
 struct Run {
     residual: f64,
     has_gap: bool,
 }
 
-/// Runs the study and returns its summary. `scale`: size of the friction, relative to that of each
-/// case.
+/// Runs the study and returns its summary. `scale` is the factor of the friction of each case.
 ///
 /// # Errors
 ///
-/// Returns a report of all failed runs, of a rate of false alarms above the accepted one, and of
-/// frictions that are not reported.
+/// Returns a report of all failed runs, of a rate of false alarms above the accepted rate, and of frictions that were
+/// not reported.
 pub fn run(sample: &Sample, scale: f64) -> Result<String, String> {
     let mut summary = String::new();
     let (mut alarms, mut found, mut count) = (0, 0, 0);
@@ -85,7 +84,7 @@ fn describe(runs: &[Run]) -> String {
     )
 }
 
-/// Simulates and compares records of a machine with this dry friction on its driven coordinate.
+/// Simulates records of a machine with this dry friction on its driven coordinate and compares them with the model.
 fn runs(case: &Case, number: usize, friction: f64, sample: &Sample) -> Result<Vec<Run>, String> {
     let machine = case.machine;
     let text = match friction == 0.0 {
@@ -111,7 +110,7 @@ fn add_friction(case: &Case, friction: f64) -> String {
     text.replace("[forces]\n", &force)
 }
 
-/// Draws true values and records, and compares them with the model.
+/// Draws true values, simulates records, and compares them with the model.
 fn compare(machine: &Machine, model: &CompiledModel, seed: (u64, u64)) -> Result<Run, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     records::write(machine, model, seed, folder.path())?;

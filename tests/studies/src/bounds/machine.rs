@@ -1,4 +1,4 @@
-//! Bounds and worst errors of one machine.
+//! Comparison of bounds with the largest rounding errors of one machine.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -16,22 +16,22 @@ use crate::sample::Sample;
 /// Order of all fields.
 const ORDER: usize = 3;
 
-/// Largest number of single states for each machine and precision; their bounds cost more than the errors.
+/// Maximum number of single states for each machine and precision. Bounds take more time to compute than errors.
 const STATES: usize = 1000;
 
-/// Kinds of quantities, by the beginning of their names.
+/// Kinds of quantities, by the prefix of their names.
 const KINDS: [&str; 4] = ["mass_matrix", "velocity_terms", "forces", "rates"];
 
-/// Quantities of one kind of a machine in one precision.
+/// Bounds and errors of the quantities of one kind, for one machine in one precision.
 pub struct Judged {
     machine: String,
     format: Format,
     kind: String,
-    /// Number of quantities with a bound, and of all.
+    /// Number of quantities with a bound, and number of all quantities.
     counts: [usize; 2],
-    /// Bound and worst error of each quantity with an error, by their ratio.
+    /// Bound and largest error of each quantity with a nonzero error, sorted by their ratio.
     pairs: Vec<(f64, f64)>,
-    /// Lines about errors above their bounds.
+    /// Report of errors that exceed their bounds, one line each.
     pub failures: String,
 }
 
@@ -75,7 +75,7 @@ pub fn machines() -> Result<Vec<PathBuf>, String> {
 /// Compares a machine in both precisions.
 ///
 /// # Errors
-/// A machine that cannot be derived, or whose recorded operations give other bits than the evaluator.
+/// A machine that cannot be derived, or whose recorded operations are not bit-identical to the evaluator.
 pub fn judge(path: &Path, sample: &Sample) -> Result<Vec<Judged>, String> {
     let name = path
         .file_stem()
@@ -118,7 +118,7 @@ pub fn judge(path: &Path, sample: &Sample) -> Result<Vec<Judged>, String> {
     Ok(rows)
 }
 
-/// Returns bound and error of each rate at single states, those without a bound with an infinite one.
+/// Returns bound and error of each rate at single states; a missing bound is infinite.
 fn judge_states(
     program: &Program,
     sampler: &mut ErrorSampler,

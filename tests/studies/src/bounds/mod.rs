@@ -1,5 +1,5 @@
-//! Study `bounds`: rounding errors of all shipped machines at random points against their bounds, over the ranges of the
-//! certificate's random states and at single states.
+//! Study `bounds`: comparison of the rounding errors of all shipped machines at random points with their bounds, for
+//! the ranges of the certificate's random states and for single states.
 
 mod machine;
 

@@ -1,4 +1,4 @@
-//! Exact tails of the binomial distribution.
+//! Exact tail probabilities of the binomial distribution.
 
 /// Returns the probability of at most `held` successes in `count` trials of probability `p`.
 pub fn at_most(held: usize, count: usize, p: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! Machines of different kinds: dry friction, nonlinear motion, a flexible beam, backlash.
+//! Machines of the study: dry friction, nonlinear motion, a flexible beam, backlash.
 
 /// Machine with its priors and records. All numbers are in SI units.
 pub struct Machine {
@@ -8,8 +8,7 @@ pub struct Machine {
     /// Uncertain parameters with their relative standard deviations.
     pub uncertain: &'static [(&'static str, f64)],
     pub input: (&'static str, &'static str),
-    /// Sines whose sum is the input: amplitude and frequency, Hz. The phases differ between
-    /// records.
+    /// Amplitudes and frequencies (Hz) of the sines whose sum is the input. The phases differ between records.
     pub waves: &'static [(f64, f64)],
     pub channels: &'static [Channel],
     /// Time between samples, s.

@@ -1,5 +1,4 @@
-//! Study `coverage`: frequency at which the 90 % interval of a fitted parameter contains the true
-//! value.
+//! Study `coverage`: share of runs in which the 90 % interval of a fitted parameter contains the true value.
 //!
 //! The program itself simulates the records. Each run draws the true parameters and sensors from
 //! the priors declared in the dataset, so that the posterior interval contains the true value in 90
@@ -31,12 +30,11 @@ const ACCEPTED: [f64; 2] = [0.85, 0.95];
 /// Maximum accepted bias, in standard deviations.
 const ACCEPTED_BIAS: f64 = 0.15;
 
-/// Maximum accepted deviation, in standard deviations. A normal one exceeds it in one of two million
-/// runs, a fit that ends away from its minimum in many.
+/// Maximum accepted deviation, in standard deviations. A normally distributed deviation exceeds it in one of two
+/// million runs; a fit that stops far from its minimum exceeds it often.
 const MAX_DEVIATION: f64 = 5.0;
 
-/// Significance level of failures: probability that a machine with a barely accepted value fails by
-/// chance.
+/// Significance level: probability that a machine at the limit of the accepted range fails by chance.
 const CHANCE: f64 = 1e-3;
 
 /// Quantile of the normal distribution, in standard errors, for the probability [`CHANCE`].
@@ -104,7 +102,7 @@ fn deviations_of_run(
     machine.uncertain.iter().zip(truth).map(of).collect()
 }
 
-/// Returns a machine's line in the summary, and its values outside the accepted range.
+/// Returns a machine's line of the summary, and a list of the values outside the accepted range.
 fn figures(machine: &Machine, deviations: &[Vec<f64>]) -> (String, Vec<String>) {
     let count = deviations.len();
     let mut line = format!("{}, {count} runs:", machine.name);

@@ -14,8 +14,8 @@ use rand_distr::{Distribution, StandardNormal};
 use super::machines::Machine;
 use eomgen_discover::thresholds::MAX_PRIOR_DEVIATION;
 
-/// Default priors of a sensor: standard deviations of its gain, of its bias relative to the noise,
-/// and of its delay in samples.
+/// Default priors of a sensor: standard deviations of the gain, of the bias (relative to the noise) and of the delay
+/// (in samples).
 const SENSOR: [f64; 3] = [0.01, 10.0, 0.5];
 
 struct Sensor {
@@ -108,7 +108,7 @@ fn record(
     Ok(text + "\n")
 }
 
-/// Returns a coordinate or observable of the motion from rest at the times minus a delay.
+/// Returns a coordinate or observable of the motion from rest, at times shifted by a delay.
 fn quantity(
     instance: &Instance<'_>,
     name: &str,
@@ -162,8 +162,8 @@ fn normal(draw: &mut ChaCha8Rng) -> f64 {
     StandardNormal.sample(draw)
 }
 
-/// Draws a normal number truncated to [`SHIFTED`] standard deviations. Fits keep parameters and
-/// sensors within these bounds; larger deviations are effects.
+/// Draws a normal number truncated to [`SHIFTED`] standard deviations. Fits keep parameters and sensors within these
+/// bounds; larger deviations are reported as effects.
 fn truncated_normal(draw: &mut ChaCha8Rng) -> f64 {
     loop {
         let value = normal(draw);

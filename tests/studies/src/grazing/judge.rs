@@ -1,4 +1,4 @@
-//! Checks of the motions of one machine: energy conservation and agreement.
+//! Checks of the motions of one machine: energy and agreement of solvers.
 
 use eomgen_compiled_model::{CompiledModel, Instance, Orders, Request, Solver};
 
@@ -9,44 +9,45 @@ const SAMPLES: usize = 200;
 
 const TOLERANCES: [f64; 2] = [1e-9, 1e-11];
 
-/// Tolerance of the reference and of its neighbouring motions.
+/// Tolerance of the reference motion and of the neighbouring motions.
 const REFERENCE: f64 = 1e-12;
 
-/// Smallest sum of the errors of a motion, in tolerances relative to the sizes of the states. Every located
-/// switch may add one.
+/// Minimum of the accepted sum of errors of a motion, in tolerances relative to the sizes of the states. Every located
+/// switch adds one tolerance.
 const LEAST_ERRORS: f64 = 100.0;
 
-/// Error that every step of the reference may add, in tolerances. Errors of steps accumulate in fast modes: those of a
-/// motion of 17,905 steps that no stop touches add up to 0.06 tolerances per step, compared with the exact solver.
+/// Accepted error per step of the reference, in tolerances, because errors accumulate in fast modes. In a motion of
+/// 17,905 steps without contact, the error relative to the exact solver is 0.06 tolerances per step.
 const ERROR_PER_STEP: f64 = 0.05;
 
-/// Pairs of motions on either side of the reference, from its start.
+/// Number of pairs of neighbouring motions that start on both sides of the initial state of the reference.
 const PAIRS: usize = 2;
 
-/// Contacts in which motions beside the reference start, as parts of the switches of the reference.
+/// Positions of the contacts within which neighbouring motions start, as fractions of the list of switches of the
+/// reference.
 const CONTACTS: [f64; 3] = [0.25, 0.5, 0.75];
 
-/// Relative distance at which neighbouring motions have diverged and are no longer compared.
+/// Relative distance from which on neighbouring motions count as diverged and are no longer compared.
 const DIVERGED_DISTANCE: f64 = 0.05;
 
-/// Maximum rise of the energy in tolerances, times the square root of the stop's stiffness ratio: an
-/// error of the deflection has this weight in the energy of the stop.
+/// Maximum increase of the energy, in tolerances times the square root of the stop's stiffness ratio. An error of the
+/// deflection has this weight in the energy of the stop.
 const MAX_RISE: f64 = 10.0;
 
 pub struct Verdict {
     pub failures: Vec<String>,
     pub runs: usize,
-    /// True if the exact solver accepted the machine.
+    /// True if the exact solver supports the machine.
     pub is_exact: bool,
     pub switches: usize,
-    /// Largest rise of the energy relative to the allowed one.
+    /// Largest increase of the energy, relative to the accepted increase.
     pub rise: f64,
-    /// Largest difference from the reference relative to the allowed one.
+    /// Largest difference from the reference, relative to the accepted difference.
     pub difference: f64,
 }
 
 impl Verdict {
-    /// Returns the verdict for a machine that could not be judged.
+    /// Returns the verdict for a machine that could not be checked.
     pub fn failed(problem: String) -> Self {
         Self {
             failures: vec![problem],
@@ -67,24 +68,24 @@ struct Sampled {
     steps: u64,
 }
 
-/// Motion that others are compared with.
+/// Reference motion for the comparison of solvers.
 struct Reference {
     times: Vec<f64>,
     motion: Sampled,
     /// Largest magnitude of each state.
     sizes: Vec<f64>,
-    /// Sum of the errors that a motion may make, in tolerances.
+    /// Accepted sum of the errors of a motion, in tolerances.
     errors: f64,
 }
 
-/// Computes the states and energies of a motion from a state at the first of the times.
+/// Function that computes states and energies of a motion at times, from a state at the first time.
 type Sampling<'a> = dyn Fn(&[f64], &[f64], Solver, f64) -> Result<Sampled, String> + 'a;
 
-/// Judges the motions of a machine.
+/// Checks the motions of a machine.
 ///
 /// # Errors
 ///
-/// Returns an error if the machine has no reference.
+/// Returns an error if the reference motion cannot be computed.
 pub fn judge(machine: &Machine) -> Result<Verdict, String> {
     let text = machine.specification(place_of_stop(machine)?);
     let model = CompiledModel::from_text("grazing.toml", &text, Orders::Declared)
@@ -187,8 +188,8 @@ fn sizes_of(states: &[Vec<f64>]) -> Vec<f64> {
         .collect()
 }
 
-/// Returns the largest rise of the energy above its lowest value before, relative to the allowed rise. Losses by
-/// numerical damping are judged by the states.
+/// Returns the largest increase of the energy above its lowest earlier value, relative to the accepted increase. Losses
+/// by numerical damping are checked through the states.
 fn rise_of(machine: &Machine, energies: &[f64], tolerance: f64) -> f64 {
     let first = energies[0];
     let mut lowest = first;
@@ -203,8 +204,8 @@ fn rise_of(machine: &Machine, energies: &[f64], tolerance: f64) -> f64 {
     rise / (MAX_RISE * tolerance * machine.stiffness_ratio.sqrt() * first)
 }
 
-/// Returns the largest distance of neighbouring motions from the reference up to each sample. They start beside
-/// its initial state, and inside several of its contacts.
+/// Returns the largest distance of neighbouring motions from the reference up to each sample. Neighbouring motions
+/// start close to the initial state, and close to the reference within several contacts.
 fn parting(
     machine: &Machine,
     reference: &Reference,
@@ -237,14 +238,14 @@ fn parting(
         for pair in 0..2 * pairs {
             let sign = if pair % 2 == 0 { 1.0 } else { -1.0 };
             let entries = state.iter().zip(&reference.sizes).enumerate();
-            // Directions along no axis, and no multiple of each other.
+            // The directions are not along an axis, and no direction is a multiple of another.
             let beside: Vec<f64> = entries
                 .map(|(index, (y, size))| {
                     let direction = (1.0 + 2.0 * index as f64 + 1.7 * (pair / 2) as f64).sin();
                     y + sign * direction * reference.errors * tolerance * size
                 })
                 .collect();
-            // A neighbour that cannot be followed adds no growth, so the limit is lower without it.
+            // If a neighbouring motion cannot be simulated, it is ignored, which makes the check stricter.
             let Ok(motion) = sampled(&beside, &times, Solver::Rk, REFERENCE) else {
                 continue;
             };
@@ -260,8 +261,8 @@ fn parting(
     Ok(parted)
 }
 
-/// Times (s) inside contacts: in the middle of the shortest of the intervals between switches near each of
-/// [`CONTACTS`].
+/// Returns times (in s) within contacts: near each position of [`CONTACTS`], the middle of the shortest interval
+/// between switches.
 fn contacts(switches: &[f64]) -> Vec<f64> {
     let intervals: Vec<(f64, f64)> = switches
         .windows(2)
@@ -276,8 +277,8 @@ fn contacts(switches: &[f64]) -> Vec<f64> {
     CONTACTS.into_iter().filter_map(shortest).collect()
 }
 
-/// The largest difference from the reference, as a part of what is allowed, as long as motions beside
-/// it have not parted.
+/// Returns the largest difference from the reference, relative to the accepted difference, as long as neighbouring
+/// motions have not diverged.
 fn difference_of(motion: &Sampled, reference: &Reference, parting: &[f64], tolerance: f64) -> f64 {
     let pairs = motion.states.iter().zip(&reference.motion.states);
     pairs

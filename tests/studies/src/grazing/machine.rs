@@ -1,4 +1,4 @@
-//! Random passive machines: a chain of one to three masses on springs, one of which hits a stop.
+//! Random passive machines: chains of one to three masses on springs; one mass hits a stop.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -9,17 +9,17 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stop {
-    /// Spring beyond a backlash on both sides.
+    /// Spring with backlash, on both sides.
     Play,
-    /// Spring beyond a backlash with a damper that acts in contact.
+    /// Spring with backlash, and a damper that acts in contact.
     DampedPlay,
     OneSided,
-    /// One-sided spring with the exponent of Hertz.
+    /// One-sided spring with the Hertzian exponent 3/2.
     Hertz,
     Impact,
 }
 
-/// Machine and its motion. The place of the stop follows from a motion without it.
+/// Random machine with its motion. The position of the stop is computed from a motion without the stop.
 #[derive(Clone, Debug)]
 pub struct Machine {
     name: String,
@@ -38,9 +38,9 @@ pub struct Machine {
     restitution: f64,
     /// Initial coordinates, then rates, m and m/s.
     pub initial: Vec<f64>,
-    /// Distance of the turning point beyond the stop, relative to the amplitude.
+    /// Penetration of the turning point beyond the stop, relative to the amplitude.
     pub depth: f64,
-    /// Number from 0 to 1 that selects one of the turning points.
+    /// Number from 0 to 1 that selects a turning point.
     pub choice: f64,
     /// Duration of the motion, s.
     pub duration: f64,
@@ -73,7 +73,7 @@ impl Numbers {
 }
 
 impl Machine {
-    /// Draws the machine number `place` of a seed.
+    /// Draws machine number `place` of a seed.
     pub fn draw(seed: u64, place: usize) -> Self {
         let mut mixed = SplitMix64::seed_from_u64(seed);
         let first = mixed.next_u64();
@@ -94,7 +94,7 @@ impl Machine {
             true => springs[0] / (size * size) * numbers.between(0.1, 2.0),
             false => 0.0,
         };
-        // Solvers do not support friction that holds the mass together with impacts.
+        // Solvers do not support sticking friction together with impacts.
         let friction = match numbers.happens(0.3) && stop != Stop::Impact {
             true => springs[0] * size * numbers.scale(1e-3, 5e-2),
             false => 0.0,
@@ -152,7 +152,7 @@ impl Machine {
         let _ = writeln!(text, "h = {{ value = {hardening:e}, unit = \"N/m^3\" }}");
         let stiffness = self.stiffness_ratio * self.springs[0];
         let _ = writeln!(text, "K = {{ value = {stiffness:e}, unit = \"N/m\" }}");
-        // A tenth of the critical damping of the contact.
+        // The damping is a tenth of the critical damping of the contact.
         let damping = 0.2 * (stiffness * self.masses[self.at]).sqrt();
         let _ = writeln!(text, "c = {{ value = {damping:e}, unit = \"N s/m\" }}");
         let hertz = stiffness / self.amplitude().sqrt();

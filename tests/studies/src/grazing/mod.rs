@@ -1,8 +1,8 @@
 //! Study `grazing`: random passive oscillators whose turning point grazes a stop.
 //!
-//! Each machine runs with `rk`, `radau` and, if it is piecewise linear, `exact`, at the default
-//! tolerance and at a tighter one. The energy must not rise, and the difference of all runs from a
-//! reference must not exceed that of motions that start a few tolerances apart.
+//! Each machine runs with `rk`, `radau` and, if it is piecewise linear, `exact`, at the default tolerance and at a
+//! tighter one. The energy must not increase. The difference of each run from a reference must not exceed the
+//! difference of motions that start a few tolerances apart.
 
 mod judge;
 mod machine;

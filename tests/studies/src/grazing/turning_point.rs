@@ -1,4 +1,4 @@
-//! Place of the stop: at a turning point of the motion without it.
+//! Computes the position of the stop, close to a turning point of the motion without the stop.
 
 use eomgen_compiled_model::{CompiledModel, Instance, Orders, Request, Solver};
 
@@ -6,10 +6,10 @@ use super::machine::Machine;
 
 const TOLERANCE: f64 = 1e-13;
 
-/// Number of samples of that motion, and of each refinement of a turning point.
+/// Number of samples of the motion without the stop, and of each refinement of a turning point.
 const SAMPLES: usize = 2000;
 
-/// Returns the position of the stop, m, such that a turning point is beyond it by the machine's
+/// Returns the position of the stop in m, for which a turning point is beyond the stop by the machine's penetration
 /// depth.
 ///
 /// # Errors
@@ -47,7 +47,7 @@ pub fn place_of_stop(machine: &Machine) -> Result<f64, String> {
     Ok(peak * (1.0 - machine.depth))
 }
 
-/// Returns the deflection of the mass that hits the stop, at evenly spaced times of a span (s).
+/// Returns the position of the mass that hits the stop, at evenly spaced times of a time span (in s).
 fn deflections(
     machine: &Machine,
     run: &Instance<'_>,

@@ -1,4 +1,4 @@
-//! Machines of the study, each with a file, an initial state, inputs and a duration.
+//! Cases of the study: machines with file, initial state, inputs and duration.
 
 use std::path::{Path, PathBuf};
 
@@ -21,34 +21,34 @@ const FOLDERS: [&str; 7] = [
     "examples/recipes",
 ];
 
-/// Intervals between the samples of a motion.
+/// Number of intervals between the samples of a motion.
 pub const INTERVALS: usize = 100;
 
-/// Samples at which a held input changes.
+/// Indices of the samples at which a held input changes.
 const INPUT_SAMPLES: [usize; 3] = [21, 48, 77];
 
-/// Longest duration of a shipped machine, s.
+/// Maximum duration of the motion of a shipped machine, in s.
 const LONGEST: f64 = 2.0;
 
-/// Maximum evaluations of the right-hand side for a shipped machine.
+/// Maximum number of evaluations of the right-hand side for a shipped machine.
 const MAX_EVALUATIONS: u64 = 5_000;
 
-/// Size of the displacement from the initial state of a specification, in typical sizes.
+/// Displacement from the initial state of a specification, relative to the typical sizes of the states.
 const DISPLACEMENT: f64 = 0.1;
 
-/// Number of displacements tried, each a tenth of the one before.
+/// Maximum number of reductions of the displacement, each by a factor of ten.
 const MAX_REDUCTIONS: i32 = 4;
 
 /// Input of a case.
 pub(crate) struct CaseInput {
     pub name: String,
-    /// Function of time, in place of samples.
+    /// Sine, if the input is a function of time instead of samples.
     pub sine: Option<Sine>,
-    /// Value from each sample on, SI; empty for a function of time.
+    /// Values in SI, each held from its sample on; empty for a function of time.
     pub samples: Vec<f64>,
 }
 
-/// Machine with everything that determines its motion.
+/// Machine with all data that determine its motion.
 pub(crate) struct Case {
     pub name: String,
     pub kind: Kind,
@@ -68,7 +68,7 @@ impl Case {
         (0..=INTERVALS).map(|k| k as f64 * step).collect()
     }
 
-    /// Returns the expression of t that gives an input in its unit.
+    /// Returns the value of an input as an expression of t, in the input's unit.
     pub fn expression(&self, input: &CaseInput) -> String {
         if let Some(sine) = &input.sine {
             return format!("{:e}*sin({:e}*t)", sine.amplitude, sine.frequency);
@@ -90,7 +90,7 @@ impl Case {
         text
     }
 
-    /// Returns the held inputs in SI; an input without values is zero.
+    /// Returns the held inputs in SI; inputs without values are zero.
     pub fn held_inputs(&self) -> HeldInputs {
         let inputs = &self.model.model().inputs;
         let times = self.times();
@@ -106,7 +106,8 @@ impl Case {
     }
 }
 
-/// Returns all shipped machines and `sample.count` random ones, whose files are written to `folder`.
+/// Returns all shipped machines and `sample.count` random machines. The files of random machines are written to
+/// `folder`.
 ///
 /// # Errors
 /// A machine that cannot be loaded or simulated.
@@ -156,7 +157,7 @@ fn shipped_case(file: PathBuf, seed: u64) -> Result<Case, String> {
         file,
         model,
     };
-    // A large displacement or input can leave the domain of the model.
+    // With a large displacement or input, the state can leave the domain of the model.
     let mut outcome = Ok(());
     for power in 0..MAX_REDUCTIONS {
         disturb(&mut case, DISPLACEMENT * 0.1_f64.powi(power), seed)?;
@@ -168,14 +169,13 @@ fn shipped_case(file: PathBuf, seed: u64) -> Result<Case, String> {
     outcome.map(|()| case)
 }
 
-/// Sets an initial state beside that of the specification, and inputs, both of a size relative to the
-/// typical sizes.
+/// Sets a displaced initial state and inputs. `size` is the magnitude relative to the typical sizes.
 fn disturb(case: &mut Case, size: f64, seed: u64) -> Result<(), String> {
     let random = &mut Random::new(seed);
     let instance = case.model.with_declared_parameters();
     let instance = instance.map_err(|error| error.to_string())?;
     let mut initial = instance.initial_state().to_vec();
-    // A displaced body can overlap another one.
+    // A displaced body could overlap another one.
     if case.model.model().impacts.is_empty() {
         for (value, typical) in initial.iter_mut().zip(case.model.typical_sizes()) {
             *value += size * typical * random.symmetric();
@@ -186,7 +186,7 @@ fn disturb(case: &mut Case, size: f64, seed: u64) -> Result<(), String> {
     Ok(())
 }
 
-/// Shortens the duration until the motion needs few evaluations.
+/// Shortens the duration until the motion needs at most the maximum number of evaluations.
 ///
 /// # Errors
 /// A motion that stops early.
@@ -244,8 +244,8 @@ fn drawn_case(place: usize, random: &mut Random, folder: &Path) -> Result<Case, 
     Ok(case)
 }
 
-/// Returns held inputs with three steps each, within the range of the input or of a size relative to
-/// the typical one. A prescribed motion rests at a typical place; controlled inputs have none.
+/// Returns held inputs with three steps each, within the range of the input or with a magnitude relative to its typical
+/// size. A prescribed motion is constant at a typical position; inputs driven by controllers have no values.
 fn draw_inputs(case: &Case, size: f64, random: &mut Random) -> Result<Vec<CaseInput>, String> {
     let model = case.model.model();
     let ranges = model.input_ranges().map_err(|error| error.to_string())?;

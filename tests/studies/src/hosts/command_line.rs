@@ -1,4 +1,4 @@
-//! Hosts that the program itself runs: the solvers of `simulate`, and `sweep`.
+//! Hosts within the program: the solvers of `simulate`, and `sweep`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -9,10 +9,10 @@ use super::cases::{Case, INTERVALS};
 use super::compare::TOLERANCE;
 use super::host::{Answer, Host, HostRun};
 
-/// Returns the program that was built beside the study.
+/// Returns the path of the program that was built together with the study.
 pub fn program() -> PathBuf {
     let own = std::env::current_exe().unwrap_or_default();
-    // Tests run from the folder `deps`.
+    // Tests run from the folder `deps`, one level deeper.
     let folders = own.ancestors().skip(1).take(2);
     let name = format!("eomgen{}", std::env::consts::EXE_SUFFIX);
     let mut paths = folders.map(|folder| folder.join(&name));
@@ -21,7 +21,7 @@ pub fn program() -> PathBuf {
         .unwrap_or_else(|| PathBuf::from(name))
 }
 
-/// Runs the solvers and a sweep.
+/// Runs the solvers and a sweep for a case.
 pub fn runs(case: &Case, folder: &Path) -> Vec<HostRun> {
     let solvers = [
         (Host::Rk, "rk"),
@@ -43,7 +43,7 @@ pub fn runs(case: &Case, folder: &Path) -> Vec<HostRun> {
     runs
 }
 
-/// Adds the initial state and the inputs of a case.
+/// Adds the initial state and the inputs of a case to a command.
 fn with_motion<'c>(command: &'c mut Command, case: &Case) -> &'c mut Command {
     command.args(["--until", &format!("{:e}", case.until)]);
     for (name, value) in case.model.state_names().iter().zip(&case.initial) {
@@ -90,7 +90,7 @@ fn simulate(case: &Case, solver: &str, folder: &Path) -> Result<Answer, String> 
     Ok(Answer::Motion(columns(&text, &case.model.state_names())?))
 }
 
-/// Returns the named columns of a table, a row per line.
+/// Returns the named columns of a table, one row for each line.
 fn columns(text: &str, names: &[String]) -> Result<Vec<Vec<f64>>, String> {
     let mut lines = text.lines();
     let head: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();

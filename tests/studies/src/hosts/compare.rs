@@ -1,4 +1,4 @@
-//! Reference motion of a case and the comparison of a host's motion with it.
+//! Reference motion of a case, and comparison of the motions of hosts with the reference.
 
 use eomgen_compiled_model::{
     CompiledModel, Orders, Request, Solver, split_assignments, with_prescribed_inputs,
@@ -13,36 +13,36 @@ use crate::solvers::growth::{STARTS, difference, growth, magnitudes};
 /// Tolerance of the hosts.
 pub const TOLERANCE: f64 = 1e-9;
 
-/// Tolerance of pages.
+/// Relative tolerance of pages.
 const PAGE_TOLERANCE: f64 = 1e-8;
 
 /// Tolerance of the motions that measure the growth of small differences.
 const GROWTH_TOLERANCE: f64 = 1e-11;
 
-/// Allowed difference in tolerances times the growth.
+/// Accepted difference, in tolerances times the growth of small differences.
 const ALLOWED_TOLERANCES: f64 = 100.0;
 
-/// Allowed difference of model exchange, times the growth: the importer integrates and locates the
-/// events by its own methods.
+/// Accepted difference of model exchange, in units of the growth. It is larger because the importer integrates and
+/// locates events by its own methods.
 const ALLOWED_EXCHANGE: f64 = 1e-5;
 
-/// Motion of a case by `rk` at a narrow tolerance.
+/// Motion of a case, simulated by `rk` with a tight tolerance.
 pub struct Reference {
     states: Vec<Vec<f64>>,
     sizes: Vec<f64>,
     growth: f64,
 }
 
-/// Result of one host for one machine.
+/// Result of the comparison of one host for one machine.
 pub enum Verdict {
-    /// Difference from the reference relative to the allowed one.
+    /// Difference from the reference, relative to the accepted difference.
     Compared(f64),
     Rejected(String),
     Missing(String),
 }
 
 impl Verdict {
-    /// Returns the worse of two verdicts: a missing host, a larger difference, a rejection.
+    /// Returns the worse of two verdicts. In increasing order of severity: rejection, larger difference, missing host.
     pub fn worse(self, other: Option<Self>) -> Self {
         let rank = |verdict: &Self| match verdict {
             Self::Compared(ratio) if *ratio <= 1.0 => 0,
@@ -58,7 +58,7 @@ impl Verdict {
 }
 
 impl Reference {
-    /// Simulates the case and its disturbed neighbours.
+    /// Simulates the case and neighbouring motions from disturbed states.
     ///
     /// # Errors
     /// A motion that stops early.
@@ -94,7 +94,8 @@ impl Reference {
             .map_err(|error| format!("the reference: {error}"))?;
         let states = motion.trajectory.states;
         let sizes = magnitudes(&states, &model.state_units());
-        // A disturbed body that touches another one overlaps it, and a controller loses the inputs that it holds.
+        // Disturbed states are not possible for bodies in contact, which would overlap, and for controllers, whose held
+        // inputs would be lost.
         let starts = match case.kind {
             Kind::Impacts | Kind::ContactFriction | Kind::Controller => &STARTS[..1],
             _ => &STARTS[..],

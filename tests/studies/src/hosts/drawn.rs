@@ -1,4 +1,4 @@
-//! Random machines of every kind: the chains of the study `solvers`, and kinds that these lack.
+//! Random machines of all kinds: the chains of the study `solvers`, and additional kinds.
 
 use std::fmt::Write;
 
@@ -14,10 +14,10 @@ pub struct Sine {
     pub frequency: f64,
 }
 
-/// Random machine as text.
+/// Random machine as a specification text.
 pub struct Drawn {
     pub text: String,
-    /// Kind, if the text does not show it.
+    /// Kind of the machine, if it cannot be determined from the text.
     pub kind: Option<Kind>,
     /// Name of an input and its sine.
     pub input: Option<(&'static str, Sine)>,
@@ -25,8 +25,8 @@ pub struct Drawn {
     pub until: f64,
 }
 
-/// Returns machine number `place`: half of them are chains, the others are of each further kind in
-/// turn.
+/// Returns machine number `place`. Half of the machines are chains; the others are of the additional kinds in cyclic
+/// order.
 pub fn draw(place: usize, random: &mut Random) -> Drawn {
     if place.is_multiple_of(2) {
         let machine = machine::draw(random);
@@ -47,7 +47,7 @@ pub fn draw(place: usize, random: &mut Random) -> Drawn {
     }
 }
 
-/// Writes a specification from its name, its parameters and the rest of the text.
+/// Returns a specification with this name, these parameters and the rest of the text.
 fn write(name: &str, parameters: &[(&str, &str, f64)], rest: &str) -> String {
     let mut text = format!("[model]\nname = \"{name}\"\n[parameters]\n");
     for (name, unit, value) in parameters {
@@ -118,7 +118,7 @@ fn box_on_floor(random: &mut Random) -> Drawn {
     }
 }
 
-/// Bead on a wire with a corner, over a step of the potential energy.
+/// Returns a bead on a wire with a corner, which passes a step of the potential energy.
 fn corner(random: &mut Random) -> Drawn {
     let parameters = [
         ("m", "kg", between(random, 0.5, 2.0)),
@@ -176,7 +176,7 @@ fn driven_pendulum(random: &mut Random) -> Drawn {
     }
 }
 
-/// Pendulum with a sampled, quantised and delayed controller.
+/// Returns a pendulum with a sampled, quantised and delayed controller.
 fn servo(random: &mut Random) -> Drawn {
     let mut parameters = pendulum_parameters(random).to_vec();
     parameters.extend([
@@ -199,7 +199,7 @@ fn servo(random: &mut Random) -> Drawn {
     }
 }
 
-/// Two hinged bars with a closed loop: a four-bar linkage that starts beside its constraints.
+/// Returns a four-bar linkage. The initial state violates the constraints slightly.
 fn linkage(random: &mut Random) -> Drawn {
     let [a, b, c] =
         [(0.2, 0.3), (0.7, 0.9), (0.5, 0.7)].map(|(low, high)| between(random, low, high));

@@ -1,4 +1,4 @@
-//! Hosts outside the program: Python, functional mock-up units in FMPy, and the page in Node.
+//! External hosts: Python, functional mock-up units in FMPy, and the page in Node.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -10,16 +10,16 @@ use super::command_line::{execute, program};
 use super::compare::TOLERANCE;
 use super::host::{Answer, Host, HostRun};
 
-/// Targets of units.
+/// Targets of functional mock-up units.
 const TARGETS: [&str; 2] = ["fmu2", "fmu3"];
 
-/// Kinds of each unit with their keys in the answers.
+/// Interface types of units, with their keys in the answers of the script.
 const KINDS: [(Host, &str); 2] = [(Host::CoSimulation, "cs"), (Host::ModelExchange, "me")];
 
 /// Folder of the Python package, in the folder of the study.
 const PACKAGES: &str = "python";
 
-/// Assembles the Python package from its sources and the library that was built beside the program.
+/// Assembles the Python package from its sources and the library that was built together with the program.
 ///
 /// # Errors
 /// A file that cannot be copied.
@@ -47,7 +47,7 @@ pub fn assemble_package(folder: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// Runs all hosts outside the program.
+/// Runs all external hosts.
 ///
 /// # Errors
 /// A host that fails without an answer.

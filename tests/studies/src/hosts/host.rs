@@ -1,4 +1,4 @@
-//! Hosts and their answers to one machine.
+//! Hosts and their results for one machine.
 
 /// Motion of one machine in one host.
 pub(crate) struct HostRun {
@@ -6,17 +6,17 @@ pub(crate) struct HostRun {
     pub answer: Answer,
 }
 
-/// Answer of a host to one machine.
+/// Result of a host for one machine.
 pub(crate) enum Answer {
     /// States at the sample times, SI.
     Motion(Vec<Vec<f64>>),
-    /// The host rejects the model or stops, with its message.
+    /// The host rejects the model or stops; the text is the message.
     Rejected(String),
-    /// The host is not installed.
+    /// The host is not installed; the text is the reason.
     Missing(String),
 }
 
-/// Host of a motion; units of FMI 2 and 3 count as one.
+/// Host that simulates motions. Units of FMI 2 and FMI 3 count as the same host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Host {
     Rk,

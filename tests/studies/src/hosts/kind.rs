@@ -2,7 +2,7 @@
 
 use eomgen_compiled_model::CompiledModel;
 
-/// Kind of a machine, a row of the table.
+/// Kind of a machine: one row of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Kind {
     Smooth,

@@ -1,6 +1,6 @@
-//! Study `hosts`: one motion in all hosts. Every shipped specification, every example and random
-//! machines are simulated by each solver, by sweeps, in Python, in functional mock-up units and on
-//! a page. Each host has the motion of the reference, or rejects the model with a reason.
+//! Study `hosts`: the same motion in all hosts. Every shipped specification, every example and random machines are
+//! simulated by each solver, by sweeps, in Python, in functional mock-up units and on a page. Each host must agree with
+//! the reference motion, or reject the model with a reason.
 
 mod cases;
 mod command_line;
@@ -22,14 +22,14 @@ use compare::{Reference, Verdict, judge};
 use host::Host;
 use table::Table;
 
-/// Random machines of the table in README.md.
+/// Number of random machines in the table of README.md.
 const PRINTED_COUNT: usize = 24;
 
-/// Runs the study with `count` random machines and returns its table. With the default seed and
-/// as many machines as there the table must be that of README.md.
+/// Runs the study with `count` random machines and returns its table. With the default seed and the number of machines
+/// of README.md, the table must equal the table in README.md.
 ///
 /// # Errors
-/// Returns the table and a report of all hosts with another motion.
+/// Returns the table and a report of all hosts that differ from the reference.
 pub fn run(sample: &Sample) -> Result<String, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     guests::assemble_package(folder.path())?;

@@ -1,4 +1,4 @@
-//! Table of the study: a row for each kind of machine, a column for each host.
+//! Table of the study with a row for each kind of machine and a column for each host.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -16,11 +16,11 @@ struct Cell {
     missing: usize,
 }
 
-/// Counts and reasons of all hosts.
+/// Counts of verdicts and reasons of rejections of all hosts.
 #[derive(Default)]
 pub struct Table {
     cells: BTreeMap<(Kind, usize), Cell>,
-    /// Names of the machines by the reason of their rejection: host, kind, text.
+    /// Names of the rejected machines, by host, kind and reason.
     reasons: BTreeMap<(usize, Kind, String), Vec<String>>,
     missing: BTreeSet<String>,
 }
@@ -70,7 +70,7 @@ impl Table {
         self.missing.is_empty()
     }
 
-    /// Returns the reasons of all rejections and missing hosts, a line for each.
+    /// Returns the reasons of all rejections and missing hosts, one line for each.
     pub fn notes(&self) -> String {
         let rejected = self.reasons.iter().map(|((place, kind, reason), names)| {
             let (host, kind, names) = (Host::ALL[*place].name(), kind.name(), names.join(", "));

@@ -1,4 +1,4 @@
-//! Faults: small changes of a source that still compiles in most cases.
+//! Faults (mutations): small changes of a source that still compiles in most cases.
 
 use std::fmt;
 use std::ops::Range;
@@ -10,15 +10,15 @@ use super::tokens::{Kind as Token, tokens};
 /// Kind of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Another digit in a number.
+    /// A digit of a number is changed.
     Number,
-    /// Another operator.
+    /// An operator is replaced.
     Operator,
-    /// Another name that occurs in the same function.
+    /// A name is replaced by another name of the same function.
     Name,
-    /// Another letter in a string.
+    /// A letter of a string is changed.
     Text,
-    /// A missing statement.
+    /// A statement is removed.
     Statement,
 }
 
@@ -54,13 +54,13 @@ impl fmt::Display for Fault {
     }
 }
 
-/// Number of draws before a source counts as one without places for faults.
+/// Number of draws after which a source counts as a source without possible faults.
 const MAX_DRAWS: usize = 10_000;
 
-/// Distance in tokens within which a name is replaced by another.
+/// Maximum distance in tokens between a name and its replacement.
 const NEAR: usize = 400;
 
-/// Draws a fault in a source.
+/// Draws a random fault in a source; `None` if none is possible.
 pub fn draw(source: &str, random: &mut Random) -> Option<Fault> {
     let tokens = tokens(source);
     let text = |index: usize| {
@@ -79,7 +79,7 @@ pub fn draw(source: &str, random: &mut Random) -> Option<Fault> {
         let kind = *random.pick(&kinds)?;
         let place = (random.unit() * tokens.len() as f64) as usize;
         let (token, range) = tokens.get(place)?;
-        // Lines of the preprocessor and the identity are not part of the functions.
+        // Preprocessor lines and the identity symbol are not part of the functions, so they receive no faults.
         let line_start = source[..range.start].rfind('\n').map_or(0, |end| end + 1);
         let line = source[line_start..].lines().next().unwrap_or("");
         let is_directive =
@@ -171,7 +171,7 @@ fn other_operator(operator: &str) -> Option<&'static str> {
     })
 }
 
-/// Returns the letters of a name before its number: names of one class replace each other.
+/// Returns the letters of a name before its number. A name is replaced only by a name of the same class.
 fn class(name: &str) -> (&str, bool) {
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
     let is_constant = name.bytes().all(|b| !b.is_ascii_lowercase());

@@ -1,6 +1,6 @@
-//! Study `mutations`: one fault in an emitted file, at a random place, which the checks of `eomgen verify` must notice
-//! although the hash of the file is not compared. A mutant that is not noticed must have a proof that it is equivalent:
-//! the same tokens, or the same machine code in both precisions.
+//! Study `mutations`: each run seeds one fault at a random position of an emitted file. The checks of `eomgen verify`
+//! must detect it without comparing the hash of the file. An undetected mutant must be proven equivalent by equal
+//! tokens, or by equal machine code in both precisions.
 
 mod fault;
 mod subject;
@@ -17,7 +17,7 @@ use subject::{Subject, Verdict};
 /// Runs the study and returns its summary.
 ///
 /// # Errors
-/// Returns a report of all mutants that are neither noticed nor proven equivalent.
+/// Returns a report of all mutants that are neither detected nor proven equivalent.
 pub fn run(sample: &Sample) -> Result<String, String> {
     let subjects = subject::all()?;
     for subject in &subjects {
@@ -69,7 +69,7 @@ pub fn run(sample: &Sample) -> Result<String, String> {
     }
 }
 
-/// Seeds one fault and judges it.
+/// Seeds one fault and runs the checks.
 fn seed_fault(subjects: &[Subject], seed: u64) -> Result<(Fault, String, Verdict), String> {
     let random = &mut eomgen_validate::random::Random::new(seed);
     let subject = random.pick(subjects).ok_or("no subject")?;

@@ -20,11 +20,11 @@ use super::tokens::without_comments;
 /// Result of the checks of a subject.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// A check failed, or the source does not compile.
+    /// The fault is detected: a check failed, or the source does not compile.
     Noticed,
-    /// The source has the same machine code or the same tokens.
+    /// The mutant is equivalent: it has the same machine code or the same tokens.
     Equivalent,
-    /// All checks passed.
+    /// The fault is not detected: all checks passed.
     Passed,
 }
 
@@ -35,13 +35,13 @@ pub struct File {
     pub text: String,
 }
 
-/// Emitted files of one model.
+/// Emitted files of one model in one language.
 pub struct Subject {
     model: Model,
     orders: Vec<usize>,
     outputs: Vec<Output>,
     name: String,
-    /// Source first, then the header of C.
+    /// Emitted files: the source first, then the header of C.
     pub files: Vec<File>,
 }
 
@@ -62,7 +62,8 @@ const SAMPLED_POSITION: ShippedModel = ShippedModel {
     text: include_str!("sampled_position.toml"),
 };
 
-/// Models with their orders and outputs: trigonometric functions, friction, fields, backlash, a controller and steps.
+/// Models with orders and outputs. They cover trigonometric functions, friction, fields, backlash, a controller and
+/// steps.
 const MODELS: [(ShippedModel, usize, &[Output]); 6] = [
     (
         DOUBLE_PENDULUM,
@@ -129,7 +130,7 @@ impl Subject {
         self.files.len() > 1
     }
 
-    /// Returns the indices of the files to choose from: the source four times as often as the header.
+    /// Returns the indices of the files to draw from; the source is drawn four times as often as the header.
     pub fn choices(&self) -> Vec<usize> {
         match self.is_c() {
             true => vec![0, 0, 0, 0, 1],
@@ -172,8 +173,8 @@ impl Subject {
         })
     }
 
-    /// Returns true if the changed file has the tokens of the emitted one, or C has the same machine code in both
-    /// precisions.
+    /// Returns true if the changed file has the same tokens as the emitted file, or (for C) the same machine code in
+    /// both precisions.
     pub fn is_equivalent(&self, changed: usize, files: &[File]) -> Result<bool, String> {
         let is_same =
             without_comments(&files[changed].text) == without_comments(&self.files[changed].text);
@@ -188,7 +189,7 @@ impl Subject {
         Ok(true)
     }
 
-    /// Compiles C and returns the object.
+    /// Compiles C and returns the object file.
     fn object(&self, files: &[File], real: &str) -> Result<Vec<u8>, String> {
         let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
         let path = |name: &str| folder.path().join(name);

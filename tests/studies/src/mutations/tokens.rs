@@ -15,7 +15,7 @@ pub enum Kind {
     Sign,
 }
 
-/// Returns the tokens with their places.
+/// Returns the tokens with their byte ranges.
 pub fn tokens(source: &str) -> Vec<(Kind, Range<usize>)> {
     let bytes = source.as_bytes();
     let mut found = Vec::new();

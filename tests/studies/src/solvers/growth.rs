@@ -1,5 +1,5 @@
-//! Growth of small differences along a motion: the norm of the tangent map from several times to
-//! all later samples, by finite differences.
+//! Growth of small differences along a motion: norm of the tangent map from several times to all later samples,
+//! computed by finite differences.
 
 use eomgen_compiled_model::{Error, Instance, Request};
 use eomgen_validate::random::Random;
@@ -9,11 +9,11 @@ const DISTURBANCE: f64 = 1e-6;
 
 const DIRECTIONS: usize = 2;
 
-/// Starts of the disturbed motions, as fractions of the samples.
+/// Starts of the disturbed motions, as fractions of the number of samples.
 pub const STARTS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 
-/// Returns the largest magnitude of every state over a motion. States of one unit share their
-/// magnitude, so that a nearly constant state is compared with the others.
+/// Returns the largest magnitude of every state over a motion. States with the same unit share the largest magnitude,
+/// so that differences of a nearly constant state are relative to the other states.
 pub fn magnitudes(states: &[Vec<f64>], units: &[String]) -> Vec<f64> {
     let largest = |state: usize| states.iter().fold(0.0_f64, |m, y| m.max(y[state].abs()));
     let own: Vec<f64> = (0..units.len()).map(largest).collect();

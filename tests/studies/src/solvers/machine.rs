@@ -1,5 +1,5 @@
-//! Random machines as text: a chain of masses on springs with random features. Lengths, masses and
-//! times vary over several decades. The equations use only the specification language.
+//! Random machines as specification texts: chains of masses on springs with random features. Lengths, masses and times
+//! vary over several decades.
 
 use std::fmt::Write;
 
@@ -10,29 +10,29 @@ use eomgen_validate::random::Random;
 pub enum Feature {
     /// Linear dampers between the masses.
     Damper,
-    /// A hardening spring on the first mass.
+    /// Hardening spring on the first mass.
     CubicSpring,
-    /// A pendulum below the last mass.
+    /// Pendulum that hangs from the last mass.
     Pendulum,
-    /// Drag of second order on the last mass.
+    /// Quadratic drag on the last mass.
     Drag,
     /// Dry friction on the first mass.
     DryFriction,
     /// Backlash in the first spring between two masses.
     Play,
-    /// An elastic stop of the last mass.
+    /// Elastic stop of the last mass.
     ElasticStop,
-    /// A preloaded stop of the last mass to both sides: nested piecewise functions.
+    /// Preloaded stops of the last mass on both sides, with nested piecewise functions.
     PreloadedStop,
-    /// A rigid stop of the first mass with restitution.
+    /// Rigid stop of the first mass with restitution.
     RigidStop,
-    /// Force on the first mass with a lag behind the position of the last.
+    /// Force on the first mass that follows the position of the last mass with a lag.
     Lag,
-    /// An input force on the last mass, held between samples.
+    /// Input force on the last mass, held between samples.
     Input,
     /// Bead on a circle around the first mass: two coordinates and one constraint.
     Constraint,
-    /// A clamped beam on the last mass.
+    /// Clamped beam on the last mass.
     Beam,
 }
 
@@ -53,7 +53,7 @@ impl Feature {
         Self::Beam,
     ];
 
-    /// Returns true if the feature can increase the energy of the specification.
+    /// Returns true if the feature can increase the energy.
     fn can_supply_energy(self) -> bool {
         matches!(self, Self::Lag | Self::Input)
     }
@@ -69,7 +69,7 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Returns true if the energy cannot rise.
+    /// Returns true if the energy cannot increase.
     pub fn is_passive(&self) -> bool {
         !self
             .features
@@ -83,7 +83,7 @@ const FEATURE_PROBABILITY: f64 = 0.25;
 /// Duration of a motion in time units of the machine.
 const DURATION: f64 = 8.0;
 
-/// Times at which the input changes, relative to the duration.
+/// Times at which the input changes, as fractions of the duration.
 const INPUT_TIMES: [f64; 4] = [0.0, 0.21, 0.48, 0.77];
 
 const SECTIONS: [&str; 10] = [
@@ -159,7 +159,7 @@ impl Writer<'_> {
         self.line("parameters", &line);
     }
 
-    /// Writes a length as a coordinate with a random initial state.
+    /// Writes mass `place` with its position as a coordinate with a random initial state.
     fn mass(&mut self, place: usize) {
         let position = self.units.si("m", self.random.symmetric());
         let rate = self.units.si("m/s", self.random.symmetric());
@@ -390,7 +390,7 @@ pub fn draw(random: &mut Random) -> Machine {
     }
 }
 
-/// Returns random input forces up to `force` (N), held over parts of the duration.
+/// Returns random input forces up to `force` (N), each held over a part of the duration.
 fn draw_inputs(random: &mut Random, until: f64, force: f64) -> HeldInputs {
     let times = INPUT_TIMES.map(|part| part * until).to_vec();
     let values = times.iter().map(|_| force * random.symmetric()).collect();

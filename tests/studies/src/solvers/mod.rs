@@ -1,6 +1,6 @@
-//! Study `solvers`: random machines with all solvers. At each of several tolerances, the motions of
-//! two solvers may differ by ten tolerances times the growth of a small difference along the
-//! motion. The energy of a passive machine must not rise.
+//! Study `solvers`: random machines are simulated by all solvers. At each of several tolerances, the motions of two
+//! solvers may differ by ten tolerances times the growth of a small difference along the motion. The energy of a
+//! passive machine must not increase.
 
 pub(crate) mod growth;
 pub(crate) mod machine;
@@ -19,20 +19,20 @@ const TOLERANCES: [f64; 3] = [1e-6, 1e-8, 1e-10];
 /// Tolerance of the motions that measure the growth.
 const GROWTH_TOLERANCE: f64 = 1e-11;
 
-/// Maximum difference of two solvers, in tolerances times the growth.
+/// Accepted difference of two solvers, in tolerances times the growth of small differences.
 const ALLOWED_TOLERANCES: f64 = 10.0;
 
-/// Ratio of the relative change of the energy to that of the states between two samples: energies
-/// contain up to the fourth power of a coordinate, and both samples have an error.
+/// Ratio of the relative error of an energy difference to the relative error of the states. Energies contain up to the
+/// fourth power of a coordinate, and both samples have an error.
 const ENERGY_SENSITIVITY: f64 = 8.0;
 
 const SAMPLES: usize = 61;
 
 struct Outcome {
-    /// Largest difference of two solvers relative to the allowed one.
+    /// Largest difference of two solvers, relative to the accepted difference.
     worst: f64,
     is_exact: bool,
-    /// True if the machine is passive, so that its energy was checked.
+    /// True if the machine is passive and its energy was checked.
     is_passive: bool,
 }
 
@@ -40,7 +40,7 @@ struct Outcome {
 ///
 /// # Errors
 ///
-/// Returns a report of all machines whose solvers disagree, stop or panic, or whose energy rises.
+/// Returns a report of all machines for which solvers disagree, stop or panic, or the energy increases.
 pub fn run(sample: &Sample) -> Result<String, String> {
     let mut outcomes = Vec::new();
     let mut failures = String::new();
@@ -167,8 +167,8 @@ fn exact_motion(instance: &Instance<'_>, request: &Request<'_>) -> Result<Option
     simulate_to_end(instance, request).map(Some)
 }
 
-/// Checks that the energy of a passive machine never rises from one sample to a later one by more
-/// than the fraction `allowed` of its largest magnitude.
+/// Checks that the energy of a passive machine never increases from one sample to a later one by more than the fraction
+/// `allowed` of its largest magnitude.
 fn check_energy(
     machine: &Machine,
     instance: &Instance<'_>,
