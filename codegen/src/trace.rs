@@ -11,7 +11,7 @@ use crate::mechanics::contributions::{
     Contribution, derive_contributions, observable_contributions,
 };
 use crate::mechanics::equations::Equations;
-use crate::program::units::{ValueUnit, infer_units};
+use crate::program::units::infer_units;
 use crate::program::{Op, Program, Trace, TraceTerm, ValueId, ValueTrace};
 use crate::symbolic::graph::NodeId;
 
@@ -89,13 +89,7 @@ pub(crate) fn trace_program(
     let observed = spread(&observed);
     let units = infer_units(program);
     let trace = |(place, terms): (usize, &Terms)| ValueTrace {
-        unit: match units[place] {
-            ValueUnit::Known(dimension) => Some(match dimension.is_dimensionless() {
-                true => "1".to_owned(),
-                false => dimension.to_string(),
-            }),
-            ValueUnit::Any | ValueUnit::Unknown => None,
-        },
+        unit: units[place].si_text(),
         terms: match terms.is_empty() {
             true => observed[place].indices(),
             false => terms.indices(),

@@ -26,6 +26,15 @@ impl ValueUnit {
         }
     }
 
+    /// Returns the SI unit as text, `1` without a dimension; `None` if it is not known.
+    pub fn si_text(self) -> Option<String> {
+        let dimension = self.dimension()?;
+        Some(match dimension.is_dimensionless() {
+            true => "1".to_owned(),
+            false => dimension.to_string(),
+        })
+    }
+
     fn from_text(unit: &str) -> Self {
         Self::from_dimension(Unit::parse(unit).ok().map(|unit| unit.dimension))
     }

@@ -55,7 +55,9 @@ impl Report {
             for line in &self.coefficients {
                 writeln!(out, "  {} = {}", line.name, line.formula)?;
                 if !line.values.is_empty() {
-                    writeln!(out, "      = {}", values_text(&line.values))?;
+                    let unit = line.unit.as_deref().filter(|unit| *unit != "1");
+                    let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
+                    writeln!(out, "      = {}{unit}", values_text(&line.values))?;
                 }
             }
         }

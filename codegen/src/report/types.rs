@@ -83,6 +83,8 @@ pub struct CoefficientLine {
     pub name: Formula,
     /// Formula.
     pub formula: Formula,
+    /// SI unit, `1` without a dimension; `None` if it is not known.
+    pub unit: Option<String>,
     /// Mode indices: none for a scalar, one for a vector, two for a matrix.
     #[serde(skip)]
     pub indices: Vec<Index>,

@@ -8,6 +8,7 @@ use crate::mechanics::coefficients::EquationRow;
 use crate::mechanics::equations::Equations;
 use crate::mechanics::linearity::Linearity;
 use crate::program::evaluator::Evaluator;
+use crate::program::units::infer_units;
 use crate::symbolic::formula::{Formula, Index, Reader};
 use crate::symbolic::graph::{NodeId, Shape};
 
@@ -96,6 +97,7 @@ impl Writer<'_> {
     }
 
     pub fn coefficients(&self, evaluator: &Evaluator) -> Vec<CoefficientLine> {
+        let units = infer_units(evaluator.program());
         self.equations
             .coefficients
             .iter()
@@ -105,6 +107,7 @@ impl Writer<'_> {
                 indices: self.mode_indices(coefficient.value).to_vec(),
                 columns: self.mode_columns(coefficient.value),
                 formula: self.reader.formula(coefficient.value),
+                unit: units[value.index()].si_text(),
                 values: if evaluator.program().value(*value).parameter_only {
                     evaluator.slice(*value).to_vec()
                 } else {

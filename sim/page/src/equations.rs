@@ -155,18 +155,18 @@ fn coefficients(lines: &[CoefficientLine]) -> Markup {
                     td.formula colspan="2" { (formula(&line.formula)) }
                 } @else {
                     td.formula { (formula(&line.formula)) }
-                    td.amounts { (values(line, scalar)) }
+                    td.amounts { (values(line, scalar)) (unit(line)) }
                 }
             }
             @if line.columns > 1 {
-                tr { td {} td.amounts colspan="2" { (values(line, scalar)) } }
+                tr { td {} td.amounts colspan="2" { (values(line, scalar)) (unit(line)) } }
             }
         }
     };
     html! {
         h3 { "Coefficients" }
         p {
-            "Names as in the specification; values in SI units for its parameters, by the modes "
+            "Names as in the specification; values for its parameters in SI units, by the modes "
             i { "i" } " and " i { "j" } " of a coefficient with these indices."
         }
         (stacked_table(&["coefficient", "formula", "value"], &rows))
@@ -195,6 +195,13 @@ fn values(line: &CoefficientLine, scalar: &Markup) -> Markup {
         (false, true) => scalar.clone(),
         (false, false) => mode_table(&line.values, line.columns.max(1)),
     }
+}
+
+/// Returns the unit of the values, if they have one.
+fn unit(line: &CoefficientLine) -> Markup {
+    let unit = line.unit.as_deref().filter(|unit| *unit != "1");
+    let preposition = if line.indices.is_empty() { " " } else { " in " };
+    html! { @if let Some(unit) = unit { (preposition) (unit) } }
 }
 
 /// Returns values by mode: a row for each mode, and a column for each mode of a matrix.
