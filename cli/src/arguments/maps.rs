@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::shared::{InputValues, Json, ModelFile, ParameterValues, StateValues, seconds};
+use super::shared::{InputValues, Json, ModelFile, ParameterValues, StateValues, parse_seconds};
 
 /// System that runs the shards of a sweep on many machines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Engine {
-    /// A Slurm array job, followed by a job that merges.
+    /// A Slurm array job, and a second job that merges the shards.
     Slurm,
     /// Tasks on the workers of a Dask scheduler; needs the Python package.
     Dask,
@@ -61,7 +61,7 @@ pub struct Sweep {
     pub initial: StateValues,
     #[command(flatten)]
     pub inputs: InputValues,
-    /// Parameter that holds the angular frequency of the forcing.
+    /// Parameter whose value is the angular frequency of the forcing.
     #[arg(long, value_name = "NAME", default_value = "omega")]
     pub frequency: String,
     /// Number of forcing periods to discard before measuring.
@@ -70,12 +70,12 @@ pub struct Sweep {
     /// Number of forcing periods to measure.
     #[arg(long, value_name = "PERIODS", default_value_t = 60)]
     pub periods: usize,
-    /// End of the simulation in s, instead of forcing periods. `lyapunov` uses its second half; --section uses all
-    /// of it. Default with --record: the end of the record.
-    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = seconds)]
+    /// End of the simulation in s, instead of forcing periods. `lyapunov` is measured over the second half of this
+    /// time, --section over the whole time. Default with --record: the end of the record.
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_seconds)]
     pub until: Option<f64>,
-    /// Poincaré section: a coordinate or a rate crosses a value upwards, or downwards with `:down`. An angle
-    /// in which the equations are periodic crosses once per turn. --transient and --periods then count
+    /// Poincaré section: a coordinate or a rate crosses a value upwards, or downwards with `:down`. If the
+    /// equations are periodic in an angle, the angle crosses the value once per turn. --transient and --periods then count
     /// crossings. Default: once per forcing period.
     #[arg(long, value_name = "NAME=VALUE[:up|:down]")]
     pub section: Option<String>,

@@ -43,12 +43,12 @@ impl Arguments {
     /// # Errors
     /// Wrong arguments, and requests for help or the version.
     pub fn read() -> Result<Self, clap::Error> {
-        let arguments = current_names(std::env::args_os().collect());
+        let arguments = replace_earlier_name(std::env::args_os().collect());
         Self::try_parse_from(&arguments).map_err(|error| add_equivalent(error, &arguments))
     }
 }
 
-/// Words of other programs, and the equivalent here.
+/// Words of other programs with the equivalent option of this program.
 const FOREIGN: [(&[&str], &str); 3] = [
     (&["--latex", "--tex"], "write --format latex"),
     (
@@ -61,7 +61,7 @@ const FOREIGN: [(&[&str], &str); 3] = [
     ),
 ];
 
-/// Adds the equivalent of a word of another program to the error about it.
+/// Replaces the suggestion in an error about a word of another program by the equivalent option.
 fn add_equivalent(mut error: clap::Error, arguments: &[OsString]) -> clap::Error {
     let wrong = [ContextKind::InvalidArg, ContextKind::InvalidValue].map(|kind| error.get(kind));
     let is_wrong = |word: &str| {
@@ -86,24 +86,24 @@ fn add_equivalent(mut error: clap::Error, arguments: &[OsString]) -> clap::Error
     error
 }
 
-/// Earlier names of commands, and the current ones.
+/// Earlier names of commands with their current names.
 const RENAMED: [(&str, [&str; 2]); 2] = [
     ("study", ["paper", "study"]),
     ("study-search", ["paper", "claims"]),
 ];
 
 /// Replaces an earlier name of a command, also after `help`.
-fn current_names(mut arguments: Vec<OsString>) -> Vec<OsString> {
-    let place = match arguments.get(1) {
+fn replace_earlier_name(mut arguments: Vec<OsString>) -> Vec<OsString> {
+    let index = match arguments.get(1) {
         Some(first) if first == "help" => 2,
         _ => 1,
     };
-    let name = arguments.get(place);
+    let name = arguments.get(index);
     let renamed = RENAMED
         .iter()
         .find(|(old, _)| name.is_some_and(|name| name == old));
     if let Some((_, new)) = renamed {
-        arguments.splice(place..=place, new.iter().map(OsString::from));
+        arguments.splice(index..=index, new.iter().map(OsString::from));
     }
     arguments
 }
@@ -124,12 +124,12 @@ pub enum Command {
         after_help = "Examples:\n  eomgen generate model-spec/models/planetary_arm.toml --order 5 --out arm5\n  eomgen generate model-spec/models/emps.toml \\\n      --with jacobians,inverse_dynamics --certify --out emps\n  eomgen generate --all --check"
     )]
     Generate(Generate),
-    /// Emit and certify all variants that a file lists, with a manifest.
+    /// Emit and certify all variants of a family file, and write a manifest.
     #[command(
-        after_help = "Examples:\n  eomgen family generated/family.toml --out models\n  eomgen family generated/family.toml --out models --check\ndocs/families.md describes the file."
+        after_help = "Examples:\n  eomgen family generated/family.toml --out models\n  eomgen family generated/family.toml --out models --check\ndocs/families.md describes the family file."
     )]
     Family(Family),
-    /// Compile an emitted source as it is and repeat the checks of its certificate on it.
+    /// Compile an emitted source without changes and repeat the checks of its certificate.
     #[command(
         after_help = "Examples:\n  eomgen verify generated/src/variants/planetary_arm_rigid/mod.rs \\\n      generated/src/variants/planetary_arm_rigid/certificate.json\n  eomgen generate model-spec/models/pendulum.toml --target c99 --certify --out pendulum\n  eomgen verify pendulum/pendulum.c pendulum/certificate.json \\\n      --cc \"gcc -O2 -ffp-contract=off\""
     )]
@@ -141,10 +141,10 @@ pub enum Command {
     Identify(Identify),
     /// Bound the executed instructions and the stack of each function of a C file, compiled for a Cortex-M4F or Cortex-M7.
     #[command(
-        after_help = "Example:\n  eomgen generate model-spec/models/planetary_arm.toml --order 4 --target c99 --out arm4\n  eomgen instructions arm4/planetary_arm.c \\\n      --cc \"arm-none-eabi-gcc -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 \\\n      -mfloat-abi=hard -std=c99 -O2 -Dplanetary_arm_REAL=float\"\nA function with a loop whose number of iterations is not proven has no bound; the reason is printed, and the status is 1."
+        after_help = "Example:\n  eomgen generate model-spec/models/planetary_arm.toml --order 4 --target c99 --out arm4\n  eomgen instructions arm4/planetary_arm.c \\\n      --cc \"arm-none-eabi-gcc -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 \\\n      -mfloat-abi=hard -std=c99 -O2 -Dplanetary_arm_REAL=float\"\nIf the number of iterations of a loop cannot be proven, the function has no bound. The command then prints the reason and exits with status 1."
     )]
     Instructions(Instructions),
-    /// Check the derived equations against independent ones and write a certificate.
+    /// Compare the equations with independently derived equations and write a certificate.
     #[command(
         after_help = "Example:\n  eomgen validate model-spec/models/planetary_arm.toml --order 16 \\\n      --out certificate.json\n  eomgen validate model-spec/models/pendulum.toml --bounds \\\n      --range theta=-pi:pi --range theta_dot=-10:10"
     )]
@@ -166,10 +166,10 @@ pub enum Command {
     Modes(Modes),
     /// Find an equilibrium near a state, at rest or in steady motion.
     #[command(
-        after_help = "Examples:\n  eomgen trim model-spec/models/pendulum.toml\n  eomgen trim model-spec/models/furuta_pendulum.toml --fix u=0 --fix phi=0.5\n  eomgen trim model-spec/models/pendulum.toml --state theta=\"20 deg\"\nThe search varies the coordinates and keeps inputs at 0. If coordinates are fixed, it also varies the inputs that are not.\nA cyclic coordinate, whose value appears in no equation, may move at a constant speed: the initial one, or one that the search finds."
+        after_help = "Examples:\n  eomgen trim model-spec/models/pendulum.toml\n  eomgen trim model-spec/models/furuta_pendulum.toml --fix u=0 --fix phi=0.5\n  eomgen trim model-spec/models/pendulum.toml --state theta=\"20 deg\"\nThe search varies the coordinates and keeps inputs at 0. If coordinates are fixed, it also varies the inputs that are not fixed.\nA cyclic coordinate, whose value appears in no equation, may move at a constant speed: its initial speed, or a speed that the search finds."
     )]
     Trim(Trim),
-    /// Propose a dataset file for a record: number format, columns and noise, with guesses marked.
+    /// Propose a dataset file for a record: number format, columns and noise; guesses are marked.
     #[command(
         after_help = "Example:\n  eomgen dataset examples/measured/first.csv examples/measured/stage.toml \\\n      --out proposed.toml\nA comment after each key explains its guess; docs/discovery.md describes all keys."
     )]
@@ -181,7 +181,7 @@ pub enum Command {
     Compare(Compare),
     /// Find the effects that a model lacks, add them, and report the remaining residual.
     #[command(
-        after_help = "Example:\n  eomgen discover examples/measured/stage.toml examples/measured/dataset.toml \\\n      --out found --limit 60\nIf the records cannot separate two effects, found/experiment.csv is an input that does: apply it to the machine, add its record to the dataset file, and run the command again. Its bounds are described in docs/discovery.md."
+        after_help = "Example:\n  eomgen discover examples/measured/stage.toml examples/measured/dataset.toml \\\n      --out found --limit 60\nIf the records cannot separate two effects, the command writes found/experiment.csv, an input whose record would separate them. Apply the input to the machine, add the new record to the dataset file, and run the command again. docs/discovery.md describes the bounds of the input."
     )]
     Discover(Discover),
     /// Measure the motion over a grid or over random samples of parameters.
@@ -211,7 +211,7 @@ pub enum Command {
     Tour(Tour),
     /// Print the JSON schema of specifications, for completion and checks in an editor.
     #[command(
-        after_help = "Example:\n  eomgen schema > eomgen.schema.json\nThe first line of a specification in the same folder is then\n  #:schema ./eomgen.schema.json"
+        after_help = "Example:\n  eomgen schema > eomgen.schema.json\nBegin each specification in the same folder with the line\n  #:schema ./eomgen.schema.json"
     )]
     Schema,
     /// Print shell completions of commands and options.
@@ -228,7 +228,7 @@ pub enum Command {
 mod tests {
     use std::ffi::OsString;
 
-    use super::current_names;
+    use super::replace_earlier_name;
 
     #[test]
     fn earlier_names_of_commands_become_current_ones() {
@@ -241,7 +241,11 @@ mod tests {
             ("eomgen", "eomgen"),
         ] {
             let words = |line: &str| line.split(' ').map(OsString::from).collect::<Vec<_>>();
-            assert_eq!(current_names(words(given)), words(expected), "{given}");
+            assert_eq!(
+                replace_earlier_name(words(given)),
+                words(expected),
+                "{given}"
+            );
         }
     }
 }

@@ -40,24 +40,24 @@ pub struct Derive {
     pub output: Json,
 }
 
-/// Language of the emitted source.
+/// Language or interface of the emitted code.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Target {
     /// Rust, `no_std`, without dependencies: `lib.rs`.
     Rust,
-    /// C99 that is also C++, without allocation or libraries: `NAME.h` and `NAME.c`, named after the model.
+    /// C99, also valid C++, without allocation or libraries: `NAME.h` and `NAME.c`, named after the model.
     C99,
-    /// Device functions of CUDA C++ (nvcc, NVRTC, clang), with the bits of the C: `NAME.cuh`.
+    /// Device functions of CUDA C++ (nvcc, NVRTC, clang), bit-identical to the C code: `NAME.cuh`.
     Cuda,
     /// The functions `rates` and `jac_rates` of (t, x, u, p) for CasADi's `external`:
-    /// `NAME_casadi.c`, for one `cc -shared -fPIC`.
+    /// `NAME_casadi.c`. Compile it with `cc -shared -fPIC`.
     Casadi,
-    /// The same with the Python module `NAME_acados.py`, which builds the model for acados.
+    /// The functions for CasADi, and the Python module `NAME_acados.py`, which builds the model for acados.
     Acados,
-    /// A functional mock-up unit (FMI 2.0) for model exchange and co-simulation: `NAME.fmu` with
-    /// the specification and the library that moves it, for this machine.
+    /// A functional mock-up unit (FMI 2.0) for model exchange and co-simulation: `NAME.fmu` with the specification and a
+    /// library that simulates it, for the operating system and processor of this computer.
     Fmu2,
-    /// The same for FMI 3.0.
+    /// A functional mock-up unit (FMI 3.0) with the content of `fmu2`.
     Fmu3,
 }
 
@@ -82,7 +82,7 @@ pub enum Packaging {
     Crate,
     /// Rust as a module: `mod.rs`.
     Module,
-    /// C as one header with the functions, which one file of a program compiles: `NAME.h`.
+    /// C as one header with the functions, `NAME.h`; one file of the program compiles the functions.
     HeaderOnly,
 }
 
@@ -140,14 +140,14 @@ pub struct Generate {
     pub parameters: ParameterValues,
     /// Functions to emit in addition to rates, observables, energy, power, guards and mass matrix:
     /// bias_forces, inverse_dynamics, guard_rates, jacobians (jacobians:states, jacobians:inputs or
-    /// jacobians:parameters: those by one kind of variables), products (Jacobian times vector), linearisation,
-    /// regimes (rates for given contact states), step (a step of the solver fixed), lanes (an inlined copy of every function, for SIMD), hessians
+    /// jacobians:parameters: with respect to one kind of variables), products (Jacobian times vector), linearisation,
+    /// regimes (rates in a given regime), step (a step of the solver `fixed`), lanes (an inlined copy of every function, for SIMD), hessians
     /// (of the weighted rates, for CasADi), bench (a benchmark), baked (the coefficients of the default parameters as
     /// constants), self_test (test vectors and a function that compares a target with them), trace (`trace.json`: unit
     /// and terms of the specification of each value, by line of the source).
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub with: Vec<Extra>,
-    /// Language of the emitted source.
+    /// Language or interface of the emitted code.
     #[arg(long, value_enum, default_value = "rust")]
     pub target: Target,
     /// Form of the emitted source. Default: a crate in Rust, `NAME.h` and `NAME.c` in C.
@@ -159,8 +159,8 @@ pub struct Generate {
     /// Write `certificate.json` (see `eomgen validate`) to the same folder; exit with status 1 if a check fails.
     #[arg(long)]
     pub certify: bool,
-    /// Also state bounds of the instructions and the stack of each function in the certificate, for a cross compiler with its
-    /// options (see `eomgen instructions`). Repeatable.
+    /// Also write bounds of the instructions and the stack of each function to the certificate. COMMAND is a cross compiler
+    /// with its options (see `eomgen instructions`). Repeatable.
     #[arg(
         long,
         value_name = "COMMAND",
@@ -184,14 +184,14 @@ pub struct Generate {
 pub struct Family {
     /// Family file (TOML).
     pub file: PathBuf,
-    /// Output folder: one folder for each variant, `mod.rs` and `manifest.json`.
+    /// Output folder. It contains one folder for each variant, `mod.rs` and `manifest.json`.
     #[arg(long)]
     pub out: PathBuf,
     /// Compare instead of writing; exit with status 1 on a missing, edited, stale or different file, a certificate
     /// that did not pass, or operation counts above those of the manifest.
     #[arg(long)]
     pub check: bool,
-    /// Generate all variants, also those without a change in their files.
+    /// Generate all variants, also the unchanged ones.
     #[arg(long)]
     pub force: bool,
     #[command(flatten)]
@@ -210,8 +210,8 @@ pub struct Verify {
     /// `-std=c99 -O2 -ffp-contract=off`.
     #[arg(long, value_name = "COMMAND", allow_hyphen_values = true)]
     pub cc: Option<String>,
-    /// Cross compiler with its options: computes the certificate's bounds of instructions and stack with it again. Commands in
-    /// a certificate are not run. Repeatable.
+    /// Cross compiler with its options, to compute the bounds of instructions and stack in the certificate again. Commands
+    /// that are only in the certificate are never run. Repeatable.
     #[arg(long, value_name = "COMMAND", allow_hyphen_values = true)]
     pub instructions: Vec<String>,
     #[command(flatten)]
@@ -223,7 +223,8 @@ pub struct Verify {
 pub struct Identify {
     /// Object file, library, program or firmware image.
     pub image: PathBuf,
-    /// Folder with certificates: names the certificate of each variant; exit with status 1 if one is missing.
+    /// Folder with certificates. The command prints the certificate of each variant, and exits with status 1 if a
+    /// certificate is missing.
     #[arg(long, value_name = "DIR")]
     pub certificates: Option<PathBuf>,
     #[command(flatten)]
@@ -249,8 +250,8 @@ pub struct Validate {
     pub model: ModelFile,
     #[command(flatten)]
     pub parameters: ParameterValues,
-    /// Additional functions, as in `generate`. The certificate covers one emitted source, with these functions
-    /// only.
+    /// Additional functions, as in `generate`. The certificate covers only an emitted source with exactly these
+    /// functions.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub with: Vec<Extra>,
     /// Also bound the rounding errors of mass matrix, velocity terms, forces and rates in both precisions, over the
@@ -258,11 +259,11 @@ pub struct Validate {
     #[arg(long)]
     pub bounds: bool,
     /// Range of a coordinate, a rate (NAME_dot), another state, all modes of a field, an input, a parameter or `t`
-    /// for --bounds, or one value. Numbers are as for --state and --set. Repeatable.
+    /// for --bounds, or a single value. Write numbers as for --state and --set. Repeatable.
     #[arg(long, value_name = "NAME=LOW:HIGH", requires = "bounds")]
     pub range: Vec<String>,
-    /// State for --bounds: all variables without --range have its values. As for `linearise`; `--state t=0` selects the
-    /// initial state.
+    /// State for --bounds: variables without --range have the values of this state. Write it as for `linearise`;
+    /// `--state t=0` selects the initial state.
     #[arg(long, value_name = "NAME=EXPR|trim", requires = "bounds", alias = "at")]
     pub state: Vec<String>,
     /// Output file for the certificate, `-` for stdout. Default: only a summary is printed.

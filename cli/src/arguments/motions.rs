@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::shared::{
     InputValues, Integration, Json, ModelFile, OutputInterval, ParameterValues, StateValues,
-    seconds,
+    parse_seconds,
 };
 
 /// Options of `simulate`.
@@ -19,7 +19,7 @@ pub struct Simulate {
         long,
         value_name = "T",
         allow_negative_numbers = true,
-        value_parser = seconds,
+        value_parser = parse_seconds,
         required_unless_present = "record"
     )]
     pub until: Option<f64>,
@@ -64,7 +64,7 @@ pub struct Linearise {
     pub point: StateValues,
     /// Sample period, in s. Adds the matrices A_d and B_d of x_(k+1) = A_d x_k + B_d u_k, for inputs held over each
     /// period.
-    #[arg(long, value_name = "PERIOD", allow_negative_numbers = true, value_parser = seconds)]
+    #[arg(long, value_name = "PERIOD", allow_negative_numbers = true, value_parser = parse_seconds)]
     pub discrete: Option<f64>,
     /// Output file: JSON, or NumPy arrays if the name ends in `.npz`. Default: JSON on stdout.
     #[arg(long)]
@@ -98,7 +98,7 @@ pub struct Trim {
     pub parameters: ParameterValues,
     #[command(flatten)]
     pub start: StateValues,
-    /// Fixed value of a coordinate, an input, or the speed (NAME_dot) of a cyclic coordinate; written as for --state.
+    /// Fixed value of a coordinate, an input, or the speed (NAME_dot) of a cyclic coordinate. Write it as for --state.
     /// Repeatable.
     #[arg(long, value_name = "NAME=VALUE")]
     pub fix: Vec<String>,

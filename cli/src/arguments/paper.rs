@@ -9,7 +9,7 @@ use super::shared::Json;
 /// Commands for the paper.
 #[derive(Subcommand)]
 pub enum Paper {
-    /// Run one of the paper's numerical studies: data, the paper's figures and `study.json`.
+    /// Run one of the paper's numerical studies; write its data, its figures and `study.json`.
     #[command(after_help = "Example:\n  eomgen paper study backlash --out studies/backlash")]
     Study(Study),
     /// Evaluate the paper's claims at the assumed values and over plausible ranges of undisclosed parameters.
@@ -62,9 +62,9 @@ pub enum StudyName {
     Order,
     /// Fig. 5-10: omega = 5 pi, b = 0, 10, 25, 50, 100 um.
     Backlash,
-    /// Fig. 11-15: omega = 10 pi, the same b.
+    /// Fig. 11-15: omega = 10 pi, b as for `backlash`.
     Frequency,
-    /// Fig. 16-19: the rigid arm against the flexible one.
+    /// Fig. 16-19: comparison of the rigid and the flexible arm.
     Flexibility,
 }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::shared::{Json, ModelFile, NoiseSeed, seconds};
+use super::shared::{Json, ModelFile, NoiseSeed, parse_seconds};
 
 /// Options of `dataset`.
 #[derive(Args)]
@@ -49,9 +49,9 @@ pub struct Discover {
     pub out: PathBuf,
     #[command(flatten)]
     pub noise: NoiseSeed,
-    /// Time limit of the search, in s. Default: no limit. The fit of the given model and the final check run in
-    /// any case.
-    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = seconds)]
+    /// Time limit of the search, in s. Default: no limit. The fit of the given model and the final check are always
+    /// completed.
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_seconds)]
     pub limit: Option<f64>,
     /// File (TOML) with additional effects for the catalogue.
     #[arg(long, value_name = "EFFECTS.toml")]

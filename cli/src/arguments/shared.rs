@@ -1,4 +1,4 @@
-//! Options that several commands have.
+//! Options that several commands share.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::unit::Unit;
 
 /// Parses a time: a number in s, or a number with a unit such as `10 ms`.
-pub fn seconds(text: &str) -> Result<f64, String> {
+pub fn parse_seconds(text: &str) -> Result<f64, String> {
     if let Ok(number) = text.trim().parse() {
         return Ok(number);
     }
@@ -28,7 +28,7 @@ pub struct Order {
 }
 
 impl Order {
-    /// Text of the option, if it was given.
+    /// Text of the option, if present.
     pub fn text(&self) -> Option<&str> {
         self.order.as_deref()
     }
@@ -66,8 +66,8 @@ pub struct StateValues {
 /// Inputs over time.
 #[derive(Args)]
 pub struct InputValues {
-    /// Expression of `t` and parameters that drives an input. If an expression has no parameters, its value is in the
-    /// input's unit, with t in s, or in the unit after it: `F="5*above(t - 1) kN"` is a step. Repeatable.
+    /// Expression of `t` (in s) and parameters that drives an input. The value is in the unit of the input. An expression
+    /// without parameters may end with another unit: `F="5*above(t - 1) kN"` is a step. Repeatable.
     #[arg(long, value_name = "NAME=EXPR")]
     pub input: Vec<String>,
     /// Dataset file with a record that drives the inputs.
@@ -92,7 +92,7 @@ pub struct OutputInterval {
         long,
         value_name = "DT",
         allow_negative_numbers = true,
-        value_parser = seconds,
+        value_parser = parse_seconds,
         alias = "sample"
     )]
     pub interval: Option<f64>,
@@ -112,8 +112,8 @@ pub enum Solver {
     Adams,
     /// Implicit Radau IIA method of order 5 with exact Jacobians, for stiff models.
     Radau,
-    /// Classical Runge-Kutta method of order 4 with steps of --step, with friction and impacts at the ends of steps; the method of the emitted `step`.
-    /// Inputs are held during a step.
+    /// Classical Runge-Kutta method of order 4 with the step size --step, bit-identical to the emitted `step`. Friction
+    /// and impacts act at the ends of steps. Inputs are held during a step.
     Fixed,
 }
 
@@ -140,21 +140,21 @@ pub struct Integration {
     #[arg(long, value_name = "R", allow_negative_numbers = true)]
     pub tolerance: Option<f64>,
     /// Longest step, in s. Default: no limit. Set it if an input has short pulses that longer steps may miss.
-    /// No effect on the exact solver. With the solver `fixed`, the length of all steps.
+    /// No effect on the exact solver. For the solver `fixed`, the step size.
     #[arg(
         long,
         value_name = "DT",
         allow_negative_numbers = true,
-        value_parser = seconds,
+        value_parser = parse_seconds,
         visible_alias = "step"
     )]
     pub max_step: Option<f64>,
 }
 
-/// Seed of the noise in a twin experiment.
+/// Seed of the noise of the replica.
 #[derive(Args)]
 pub struct NoiseSeed {
-    /// Seed of the random noise in the simulated record that gives the noise floor.
+    /// Seed of the random noise of the replica, the simulated records that give the noise floor.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
 }
@@ -162,7 +162,7 @@ pub struct NoiseSeed {
 /// Output for programs.
 #[derive(Args)]
 pub struct Json {
-    /// Print one JSON document to stdout, and nothing else there.
+    /// Print one JSON document to stdout instead of text.
     #[arg(long)]
     pub json: bool,
 }

@@ -6,7 +6,7 @@ use super::tally::Share;
 
 /// Formats the table from the judgements at the assumed values and the shares of a search.
 pub fn format_markdown(assumed: &[Judgement], shares: &[Share]) -> String {
-    let mut text = "| claim | where | the paper says | here | strictly | holds in | undecided in | evidence |\n\
+    let mut text = "| claim | source | statement of the paper | verdict | strict verdict | holds in | undecided in | evidence |\n\
                     | --- | --- | --- | --- | --- | --- | --- | --- |\n"
         .to_owned();
     for ((claim, judged), share) in CLAIMS.iter().zip(assumed).zip(shares) {
