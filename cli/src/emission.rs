@@ -173,7 +173,7 @@ pub fn outputs(target: Target, with: &[Extra], certify: bool) -> Result<Vec<Outp
     }
     Ok(eomgen_targets::outputs(
         target.into(),
-        &Extra::outputs(with),
+        &Extra::select_outputs(with),
     )?)
 }
 

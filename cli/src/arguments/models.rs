@@ -102,8 +102,8 @@ pub enum Extra {
 }
 
 impl Extra {
-    /// Returns the requested functions.
-    pub fn outputs(all: &[Self]) -> Vec<Output> {
+    /// Returns the requested functions of the emitted code.
+    pub fn select_outputs(all: &[Self]) -> Vec<Output> {
         let request = |extra: &Self| match extra {
             Self::Output(output) => Some(*output),
             Self::Bench | Self::Baked | Self::SelfTest | Self::Trace => None,

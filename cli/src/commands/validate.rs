@@ -21,7 +21,7 @@ pub fn run(options: &Validate) -> Result {
     let model = with_settings(model, &options.parameters.set)?;
     let orders = orders(&model, options.model.order.text())?;
     note_dependent_constraints(&model, &orders)?;
-    let outputs = Extra::outputs(&options.with);
+    let outputs = Extra::select_outputs(&options.with);
     let bounds = match options.bounds {
         true => Some(bounds(&model, &orders, &outputs, options)?),
         false => None,

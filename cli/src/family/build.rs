@@ -106,7 +106,7 @@ impl Emitted {
             Ok::<Derived, Error>(derived)
         };
         // Only emitted Rust has SIMD lanes.
-        let outputs = Extra::outputs(&others);
+        let outputs = Extra::select_outputs(&others);
         let derived = derive(&outputs)?;
         let program = &derived.program;
         let mut files: Vec<(String, Vec<u8>)> = Vec::new();
