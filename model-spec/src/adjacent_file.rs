@@ -6,13 +6,13 @@ use std::path::{Component, Path, PathBuf};
 /// Largest file read, in bytes.
 const MAX_SIZE: u64 = 8 << 20;
 
-/// Cause, as the rest of a sentence that begins with the file's name, and cure.
+/// Cause of the error, worded to follow the file name in a sentence, and a proposed correction.
 pub struct FileError(pub String, pub &'static str);
 
-/// Reads the file of that name.
+/// Reads the file with this name.
 ///
 /// # Errors
-/// A name outside the folder; a file that cannot be read, is too large or is not UTF-8.
+/// The name is outside the folder, or the file cannot be read, is too large or is not UTF-8.
 pub fn read(folder: &Path, name: &str) -> Result<String, FileError> {
     let bytes = bytes(&resolve_path(folder, name)?)?;
     match text(&bytes) {
@@ -24,7 +24,7 @@ pub fn read(folder: &Path, name: &str) -> Result<String, FileError> {
     }
 }
 
-/// Resolves a name, following symbolic links before the check.
+/// Returns the path of a name. Symbolic links are followed before the folder is checked.
 fn resolve_path(folder: &Path, name: &str) -> Result<PathBuf, FileError> {
     let relative = Path::new(name);
     let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);

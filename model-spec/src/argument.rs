@@ -1,12 +1,12 @@
-//! Names of the arguments of a request in messages: options of the command line, or arguments of Python functions.
+//! Names of arguments in messages: command-line options, or arguments of Python functions.
 
 use std::fmt::{self, Display, Formatter};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// True if the requests of this process are calls of Python functions.
+/// True if messages name arguments of Python functions instead of command-line options.
 static IS_PYTHON: AtomicBool = AtomicBool::new(false);
 
-/// Names arguments as those of Python functions from now on. The Python package calls it when it is loaded.
+/// Sets the names in messages to those of Python arguments. The Python package calls this function when it is loaded.
 pub fn name_python_arguments() {
     IS_PYTHON.store(true, Ordering::Relaxed);
 }
@@ -15,8 +15,8 @@ fn is_python() -> bool {
     IS_PYTHON.load(Ordering::Relaxed)
 }
 
-/// Argument of a request. It is displayed as an option of the command line, such as `--max-step`, or as an argument of a
-/// Python function, such as `max_step`.
+/// Argument of a command or Python function. It is displayed as a command-line option, such as `--max-step`, or as a
+/// Python argument, such as `max_step`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Argument {
     /// Values that an equilibrium keeps.
@@ -39,13 +39,13 @@ pub enum Argument {
     Out,
     /// Values of parameters.
     Parameters,
-    /// Measured periods of the forcing.
+    /// Number of evaluated periods of the forcing.
     Periods,
     /// Record that drives the inputs.
     Record,
     /// Number of random samples.
     Samples,
-    /// Section of the motion.
+    /// Poincaré section.
     Section,
     /// Seed of random samples.
     Seed,
@@ -57,16 +57,16 @@ pub enum Argument {
     StepLength,
     /// Target of emitted code.
     Target,
-    /// Discarded periods of the forcing.
+    /// Number of discarded periods of the forcing.
     Transient,
     /// End of the motion.
     Until,
-    /// Varied parameters of a sweep.
+    /// Parameters that a sweep varies.
     Vary,
 }
 
 impl Argument {
-    /// Returns the option of the command line and the argument in Python.
+    /// Returns the command-line option and the Python argument.
     fn names(self) -> (&'static str, &'static str) {
         match self {
             Self::Fixed => ("--fix", "fixed"),

@@ -1,5 +1,4 @@
-//! Syntax tree of one expression, before names are resolved. `resolve` turns it into
-//! [`crate::model::Expr`].
+//! Syntax tree of one expression, before names are resolved. `resolve` converts it to [`crate::model::Expr`].
 
 use crate::span::Span;
 
@@ -55,7 +54,7 @@ pub enum SyntaxKind {
 }
 
 impl Syntax {
-    /// Calls `see` with this expression and all its parts.
+    /// Calls `see` with this expression and all its subexpressions.
     pub fn visit(&self, see: &mut impl FnMut(&Syntax)) {
         see(self);
         match &self.kind {

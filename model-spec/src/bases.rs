@@ -5,7 +5,7 @@ use crate::model::{Basis, End};
 /// Name of the basis with shapes from a file.
 pub const TABLE: &str = "table";
 
-/// All other bases. Rods and strings share the sines and cosines of pinned and guided beams.
+/// All other bases. Rods and strings have the sines and cosines of pinned and guided beams as shapes.
 pub static BASES: [(&str, Basis); 21] = [
     ("clamped_free", beam(End::Clamped, End::Free)),
     ("clamped_free_printed", Basis::ClampedFreePrinted),

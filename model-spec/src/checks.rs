@@ -1,5 +1,4 @@
-//! Checks the model as a whole: unused names, channels of sensors, tables of shapes and the
-//! drawing.
+//! Checks of the whole model: unused names, channels of sensors, tables of shapes, and the drawing.
 
 use crate::diagnostic::{DeclarationKind, Diagnostic, Diagnostics, quote};
 use crate::dimension::Dimension;
@@ -33,7 +32,7 @@ pub fn check_sensors(model: &Model, found: &mut Diagnostics) {
     );
     channels.extend(rates.chain(accelerations));
     channels.extend(model.states.iter().map(|state| state.name.clone()));
-    // Inputs are channels too: the motion takes them from a record.
+    // Inputs are channels, too: a record can contain them.
     channels.extend(model.inputs.iter().map(|input| input.name.clone()));
     for sensor in &model.sensors {
         if !channels.contains(&sensor.observable) {
@@ -105,8 +104,8 @@ pub fn check_drawing(model: &Model, found: &mut Diagnostics) {
     }
 }
 
-/// Returns the inputs that no expression contains and no controller measures or drives. Given rates of
-/// an input may be unused; a used rate counts as a use of the input.
+/// Returns the inputs that no expression contains and no controller measures or drives. Given rates of an input may
+/// be unused. If a rate is used, the input counts as used.
 pub fn list_unused_inputs(model: &Model) -> Vec<&Input> {
     let used = UsageMarks::of(model);
     let used_with_rates = |input: InputId| {
@@ -150,7 +149,7 @@ struct UsageMarks {
 }
 
 impl UsageMarks {
-    /// Marks what a model uses.
+    /// Marks the names that a model uses.
     fn of(model: &Model) -> Self {
         let mut used = Self {
             parameters: vec![false; model.parameters.len()],
@@ -162,7 +161,7 @@ impl UsageMarks {
         used
     }
 
-    /// Marks what controllers measure and drive.
+    /// Marks the quantities that controllers measure and drive.
     fn mark_controllers(&mut self, model: &Model) {
         for controller in &model.controllers {
             for output in &controller.outputs {
@@ -189,7 +188,7 @@ impl UsageMarks {
 }
 
 impl Model {
-    /// Calls `see` with each expression of the model, not with its parts.
+    /// Calls `see` with each expression of the model, but not with subexpressions.
     pub fn for_each_expression<'m>(&'m self, see: &mut impl FnMut(&'m Expr)) {
         for_each_expression(self, see);
     }

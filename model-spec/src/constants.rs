@@ -1,5 +1,5 @@
-//! Checks the constant parts of expressions, which contain only numbers and parameters: each is
-//! finite, inside the domain of its function, and no divisor is 0.
+//! Checks the constant subexpressions, which contain only numbers and parameters: each value is finite, each argument
+//! is in the domain of its function, and no divisor is 0.
 
 use crate::ast::BinaryOperator;
 use crate::checks::for_each_expression;
@@ -8,7 +8,7 @@ use crate::function::call;
 use crate::model::{CoefficientKind, Expr, ExprKind, Function, Model};
 use crate::span::Span;
 
-/// Constant that is infinite, not a number, or outside the domain of a function.
+/// Error of a constant that is infinite, not a number, or outside the domain of a function.
 pub struct ConstantError {
     pub message: String,
     pub help: &'static str,

@@ -1,5 +1,5 @@
-//! Findings on a specification: rendered for people with the text underlined, or as records for
-//! programs.
+//! Errors and warnings of a specification. They are rendered as text with the location underlined, or returned as
+//! records for programs.
 
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 use serde::Serialize;
@@ -8,42 +8,43 @@ use crate::hidden_characters::escape_hidden;
 use crate::source::{Source, character_start};
 use crate::span::Span;
 
-/// Largest number of findings listed; one bad file can have thousands.
+/// Largest number of listed errors and warnings. A single invalid file can have thousands.
 pub const MAX_LISTED: usize = 20;
 
-/// Severity of a finding.
+/// Severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
-    /// The specification cannot be used.
+    /// The specification is invalid.
     Error,
     /// The specification is valid, but possibly not as intended.
     Warning,
 }
 
-/// Remark on a part of the text.
+/// Remark on a location in the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Label {
-    /// The part.
+    /// Location.
     pub span: Span,
-    /// The remark; may be empty.
+    /// Text of the remark; may be empty.
     pub text: String,
 }
 
-/// One finding.
+/// One error or warning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
     /// Severity.
     pub severity: Severity,
-    /// The cause, in one line.
+    /// Cause, in one line.
     pub message: String,
-    /// The place; `None` for the file as a whole.
+    /// Location; `None` if the diagnostic concerns the whole file.
     pub primary: Option<Label>,
-    /// Other places that explain it.
+    /// Other locations that explain the cause.
     pub secondary: Vec<Label>,
-    /// The cure, if known.
+    /// Proposed correction, if known.
     pub help: Option<String>,
-    /// Kind of an unused declaration. `render` prints all unused names of a kind in one line.
+    /// Kind of the declaration, if the warning is about an unused name. `render` prints all unused names of a kind in
+    /// one line.
     pub unused: Option<DeclarationKind>,
 }
 
@@ -69,7 +70,7 @@ impl DeclarationKind {
 }
 
 impl Diagnostic {
-    /// Returns the message, with the help in parentheses.
+    /// Returns the message, with the proposed correction in parentheses.
     pub fn summary(&self) -> String {
         match &self.help {
             Some(help) => format!("{} ({help})", self.message),
@@ -77,7 +78,7 @@ impl Diagnostic {
         }
     }
 
-    /// Creates an error without a place.
+    /// Creates an error without a location.
     pub fn error(message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
@@ -89,7 +90,7 @@ impl Diagnostic {
         }
     }
 
-    /// Creates a warning about a declared name that nothing refers to.
+    /// Creates a warning about an unused declaration.
     pub fn unused(kind: DeclarationKind, name: &str, span: Span) -> Self {
         Self {
             unused: Some(kind),
@@ -102,7 +103,7 @@ impl Diagnostic {
         .with_help("remove it, or use it where it was meant")
     }
 
-    /// Creates a warning without a place.
+    /// Creates a warning without a location.
     pub fn warning(message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Warning,
@@ -110,7 +111,7 @@ impl Diagnostic {
         }
     }
 
-    /// Sets the place.
+    /// Sets the location.
     pub fn with_span(mut self, span: Span, label: impl Into<String>) -> Self {
         self.primary = Some(Label {
             span,
@@ -119,7 +120,7 @@ impl Diagnostic {
         self
     }
 
-    /// Adds a related place.
+    /// Adds a related location.
     pub fn with_related_span(mut self, span: Span, label: impl Into<String>) -> Self {
         self.secondary.push(Label {
             span,
@@ -128,20 +129,20 @@ impl Diagnostic {
         self
     }
 
-    /// Sets the cure.
+    /// Sets the proposed correction.
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// Sets the cure, if there is one.
+    /// Sets the proposed correction, if there is one.
     pub fn with_optional_help(mut self, help: Option<String>) -> Self {
         self.help = help.or(self.help);
         self
     }
 }
 
-/// Findings on one source.
+/// Errors and warnings of one source.
 #[derive(Clone, Debug)]
 pub struct Diagnostics {
     source: Source,
@@ -149,24 +150,24 @@ pub struct Diagnostics {
     omitted: usize,
 }
 
-/// A finding as written for programs.
+/// Diagnostic as a record for programs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Record {
-    /// The file.
+    /// Path of the file.
     pub file: String,
-    /// Line, from 1, if there is a place.
+    /// Line, from 1, if there is a location.
     pub line: Option<usize>,
-    /// Column in characters, from 1, if there is a place.
+    /// Column in characters, from 1, if there is a location.
     pub column: Option<usize>,
-    /// Line of the first character after the place.
+    /// Line of the first character after the location.
     pub end_line: Option<usize>,
-    /// Column of the first character after the place.
+    /// Column of the first character after the location.
     pub end_column: Option<usize>,
     /// Severity.
     pub severity: Severity,
-    /// The cause.
+    /// Cause.
     pub message: String,
-    /// The cure, if known.
+    /// Proposed correction, if known.
     pub help: Option<String>,
 }
 
@@ -180,24 +181,24 @@ impl Diagnostics {
         }
     }
 
-    /// Returns a list of one finding.
+    /// Returns a list with one diagnostic.
     pub fn from_one(source: Source, diagnostic: Diagnostic) -> Self {
         let mut diagnostics = Self::new(source);
         diagnostics.push(diagnostic);
         diagnostics
     }
 
-    /// Adds a finding, or only counts it beyond [`MAX_LISTED`].
+    /// Adds a diagnostic. Beyond [`MAX_LISTED`] it is only counted.
     pub fn push(&mut self, diagnostic: Diagnostic) {
         if self.is_full() {
             self.omitted += 1;
-        // Each component of a vector repeats the same finding.
+        // An error in a vector occurs once for each component.
         } else if !self.list.contains(&diagnostic) {
             self.list.push(diagnostic);
         }
     }
 
-    /// Adds a finding that is costly to build; beyond [`MAX_LISTED`] it is counted and not built.
+    /// Adds a diagnostic that is expensive to build. Beyond [`MAX_LISTED`] it is counted but not built.
     pub fn push_with(&mut self, make: impl FnOnce() -> Diagnostic) {
         if self.is_full() {
             self.omitted += 1;
@@ -206,38 +207,38 @@ impl Diagnostics {
         }
     }
 
-    /// Adds the error, or returns the value.
+    /// Returns the value of a result, or adds its error.
     pub fn push_error<T>(&mut self, result: Result<T, Diagnostic>) -> Option<T> {
         result.map_err(|diagnostic| self.push(diagnostic)).ok()
     }
 
-    /// Returns true if further findings are only counted.
+    /// Returns true if further diagnostics are only counted.
     pub fn is_full(&self) -> bool {
         self.list.len() >= MAX_LISTED
     }
 
-    /// Returns true if there are no findings.
+    /// Returns true if there are no diagnostics.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// Returns the findings, in the order in which they were added.
+    /// Returns the diagnostics, in the order in which they were added.
     pub fn list(&self) -> &[Diagnostic] {
         &self.list
     }
 
-    /// Returns the number of findings that are only counted.
+    /// Returns the number of diagnostics that were only counted.
     pub fn omitted_count(&self) -> usize {
         self.omitted
     }
 
-    /// Returns the source of the findings.
+    /// Returns the source of the diagnostics.
     pub fn source(&self) -> &Source {
         &self.source
     }
 
-    /// Renders all findings for people: file, line and column, underlined text, cause and cure.
-    /// Unused names take one line per kind. `colour` adds terminal escapes.
+    /// Renders all diagnostics as text: file, line and column, underlined text, cause and proposed correction. The
+    /// unused names of a kind share one line. `colour` adds terminal escapes.
     pub fn render(&self, colour: bool) -> String {
         let renderer = if colour {
             Renderer::styled()
@@ -261,7 +262,7 @@ impl Diagnostics {
             parts.push(format!("and {} more", self.omitted));
         }
         let text = parts.join("\n\n");
-        // With colour, the renderer escapes the text itself and adds its own escapes.
+        // If colour is used, the renderer escapes the text and adds terminal escapes.
         match colour {
             true => text,
             false => escape_hidden(&text).into_owned(),
@@ -300,7 +301,7 @@ impl Diagnostics {
         ))
     }
 
-    /// Returns the lines and columns of spans, each file named once in a row.
+    /// Returns the lines and columns of spans. Consecutive spans in one file name the file once.
     fn places(&self, spans: &[Span]) -> String {
         let mut text = String::new();
         let mut named = None;
@@ -317,7 +318,7 @@ impl Diagnostics {
         text
     }
 
-    /// Returns all findings for programs.
+    /// Returns all diagnostics as records for programs.
     pub fn records(&self) -> Vec<Record> {
         self.list.iter().map(|d| self.record(d)).collect()
     }
@@ -359,8 +360,8 @@ impl Diagnostics {
         }
     }
 
-    /// Returns one snippet with all labels in the file of the primary one, and one for each label
-    /// in another file.
+    /// Returns one snippet with all labels in the file of the primary label, and one snippet for each label in
+    /// another file.
     fn snippets<'a>(
         &'a self,
         primary: &'a Label,
@@ -397,7 +398,7 @@ struct Mark<'a> {
     text: &'a str,
 }
 
-/// Returns a snippet of the lines that contain all marks, which are in one file.
+/// Returns a snippet of the lines that contain all marks. The marks are in one file.
 fn snippet(marks: Vec<Mark<'_>>) -> Snippet<'_, annotate_snippets::Annotation<'_>> {
     let file = marks[0].file;
     let whole = marks
@@ -420,8 +421,8 @@ fn snippet(marks: Vec<Mark<'_>>) -> Snippet<'_, annotate_snippets::Annotation<'_
         .annotations(annotations)
 }
 
-/// Returns the lines that contain a span, and the number of the first line. Rendering time grows
-/// with the lines given.
+/// Returns the lines that contain a span, and the number of the first line. Only these lines are passed to the
+/// renderer, because its time grows with their number.
 fn excerpt(file: &Source, span: Span) -> (std::ops::Range<usize>, usize) {
     let text = &file.text;
     let whole = clamp(text, span);
@@ -465,7 +466,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn finding_shows_place_text_and_help() {
+    fn error_shows_location_text_and_help() {
         let source = Source::new("arm.toml", "[a]\nb = \"k_s*x\"\n");
         let diagnostic = Diagnostic::error("unknown name `k_s`")
             .with_span(Span::new(9, 12), "not declared")
@@ -484,7 +485,7 @@ mod tests {
     }
 
     #[test]
-    fn findings_without_a_place_name_the_file() {
+    fn errors_without_a_location_name_the_file() {
         let source = Source::new("arm.toml", "");
         let diagnostics = Diagnostics::from_one(source, Diagnostic::error("no such file"));
         assert!(diagnostics.render(false).contains("arm.toml"));
@@ -504,7 +505,7 @@ mod tests {
     }
 
     #[test]
-    fn findings_beyond_the_limit_are_counted() {
+    fn diagnostics_beyond_the_limit_are_counted() {
         let mut diagnostics = Diagnostics::new(Source::new("arm.toml", "a"));
         for number in 0..1000 {
             let message = format!("wrong {number}");
@@ -515,7 +516,7 @@ mod tests {
     }
 
     #[test]
-    fn repeated_finding_is_listed_once() {
+    fn repeated_error_is_listed_once() {
         let mut diagnostics = Diagnostics::new(Source::new("arm.toml", "a"));
         for place in [0, 1, 0] {
             diagnostics.push(Diagnostic::error("wrong").with_span(Span::new(place, 1), ""));
@@ -524,7 +525,7 @@ mod tests {
     }
 
     #[test]
-    fn places_outside_the_text_are_shown_at_its_end() {
+    fn locations_outside_the_text_are_shown_at_its_end() {
         let diagnostic = Diagnostic::error("odd").with_span(Span::new(900, 7), "");
         let shown = Diagnostics::from_one(Source::new("a.toml", "µ"), diagnostic).render(false);
         assert!(shown.contains("a.toml:1:2"), "{shown}");

@@ -1,5 +1,5 @@
-//! Dimension of a quantity: rational exponents of the seven SI base units. Angles are
-//! dimensionless (rad = 1). `unit` has the names and scales of units.
+//! Dimension of a quantity: rational exponents of the seven SI base units. Angles are dimensionless (rad = 1). The
+//! module `unit` contains names and scales of units.
 
 use num_rational::Ratio;
 use num_traits::{CheckedAdd, CheckedMul, CheckedSub, Zero};
@@ -10,8 +10,8 @@ pub type Exponent = Ratio<i32>;
 /// Base units, in the order of the exponents.
 const BASE: [&str; 7] = ["kg", "m", "s", "A", "K", "mol", "cd"];
 
-/// Symbols of common dimensions, by exponents of (kg, m, s, A). A torque and an energy have the
-/// same dimension, printed N m.
+/// Symbols of common dimensions, by exponents of (kg, m, s, A). A torque and an energy have the same dimension, which
+/// is printed as N m.
 const COMMON: [(&str, [i32; 4]); 24] = [
     ("N", [1, 1, -2, 0]),
     ("N m", [1, 2, -2, 0]),

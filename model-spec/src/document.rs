@@ -1,14 +1,14 @@
-//! Reads the sections of a specification from TOML to raw entries. `entries` reads one entry;
-//! names and expressions are not resolved here.
+//! Reads the sections of a specification from TOML to raw entries; `entries` reads one entry. Names and expressions
+//! are resolved later.
 
 use toml_edit::Document as Toml;
 
 use crate::control::read_controller;
 use crate::diagnostic::{Diagnostic, Diagnostics, quote};
 use crate::entries::{
-    read_body, read_coefficient, read_constraint, read_coordinate, read_definition, read_field,
-    read_force, read_frame, read_impact, read_input, read_line, read_observable, read_parameter,
-    read_point, read_sensor, read_state, term, to_name,
+    read_body, read_coefficient, read_constraint, read_coordinate, read_definition,
+    read_energy_term, read_field, read_force, read_frame, read_impact, read_input, read_line,
+    read_observable, read_parameter, read_point, read_sensor, read_state, to_name,
 };
 use crate::quantity::{Name, Quantity};
 use crate::raw::{Document, RawDrawing, RawInput};
@@ -28,20 +28,20 @@ pub fn read(source: &Source) -> Result<Document, Diagnostics> {
     let toml = Toml::parse(text)
         .map_err(|error| Diagnostics::from_one(source.clone(), grammar_error(text, &error)))?;
     if toml.as_table().is_empty() {
-        return Err(Diagnostics::from_one(source.clone(), empty()));
+        return Err(Diagnostics::from_one(source.clone(), empty_error()));
     }
     let mut reader = Reader {
         top: entries(toml.as_table(), text),
         found: Diagnostics::new(source.clone()),
     };
-    let document = reader.document();
+    let document = reader.read_document();
     match document {
         Some(document) if reader.found.is_empty() => Ok(document),
         _ => Err(reader.found),
     }
 }
 
-fn empty() -> Diagnostic {
+fn empty_error() -> Diagnostic {
     Diagnostic::error("the specification is empty")
         .with_span(Span::new(0, 0), "expected sections")
         .with_help("write [model] with a name, [coordinates] (or [fields.NAME]) and [kinetic]")
@@ -53,9 +53,9 @@ struct Reader<'d> {
 }
 
 impl<'d> Reader<'d> {
-    fn document(&mut self) -> Option<Document> {
-        self.refuse_unknown_sections();
-        let model = self.model();
+    fn read_document(&mut self) -> Option<Document> {
+        self.reject_unknown_sections();
+        let model = self.read_model();
         let mut document = Document {
             parameters: self.collect("parameters", read_parameter),
             coordinates: self.collect("coordinates", read_coordinate),
@@ -68,10 +68,10 @@ impl<'d> Reader<'d> {
             vectors: Vec::new(),
             frames: self.collect("frames", read_frame),
             bodies: self.collect("bodies", read_body),
-            gravity: self.gravity(),
-            kinetic: self.collect("kinetic", term),
-            potential: self.collect("potential", term),
-            dissipation: self.collect("dissipation", term),
+            gravity: self.read_gravity(),
+            kinetic: self.collect("kinetic", read_energy_term),
+            potential: self.collect("potential", read_energy_term),
+            dissipation: self.collect("dissipation", read_energy_term),
             forces: self.collect("forces", read_force),
             constraints: self.collect("constraints", read_constraint),
             impacts: self.collect("impacts", read_impact),
@@ -79,34 +79,34 @@ impl<'d> Reader<'d> {
             coefficients: self.collect("coefficients", read_coefficient),
             sensors: self.collect("sensors", read_sensor),
             controllers: self.collect("controllers", read_controller),
-            drawing: self.drawing(),
+            drawing: self.read_drawing(),
             name: model.as_ref().map(|(name, _)| name.clone())?,
             title: model.map(|(_, title)| title).unwrap_or_default(),
         };
-        self.refuse_missing_sections(&document);
+        self.reject_missing_sections(&document);
         document.declare_stabilisation_rate();
         Some(document)
     }
 
-    fn section(&self, name: &str) -> Option<&Entry<'d>> {
+    fn find_section(&self, name: &str) -> Option<&Entry<'d>> {
         self.top.iter().find(|entry| entry.name.text == name)
     }
 
-    fn refuse_unknown_sections(&mut self) {
+    fn reject_unknown_sections(&mut self) {
         for entry in &self.top {
             let name = entry.name.text.as_str();
             if name == "order" {
-                self.found.push(misplaced_order(
+                self.found.push(misplaced_order_error(
                     &entry.name,
-                    self.section("fields").is_some(),
+                    self.find_section("fields").is_some(),
                 ));
             } else if sections::SECTIONS.names().all(|known| known != name) {
-                self.found.push_with(|| unknown_section(&entry.name));
+                self.found.push_with(|| unknown_section_error(&entry.name));
             }
         }
     }
 
-    fn refuse_missing_sections(&mut self, document: &Document) {
+    fn reject_missing_sections(&mut self, document: &Document) {
         let mut missing = Vec::new();
         if document.coordinates.is_empty() && document.fields.is_empty() {
             missing.push("[coordinates] (or [fields.NAME])");
@@ -127,8 +127,8 @@ impl<'d> Reader<'d> {
         }
     }
 
-    fn model(&mut self) -> Option<(Name, String)> {
-        let Some(entry) = self.section("model").cloned() else {
+    fn read_model(&mut self) -> Option<(Name, String)> {
+        let Some(entry) = self.find_section("model").cloned() else {
             let help = "begin with [model] and name = \"my_machine\"";
             self.found.push(
                 Diagnostic::error("the section [model] is missing")
@@ -142,8 +142,9 @@ impl<'d> Reader<'d> {
         let is_order = |entry: &Entry<'d>| entry.name.text == "order";
         let (orders, entries): (Vec<_>, Vec<_>) = entries.into_iter().partition(is_order);
         for order in orders {
-            let has_fields = self.section("fields").is_some();
-            self.found.push(misplaced_order(&order.name, has_fields));
+            let has_fields = self.find_section("fields").is_some();
+            self.found
+                .push(misplaced_order_error(&order.name, has_fields));
         }
         let record = Record::new(entry.name, entries, &sections::MODEL, &mut self.found);
         let name = record.required("name", Entry::written, &mut self.found)?;
@@ -152,13 +153,13 @@ impl<'d> Reader<'d> {
         Some((name, title))
     }
 
-    fn gravity(&mut self) -> Option<Vec<Quantity>> {
-        let model = self.section("model")?.table("{ }").ok()?;
+    fn read_gravity(&mut self) -> Option<Vec<Quantity>> {
+        let model = self.find_section("model")?.table("{ }").ok()?;
         let entry = model
             .into_iter()
             .find(|entry| entry.name.text == "gravity")?;
-        // A model without any energy gets a more general finding.
-        if self.section("bodies").is_none() && self.section("kinetic").is_some() {
+        // If the model has no energy, a more general error is reported.
+        if self.find_section("bodies").is_none() && self.find_section("kinetic").is_some() {
             self.found.push(
                 Diagnostic::error("`gravity` has no effect: the model has no [bodies]")
                     .with_span(entry.name.span, "it acts only on bodies")
@@ -175,29 +176,29 @@ impl<'d> Reader<'d> {
         section: &str,
         read: impl Fn(&Entry<'d>, &mut Diagnostics) -> Option<T>,
     ) -> Vec<T> {
-        match self.section(section).cloned() {
-            Some(table) => self.entries(&table, section, read),
+        match self.find_section(section).cloned() {
+            Some(table) => self.read_entries(&table, section, read),
             None => Vec::new(),
         }
     }
 
-    fn drawing(&mut self) -> Option<RawDrawing> {
-        let entry = self.section("drawing").cloned()?;
+    fn read_drawing(&mut self) -> Option<RawDrawing> {
+        let entry = self.find_section("drawing").cloned()?;
         let record = Record::read(&entry, &sections::DRAWING, &mut self.found)?;
         let mut drawing = RawDrawing {
             points: Vec::new(),
             lines: Vec::new(),
         };
         if let Some(table) = record.get("points") {
-            drawing.points = self.entries(table, "drawing.points", read_point);
+            drawing.points = self.read_entries(table, "drawing.points", read_point);
         }
         if let Some(table) = record.get("lines") {
-            drawing.lines = self.entries(table, "drawing.lines", read_line);
+            drawing.lines = self.read_entries(table, "drawing.lines", read_line);
         }
         Some(drawing)
     }
 
-    fn entries<T>(
+    fn read_entries<T>(
         &mut self,
         table: &Entry<'d>,
         section: &str,
@@ -223,7 +224,7 @@ impl<'d> Reader<'d> {
     }
 }
 
-fn unknown_section(name: &Name) -> Diagnostic {
+fn unknown_section_error(name: &Name) -> Diagnostic {
     let known: Vec<&str> = sections::SECTIONS.names().collect();
     let listed = format!("the sections are {}", known.join(", "));
     Diagnostic::error(format!("unknown section {}", quote(&name.text)))
@@ -231,7 +232,7 @@ fn unknown_section(name: &Name) -> Diagnostic {
         .with_help(did_you_mean(&name.text, known).unwrap_or(listed))
 }
 
-fn misplaced_order(name: &Name, has_fields: bool) -> Diagnostic {
+fn misplaced_order_error(name: &Name, has_fields: bool) -> Diagnostic {
     let diagnostic = if has_fields {
         Diagnostic::error("`order` does not belong here").with_help("move it to [fields.NAME]")
     } else {

@@ -34,12 +34,12 @@ pub fn read_parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawP
         origin: record.text("source", found),
         min: record.number("min", found),
         max: record.number("max", found),
-        uncertainty: uncertainty(&record, found),
+        uncertainty: read_uncertainty(&record, found),
         value,
     })
 }
 
-fn uncertainty(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawUncertainty> {
+fn read_uncertainty(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawUncertainty> {
     let entry = record.get("uncertainty")?;
     let record = Record::read(entry, &sections::UNCERTAINTY, found)?;
     let given: Vec<&Entry<'_>> = sections::UNCERTAINTY
@@ -81,22 +81,22 @@ pub fn read_coordinate(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Raw
     let record = Record::read(entry, &sections::COORDINATE, found)?;
     Some(RawCoordinate {
         name: entry.name.clone(),
-        unit: required_unit(&record, found),
+        unit: read_required_unit(&record, found),
         doc: record.text("doc", found),
         initial: record.quantity("initial", found),
         initial_rate: record.quantity("initial_rate", found),
-        range: range(&record, found),
+        range: read_range(&record, found),
     })
 }
 
 /// Reads the `range` of a coordinate, an input or a state, if it has one.
-fn range(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawRange> {
+fn read_range(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawRange> {
     let [low, high] = record.optional("range", Entry::pair, found)?;
     let span = record.get("range")?.span();
     Some(RawRange { low, high, span })
 }
 
-fn required_unit(record: &Record<'_>, found: &mut Diagnostics) -> Option<StringValue> {
+fn read_required_unit(record: &Record<'_>, found: &mut Diagnostics) -> Option<StringValue> {
     record.required("unit", Entry::written, found)
 }
 
@@ -104,16 +104,16 @@ pub fn read_input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawInput
     let record = Record::read(entry, &sections::INPUT, found)?;
     Some(RawInput {
         name: entry.name.clone(),
-        unit: required_unit(&record, found),
+        unit: read_required_unit(&record, found),
         doc: record.text("doc", found),
-        range: range(&record, found),
+        range: read_range(&record, found),
         rate_order: 0,
-        rates: rates(&record, found),
+        rates: read_given_rates(&record, found),
     })
 }
 
 /// Reads the number of given rates of an input: 0 or 2, because an energy needs both.
-fn rates(record: &Record<'_>, found: &mut Diagnostics) -> u8 {
+fn read_given_rates(record: &Record<'_>, found: &mut Diagnostics) -> u8 {
     let Some((number, span)) = record.optional("rates", Entry::integer, found) else {
         return 0;
     };
@@ -131,14 +131,14 @@ fn rates(record: &Record<'_>, found: &mut Diagnostics) -> u8 {
 
 pub fn read_state(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawState> {
     let record = Record::read(entry, &sections::STATE, found)?;
-    let unit = required_unit(&record, found);
+    let unit = read_required_unit(&record, found);
     let rate = record.required("rate", Entry::quantity, found)?;
     Some(RawState {
         name: entry.name.clone(),
         unit,
         rate,
         initial: record.quantity("initial", found),
-        range: range(&record, found),
+        range: read_range(&record, found),
         doc: record.text("doc", found),
     })
 }
@@ -172,7 +172,7 @@ pub fn read_impact(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawImpa
     })
 }
 
-/// Reads `friction` and `slip` of an impact, which need each other. Returns `None` after an error.
+/// Reads `friction` and `slip` of an impact. Each requires the other. Returns `None` after an error.
 fn read_contact_friction(
     record: &Record<'_>,
     found: &mut Diagnostics,
@@ -226,7 +226,7 @@ pub fn read_field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField
     let order = record.required("order", Entry::integer, found);
     Some(RawField {
         name: entry.name.clone(),
-        unit: required_unit(&record, found),
+        unit: read_required_unit(&record, found),
         doc: record.text("doc", found),
         along: to_name(along?),
         from: from?,
@@ -279,15 +279,15 @@ fn parse_basis(written: &StringValue) -> Result<Basis, Diagnostic> {
 type Read<'d> = fn(&Entry<'d>) -> Result<Quantity, Diagnostic>;
 
 /// Reads an entry of an energy or of the dissipation.
-pub fn term(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
-    named_expression(entry, Entry::quantity, found)
+pub fn read_energy_term(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
+    read_named_expression(entry, Entry::quantity, found)
 }
 
 pub fn read_definition(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
-    named_expression(entry, Entry::scalar_or_vector, found)
+    read_named_expression(entry, Entry::scalar_or_vector, found)
 }
 
-fn named_expression<'d>(
+fn read_named_expression<'d>(
     entry: &Entry<'d>,
     read: Read<'d>,
     found: &mut Diagnostics,
@@ -393,13 +393,16 @@ pub fn read_coefficient(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Ra
     let record = Record::read(entry, &sections::COEFFICIENT, found)?;
     Some(RawCoefficient {
         name,
-        kind: coefficient_kind(&record, found)?,
+        kind: read_coefficient_kind(&record, found)?,
         each: record.written("each", found),
         doc: record.text("doc", found),
     })
 }
 
-fn coefficient_kind(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawCoefficientKind> {
+fn read_coefficient_kind(
+    record: &Record<'_>,
+    found: &mut Diagnostics,
+) -> Option<RawCoefficientKind> {
     if let Some(value) = record.get("value") {
         let others = ["of", "by", "times"];
         if let Some(other) = others.iter().find_map(|key| record.get(key)) {

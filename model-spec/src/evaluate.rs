@@ -6,8 +6,8 @@ use crate::function::call;
 use crate::interval::Interval;
 use crate::model::{Expr, ExprKind, Model};
 
-/// Evaluates an expression of parameters at their values in SI. Returns NaN if it contains
-/// anything else; expressions of parameters in a checked model do not.
+/// Evaluates an expression of parameters at their values in SI. Returns NaN if it contains other quantities; a
+/// checked model has no such expressions of parameters.
 pub fn evaluate(expr: &Expr, parameters: &[f64]) -> f64 {
     evaluate_with(expr, &|leaf| parameter(leaf, parameters))
 }
@@ -32,8 +32,8 @@ fn parameter(leaf: &ExprKind, parameters: &[f64]) -> f64 {
     }
 }
 
-/// Evaluates an expression whose leaves, other than numbers, have the values of `leaf`, in SI. Rates,
-/// integrals and values of fields are leaves too.
+/// Evaluates an expression. `leaf` returns the values of leaves other than numbers, in SI. Rates, integrals and
+/// values of fields are leaves, too.
 pub fn evaluate_with(expr: &Expr, leaf: &dyn Fn(&ExprKind) -> f64) -> f64 {
     match &expr.kind {
         ExprKind::Number(value) => *value,
@@ -54,7 +54,7 @@ pub fn evaluate_with(expr: &Expr, leaf: &dyn Fn(&ExprKind) -> f64) -> f64 {
     }
 }
 
-/// Returns the bounds of an expression whose leaves, other than numbers, have the bounds of `leaf`, in SI.
+/// Returns the bounds of an expression. `leaf` returns the bounds of leaves other than numbers, in SI.
 pub fn enclose_with(expr: &Expr, leaf: &dyn Fn(&ExprKind) -> Interval) -> Interval {
     let number = |value: f64| Interval {
         low: value,

@@ -1,12 +1,12 @@
-//! Specifications that extend others: the key `extends` of `[model]`. All files become one text,
-//! with one line for each entry; the source keeps the file and position of every part.
+//! Specifications that extend others: the key `extends` of `[model]`. All files are merged to one text with one line
+//! per entry. The source records the file and position of every part.
 
 use std::path::{Component, Path, PathBuf};
 
 use toml_edit::{Document, Item, TableLike, Value};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, quote};
-use crate::source::{Copied, Source};
+use crate::source::{CopiedPart, Source};
 use crate::span::Span;
 use crate::specification_file::read_text;
 use crate::suggest::did_you_mean;
@@ -20,10 +20,10 @@ const MAX_FILES: usize = 16;
 #[derive(Clone)]
 enum Piece {
     /// Bytes of a file, by its index.
-    Copied(usize, Span),
-    /// Another text that stands for bytes of a file.
+    CopiedPart(usize, Span),
+    /// Text that replaces bytes of a file.
     Rewritten(usize, Span, String),
-    /// Punctuation.
+    /// Punctuation between pieces.
     Glue(&'static str),
 }
 
@@ -36,7 +36,7 @@ struct Section {
 
 enum Content {
     Entries(Vec<NamedEntry>),
-    /// Not a table: an error of the reader, or `false`.
+    /// Value that is not a table: `false`, or an error that the reader reports.
     Value(EntryValue),
 }
 
@@ -52,18 +52,17 @@ struct EntryValue {
     removal: Option<Span>,
 }
 
-/// Returns the source with everything that its file extends, or the source itself if it has no
-/// key `extends`.
+/// Merges a source with all files that it extends. A source without the key `extends` is returned unchanged.
 ///
 /// # Errors
-/// A source without a file; a file that cannot be read or is no TOML; a chain that is too long or
-/// returns to one of its files; a removed entry that does not exist.
+/// The source has no file, a file cannot be read or is not TOML, the chain of extensions is too long or cyclic, or a
+/// removed entry does not exist.
 pub fn merge(source: Source) -> Result<Source, Diagnostics> {
     if !source.text.contains("extends") {
         return Ok(source);
     }
     let Ok(document) = Document::parse(&*source.text) else {
-        // The reader reports errors of the grammar.
+        // The reader reports syntax errors.
         return Ok(source);
     };
     let Some(extends) = extends_entry(&document, &source.text) else {
@@ -93,7 +92,7 @@ fn extends_entry<'d>(document: &'d Document<&str>, text: &'d str) -> Option<Entr
     keys.find(|entry| entry.name.text == "extends")
 }
 
-/// Files read so far, the first one being the extended specification.
+/// Files read so far; the first file is the specification that extends the others.
 #[derive(Default)]
 struct Chain {
     files: Vec<Source>,
@@ -102,8 +101,8 @@ struct Chain {
 }
 
 impl Chain {
-    /// Returns the sections of a file with those that it extends. `folder` is the folder of the
-    /// file, relative to the first one.
+    /// Returns the sections of a file, merged with the sections of the files that it extends. `folder` is the folder
+    /// of the file, relative to the first file.
     fn sections(
         &mut self,
         source: Source,
@@ -294,7 +293,7 @@ impl FileReader<'_> {
     fn key(&self, table: &dyn TableLike, name: &str) -> Piece {
         let span = table.key(name).and_then(|key| key.span());
         let span = span.map_or_else(Span::default, |range| Span::new(range.start, range.end));
-        Piece::Copied(self.file, span)
+        Piece::CopiedPart(self.file, span)
     }
 
     fn value(&self, item: &Item, section: &str) -> EntryValue {
@@ -312,7 +311,10 @@ impl FileReader<'_> {
         match item {
             Item::Value(Value::InlineTable(table)) if has_table => self.table(table, section),
             Item::Value(value) => match value.span() {
-                Some(range) => vec![Piece::Copied(self.file, Span::new(range.start, range.end))],
+                Some(range) => vec![Piece::CopiedPart(
+                    self.file,
+                    Span::new(range.start, range.end),
+                )],
                 None => vec![Piece::Rewritten(
                     self.file,
                     Span::default(),
@@ -360,7 +362,7 @@ impl FileReader<'_> {
 #[derive(Default)]
 struct Writer {
     text: String,
-    parts: Vec<Copied>,
+    parts: Vec<CopiedPart>,
 }
 
 impl Writer {
@@ -377,7 +379,7 @@ impl Writer {
         let start = self.text.len();
         let (file, from) = match piece {
             Piece::Glue(text) => return self.text.push_str(text),
-            Piece::Copied(file, span) => {
+            Piece::CopiedPart(file, span) => {
                 let text = files[*file].text.get(span.start..span.end);
                 self.text.push_str(text.unwrap_or_default());
                 (*file, *span)
@@ -388,6 +390,6 @@ impl Writer {
             }
         };
         let place = Span::new(start, self.text.len());
-        self.parts.push(Copied { place, file, from });
+        self.parts.push(CopiedPart { place, file, from });
     }
 }

@@ -1,8 +1,8 @@
-//! Operators, words and functions of other languages, with their equivalents here.
+//! Operators, words and functions of other languages, with their equivalents in a specification.
 
 use crate::suggest::did_you_mean;
 
-/// Spellings in other languages, and the equivalent here.
+/// Spellings in other languages, and the equivalent in a specification.
 type Foreign = (&'static [&'static str], &'static str);
 
 const OPERATORS: [Foreign; 12] = [
@@ -42,7 +42,7 @@ const OPERATORS: [Foreign; 12] = [
     (&["**", "^^"], POWER),
 ];
 
-/// Words between or before operands.
+/// Words that are operators in other languages.
 const WORDS: [Foreign; 4] = [
     (&["and"], AND_HELP),
     (&["or"], OR_HELP),
@@ -77,7 +77,7 @@ const FUNCTIONS: [Foreign; 10] = [
 /// Names of quantities.
 const NAMES: [Foreign; 1] = [(&["time", "Time"], "write `t` for the time")];
 
-/// Parts before and after the name of a quantity that denote its first rate.
+/// Prefix and suffix of the name of a quantity that denote its first rate.
 const RATES: [(&str, &str); 13] = [
     ("", "_dot"),
     ("", "dot"),
@@ -94,7 +94,7 @@ const RATES: [(&str, &str); 13] = [
     ("der(", ")"),
 ];
 
-/// Parts before and after the name of a quantity that denote its second rate.
+/// Prefix and suffix of the name of a quantity that denote its second rate.
 const SECOND_RATES: [(&str, &str); 9] = [
     ("", "_ddot"),
     ("", "ddot"),
@@ -165,7 +165,7 @@ pub fn find_name_equivalent(name: &str) -> Option<&'static str> {
     help(NAMES.iter(), name)
 }
 
-/// Returns the equivalent of a word between or before operands.
+/// Returns the equivalent of a word that is an operator in another language.
 pub fn find_word_equivalent(word: &str) -> Option<&'static str> {
     help(WORDS.iter(), word)
 }

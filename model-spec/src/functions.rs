@@ -11,15 +11,15 @@ enum Property {
     Even,
     /// f(-x) = -f(x).
     Odd,
-    /// Switches between sides without a jump.
+    /// Continuous, with a kink at a switching surface.
     Kink,
-    /// Constant on each side.
+    /// Jump at a switching surface; constant on each side.
     Step,
-    /// Jump at the cut of an angle.
+    /// Jump at the branch cut of an angle.
     Cut,
 }
 
-/// Name, function, names of the arguments, and properties.
+/// Name of a function in a specification, function, names of its arguments, and its properties.
 type Entry = (
     &'static str,
     Function,
@@ -53,8 +53,8 @@ const FUNCTIONS: [Entry; 20] = [
 /// Forms that are not functions of scalars.
 pub const FORMS: [&str; 5] = ["dot", "diff", "at", "integral", "sum"];
 
-/// Functions of vectors and rotations. They are expanded to scalars before names are resolved,
-/// so they reserve no name.
+/// Functions of vectors and rotations. They are expanded to scalars before names are resolved, so their names are not
+/// reserved.
 pub const VECTOR_FUNCTIONS: [&str; 7] = [
     "cross",
     "norm",
@@ -68,7 +68,7 @@ pub const VECTOR_FUNCTIONS: [&str; 7] = [
 /// Constants and quantities of every model.
 const CONSTANTS: [&str; 4] = ["t", "pi", "energy", "power"];
 
-/// Keywords of Rust and C99: names become identifiers of emitted code.
+/// Keywords of Rust and C99. Names must differ from them because they become identifiers of emitted code.
 const KEYWORDS: [&str; 73] = [
     "abstract", "as", "async", "auto", "await", "become", "box", "break", "case", "char", "const",
     "continue", "crate", "default", "do", "double", "dyn", "else", "enum", "extern", "false",
@@ -97,12 +97,12 @@ impl Function {
         self.entry().map_or(&[], |(_, _, arguments, _)| arguments)
     }
 
-    /// Returns true if the function switches between sides.
+    /// Returns true if the function has a switching surface.
     pub fn has_switches(self) -> bool {
         self.has(Kink) || self.has(Step)
     }
 
-    /// Returns true if the value of the function jumps: at its surface, or at the cut of an angle.
+    /// Returns true if the value of the function jumps at its switching surface or at the branch cut of an angle.
     pub fn has_jump(self) -> bool {
         self.has(Step) || self.has(Cut)
     }
@@ -136,7 +136,7 @@ pub fn callable_names() -> impl Iterator<Item = &'static str> {
     FUNCTIONS.iter().map(|(name, ..)| *name).chain(FORMS)
 }
 
-/// Returns the reason that a word is reserved, as the rest of a sentence.
+/// Returns the reason why a word is reserved, worded to follow the word in a sentence.
 pub fn reservation_reason(word: &str) -> Option<&'static str> {
     if callable_names().any(|name| name == word) {
         Some("is a function of the language")

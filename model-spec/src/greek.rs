@@ -28,7 +28,7 @@ const GREEK: [(&str, &str); 24] = [
     ("ωΩ", "omega"),
 ];
 
-/// Returns a name for a name with Greek letters; `None` if it contains none.
+/// Returns a name with its Greek letters spelled out in English; `None` if it contains no Greek letter.
 pub(crate) fn spell_greek(name: &str) -> Option<String> {
     let spelled = name.chars().map(|letter| {
         let mut greek = GREEK.iter();

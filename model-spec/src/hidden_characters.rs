@@ -1,10 +1,9 @@
-//! Escapes control characters, and characters that change the writing direction, in text for a
-//! terminal or a page.
+//! Escapes control characters and bidirectional control characters in text for a terminal or a page.
 
 use std::borrow::Cow;
 
-/// Returns true for a control character other than line feed and tab, and for a character that
-/// changes the writing direction. Printed as they are, they can hide or forge text.
+/// Returns true for a control character other than line feed and tab, and for a bidirectional control character. If
+/// they are printed unescaped, they can hide or forge text.
 pub fn is_hidden(letter: char) -> bool {
     let is_directional = matches!(
         letter,
@@ -15,17 +14,16 @@ pub fn is_hidden(letter: char) -> bool {
 
 /// Writes hidden characters as `\u{202e}`.
 pub fn escape_hidden(text: &str) -> Cow<'_, str> {
-    escaped(text, |letter| format!("\\u{{{:x}}}", u32::from(letter)))
+    escape_with(text, |letter| format!("\\u{{{:x}}}", u32::from(letter)))
 }
 
-/// Writes hidden characters as `\u202e`, which strings of JSON and quoted strings of TOML
-/// allow.
+/// Writes hidden characters as `\u202e`, an escape of strings in JSON and TOML.
 pub fn escape_hidden_in_strings(text: &str) -> Cow<'_, str> {
     // All hidden characters have four hexadecimal digits.
-    escaped(text, |letter| format!("\\u{:04x}", u32::from(letter)))
+    escape_with(text, |letter| format!("\\u{:04x}", u32::from(letter)))
 }
 
-fn escaped(text: &str, escape: impl Fn(char) -> String) -> Cow<'_, str> {
+fn escape_with(text: &str, escape: impl Fn(char) -> String) -> Cow<'_, str> {
     if !text.contains(is_hidden) {
         return Cow::Borrowed(text);
     }

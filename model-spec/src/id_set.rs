@@ -1,4 +1,4 @@
-//! Sets of small numbers as bits: a union costs one operation per 64 numbers.
+//! Set of small numbers, stored as bits. A union needs one operation per 64 numbers.
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct IdSet {

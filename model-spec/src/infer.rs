@@ -1,6 +1,6 @@
-//! Infers the unit of an expression. Literals are dimensionless, and 0 fits any unit; a product
-//! with the factor 0 has the unit of the other factors. Summands and compared quantities need
-//! equal units, functions such as sin need pure numbers.
+//! Infers the unit of an expression. Literals are dimensionless, except that 0 has any unit. A product with the
+//! factor 0 has the unit of the other factors. Summands and compared quantities must have equal units; functions such
+//! as sin need pure numbers.
 
 use num_rational::Ratio;
 
@@ -10,7 +10,7 @@ use crate::dimension::{Dimension, Exponent};
 use crate::model::{Expr, ExprKind, Function, Model};
 use crate::span::Span;
 
-/// Unit of an expression; `None` for 0, which fits any unit.
+/// Unit of an expression; `None` for 0, which has any unit.
 pub type InferredUnit = Option<Dimension>;
 
 pub struct Inference<'m> {
@@ -21,7 +21,7 @@ pub struct Inference<'m> {
 }
 
 impl Inference<'_> {
-    /// Returns the unit of the factor of `by` in the acceleration of `of`, times `times`.
+    /// Returns the unit of a coefficient: the factor of `by` in the acceleration of `of`, multiplied by `times`.
     pub fn factor(
         &self,
         of: &Expr,
@@ -79,7 +79,7 @@ impl Inference<'_> {
             }
             ExprKind::At {
                 value, position, ..
-            } => self.at(value, position),
+            } => self.infer_at(value, position),
             ExprKind::Integral { integrand, .. } => {
                 let along = Some(Dimension::LENGTH);
                 scale_unit(self.infer(integrand)?, along, Dimension::multiply)
@@ -87,12 +87,14 @@ impl Inference<'_> {
             }
             ExprKind::Sum { summand, .. } => self.infer(summand),
             ExprKind::Negate(operand) => self.infer(operand),
-            ExprKind::Binary(operator, left, right) => self.binary(expr, *operator, left, right),
-            ExprKind::Call(function, arguments) => self.call(expr, *function, arguments),
+            ExprKind::Binary(operator, left, right) => {
+                self.infer_binary(expr, *operator, left, right)
+            }
+            ExprKind::Call(function, arguments) => self.infer_call(expr, *function, arguments),
         }
     }
 
-    fn at(&self, value: &Expr, position: &Expr) -> Result<InferredUnit, Diagnostic> {
+    fn infer_at(&self, value: &Expr, position: &Expr) -> Result<InferredUnit, Diagnostic> {
         let place = self.infer(position)?;
         match place {
             Some(place) if place != Dimension::LENGTH => {
@@ -108,7 +110,7 @@ impl Inference<'_> {
         }
     }
 
-    fn binary(
+    fn infer_binary(
         &self,
         whole: &Expr,
         operator: BinaryOperator,
@@ -126,17 +128,16 @@ impl Inference<'_> {
                     .ok_or_else(|| unit_overflow_error(whole.span))
             }
             BinaryOperator::Divide => match self.infer(right)? {
-                // `constants` reports the division by 0.
+                // The module `constants` reports a division by 0.
                 None => Ok(None),
                 by => combine_units(inferred, by, Dimension::divide)
                     .ok_or_else(|| unit_overflow_error(whole.span)),
             },
-            BinaryOperator::Power => self.power(inferred, left, right),
+            BinaryOperator::Power => self.infer_power(inferred, left, right),
         }
     }
 
-    /// Suggests the missing factor between the wrong unit of expressions and the expected one, and names parameters
-    /// in them without a unit.
+    /// Proposes a factor that would correct the unit of expressions, and names parameters in them that have no unit.
     pub fn describe_cure(
         &self,
         wrong: &[&Expr],
@@ -204,7 +205,7 @@ impl Inference<'_> {
         }
     }
 
-    fn power(
+    fn infer_power(
         &self,
         base: InferredUnit,
         left: &Expr,
@@ -239,7 +240,7 @@ impl Inference<'_> {
         }
     }
 
-    fn call(
+    fn infer_call(
         &self,
         whole: &Expr,
         function: Function,
@@ -353,8 +354,8 @@ fn unit_overflow_error(span: Span) -> Diagnostic {
         .with_span(span, "exponent too large")
 }
 
-/// Returns a number in an expression that probably has a unit: one that is not a multiple of 1/2, or any but 1 if the
-/// whole expression `is_number`.
+/// Returns a number in an expression that probably should have a unit: a number that is not a multiple of 1/2 or, if
+/// the whole expression `is_number`, any number other than 1.
 fn find_measured_number(expr: &Expr, is_number: bool) -> Option<f64> {
     let mut found = None;
     expr.visit(&mut |part| {

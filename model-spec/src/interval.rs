@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::function::{Function, call};
 
-/// Closed interval; the ends may be infinite.
+/// Closed interval. Its ends may be infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// Lower end.
@@ -16,7 +16,8 @@ pub struct Interval {
 /// Relative widening of every result: a few rounding errors.
 const ROUNDING: f64 = 1e-15;
 
-/// Returns a few rounding errors of a result; at least the smallest positive number, except for an exact 0.
+/// Returns the amount by which an end is widened: a few rounding errors, and at least the smallest positive number
+/// unless the end is exactly 0.
 fn widening(end: f64) -> f64 {
     match end == 0.0 || end.is_infinite() {
         true => 0.0,
@@ -62,7 +63,7 @@ impl Interval {
 
     /// Returns the bounds of a product.
     pub fn multiply(self, other: Self) -> Self {
-        // 0 times an unbounded number is 0, and a product that underflows is not.
+        // 0 times infinity is 0 here, and a product that underflows is not 0.
         let product = |a: f64, b: f64| match a * b {
             _ if a == 0.0 || b == 0.0 => 0.0,
             product if product == 0.0 => SMALLEST.copysign(product),
@@ -123,7 +124,7 @@ impl Interval {
                 .magnitude()
                 .apply_non_decreasing((0.0, f64::INFINITY), raised),
             (true, false) => self.apply_non_decreasing((f64::NEG_INFINITY, f64::INFINITY), raised),
-            // Undefined for negative numbers.
+            // A power with such an exponent is undefined for negative numbers.
             (false, _) => self.apply_non_decreasing((0.0, f64::INFINITY), raised),
         }
     }
@@ -138,8 +139,8 @@ impl Interval {
         }
     }
 
-    /// Returns the bounds of the derivative of a smooth function of one argument, which has the bounds `value` here;
-    /// `None` for other functions.
+    /// Returns the bounds of the derivative of a smooth function of one argument; `None` for other functions. `value`
+    /// contains the bounds of the function.
     pub fn differentiate(self, function: Function, value: Self) -> Option<Self> {
         let number = |value: f64| Self {
             low: value,
@@ -207,7 +208,7 @@ impl Interval {
                 .apply_non_decreasing((0.0, f64::INFINITY), value),
             Function::Ln | Function::Sqrt => self.apply_non_decreasing((0.0, f64::INFINITY), value),
             Function::Abs => self.magnitude(),
-            // The value at infinity equals that of a large number.
+            // The value at infinity equals the value at any large number.
             Function::Sign | Function::Above => {
                 self.apply_non_decreasing((f64::MIN, f64::MAX), value)
             }
@@ -220,7 +221,7 @@ impl Interval {
         if width.is_nan() || width >= TAU {
             return Self::from_ends(-1.0, 1.0);
         }
-        // Rounding of the argument and of the multiple of 2 pi.
+        // The slack covers the rounding of the argument and of the multiple of 2 pi.
         let slack = 8.0 * f64::EPSILON * (1.0 + self.low.abs().max(self.high.abs()));
         let contains_angle = |angle: f64| {
             let turns = ((self.low - slack - angle) / TAU).ceil();

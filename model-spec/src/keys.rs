@@ -1,14 +1,14 @@
-//! Description of the keys of a table: the reader checks a file against it, and messages, JSON
-//! schema and reference page contain it.
+//! Description of the keys of a table. The reader checks files with it; messages, the JSON schema and the reference
+//! page are generated from it.
 
 /// Keys of a table.
 #[derive(Debug)]
 pub struct Keys {
-    /// The keys, in the order of the reference page.
+    /// Keys, in the order of the reference page.
     pub list: &'static [Key],
-    /// Sets of keys that exclude each other; an entry has one set.
+    /// Sets of keys that exclude each other. An entry has the keys of exactly one set.
     pub one_of: &'static [&'static [&'static str]],
-    /// Keys of which an entry has at least one.
+    /// Keys; an entry has at least one of them.
     pub any_of: &'static [&'static str],
     /// Kind of a value that replaces the table, if permitted.
     pub shorthand: Option<&'static str>,
@@ -25,7 +25,7 @@ pub struct Key {
     pub example: &'static str,
     /// Meaning, as a noun phrase; a condition follows a semicolon.
     pub doc: &'static str,
-    /// True if every table has it.
+    /// True if the key is required.
     pub is_required: bool,
     /// Heading of the reference page with the details; empty if there is none.
     pub heading: &'static str,
@@ -34,7 +34,7 @@ pub struct Key {
 /// Kind of a value.
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
-    /// Number, text or list, by its name in the schema.
+    /// Number, text or list, given by its name in the schema.
     Value(&'static str),
     /// Table with these keys.
     Table(&'static Keys),
@@ -64,13 +64,12 @@ impl Keys {
         self.list.iter().map(|key| key.name)
     }
 
-    /// Returns a table with the necessary keys, as an example; with the first key if none is
-    /// necessary.
+    /// Returns an example of a table: the required keys, or the first key if none is required.
     pub fn example(&self) -> String {
         self.example_with(&[])
     }
 
-    /// Returns the example with given keys and their texts instead of the example's.
+    /// Returns the example of a table in which the keys `given` have these texts.
     pub fn example_with(&self, given: &[(&str, String)]) -> String {
         let chosen = self.one_of.first().copied().unwrap_or(self.any_of);
         let text = |key: &Key| given.iter().find(|(name, _)| *name == key.name);

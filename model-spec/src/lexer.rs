@@ -66,11 +66,10 @@ impl TokenKind {
     }
 }
 
-/// Splits an expression into tokens. `place` maps a byte range of `text` to a range of the
-/// source.
+/// Splits an expression into tokens. `place` converts a byte range of `text` to a range of the source.
 ///
 /// # Errors
-/// The first character or number that is not part of the language.
+/// A character or number is not part of the language; the error is at the first one.
 pub fn tokenize(
     text: &str,
     place: impl Fn(usize, usize) -> Span,
@@ -96,17 +95,17 @@ pub fn tokenize(
             _ => first.len_utf8(),
         };
         let span = place(start, start + length);
-        let kind = token(&rest[..length], first, span)?;
+        let kind = read_token(&rest[..length], first, span)?;
         found.push(Token { kind, span });
         start += length;
     }
     Ok(found)
 }
 
-fn token(text: &str, first: char, span: Span) -> Result<TokenKind, Diagnostic> {
+fn read_token(text: &str, first: char, span: Span) -> Result<TokenKind, Diagnostic> {
     Ok(match first {
         '.' if text == "." => TokenKind::Point,
-        '0'..='9' | '.' => TokenKind::Number(number(text, span)?),
+        '0'..='9' | '.' => TokenKind::Number(read_number(text, span)?),
         'a'..='z' | 'A'..='Z' | '_' => TokenKind::Name(text.to_owned()),
         '+' => TokenKind::Plus,
         '-' => TokenKind::Minus,
@@ -161,7 +160,7 @@ fn name_length(text: &str) -> usize {
     text.bytes().take_while(|&byte| part(byte)).count()
 }
 
-/// Returns the length of digits, an optional point, and an exponent if it has digits.
+/// Returns the length of a number: digits, an optional point, and an exponent if the exponent has digits.
 fn number_length(text: &str) -> usize {
     let digits = |from: usize| {
         let rest = text.as_bytes().get(from..).unwrap_or_default();
@@ -183,7 +182,7 @@ fn number_length(text: &str) -> usize {
     length
 }
 
-fn number(text: &str, span: Span) -> Result<f64, Diagnostic> {
+fn read_number(text: &str, span: Span) -> Result<f64, Diagnostic> {
     let value: f64 = text.parse().map_err(|_| {
         Diagnostic::error(format!("{} is not a number", quote(text)))
             .with_span(span, "here")
@@ -199,7 +198,7 @@ fn number(text: &str, span: Span) -> Result<f64, Diagnostic> {
     Ok(value)
 }
 
-/// Rejects a decimal number other than 0 that is read as 0.
+/// Rejects a decimal number other than 0 that would be rounded to 0.
 pub(crate) fn check_underflow(text: &str, value: f64, span: Span) -> Result<(), Diagnostic> {
     let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
     if value == 0.0 && mantissa.bytes().any(|byte| matches!(byte, b'1'..=b'9')) {

@@ -19,17 +19,16 @@
 //!
 //! let wrong = text.replace("dot(x)", "x");
 //! let found = eomgen_model_spec::check(Source::new("oscillator.toml", wrong.as_str()));
-//! assert!(found.is_err()); // kg m^2 is no energy; the message shows where
+//! assert!(found.is_err()); // kg m^2 is not the unit of an energy; the message contains the location
 //! # Ok::<(), eomgen_model_spec::diagnostic::Diagnostics>(())
 //! ```
 //!
 //! Pipeline, one file per step: `specification_file` (text of a file), `source` (text and positions), `extension`
-//! (files that the specification extends), [`lexer`], [`parser`] (tokens to
-//! [`ast`]), `document` (TOML tables to raw entries), `names`, `expression` and `resolve`
-//! (names), `rate_order` (cycles among the rates of states), `motion` (quantities allowed in
-//! each section), `units_check` and `infer` (units of every expression), `checks`,
-//! `uncertainty` (spread of the parameters), [`model`] (the result). [`load()`] and [`check`]
-//! run all steps; [`diagnostic`] reports the findings.
+//! (files that the specification extends), [`lexer`], [`parser`] (tokens to [`ast`]), `document` (TOML tables to raw
+//! entries), `names`, `expression` and `resolve` (names), `rate_order` (cycles among the rates of states), `motion`
+//! (quantities allowed in each section), `units_check` and `infer` (units of every expression), `checks`,
+//! `uncertainty` (spread of the parameters), [`model`] (the result). [`load()`] and [`check`] run all steps;
+//! [`diagnostic`] contains their errors and warnings.
 //!
 //! Further modules: [`argument`] (names of arguments in messages), [`control`] (sampled controllers) and [`schedule`] (their times), [`mod@ids`] (indices into the lists of a model), [`rigid_tree`] (frames and
 //! bodies), [`foreign`] (usual notations of other languages), [`shape_table`] (mode shapes from a file), [`edit`] (changes that keep the comments

@@ -1,4 +1,4 @@
-//! Reads a file or a text and returns a checked model, or all findings.
+//! Reads a file or a text and returns a checked model, or all errors.
 
 use std::path::Path;
 
@@ -21,7 +21,7 @@ use crate::variant::ModelError;
 pub struct Checked {
     /// The model.
     pub model: Model,
-    /// Possible mistakes, for example unused names.
+    /// Warnings about possible mistakes, for example unused names.
     pub warnings: Diagnostics,
 }
 
@@ -33,10 +33,10 @@ pub fn load(path: &Path) -> Result<Checked, Diagnostics> {
     load_from(Path::new(""), path)
 }
 
-/// Reads and checks the specification in a file below `root`; findings show only `path`.
+/// Reads and checks the specification in a file below `root`. Messages contain only `path`.
 ///
 /// # Errors
-/// Those of [`load`].
+/// As for [`load`].
 pub fn load_from(root: &Path, path: &Path) -> Result<Checked, Diagnostics> {
     let shown = path.display().to_string();
     let file = root.join(path);
@@ -45,11 +45,11 @@ pub fn load_from(root: &Path, path: &Path) -> Result<Checked, Diagnostics> {
     check(Source::new(shown, text).in_folder(folder))
 }
 
-/// Checks a specification with everything that it extends.
+/// Checks a specification, merged with all files that it extends.
 ///
 /// # Errors
-/// All errors of a stage. The stages are: grammar and keys; names and expressions; quantities
-/// allowed in each section, inertia and units; values. A stage with errors is the last one.
+/// All errors of one stage. The stages are: grammar and keys; names and expressions; quantities allowed in each
+/// section, inertia and units; values. If a stage has errors, later stages are not run.
 pub fn check(source: Source) -> Result<Checked, Diagnostics> {
     let source = extension::merge(source)?;
     if source.text.len() as u64 > MAX_SIZE {
@@ -119,11 +119,11 @@ mod tests {
         text
     }
 
-    /// Largest number of names compared for one finding.
+    /// Largest number of names that are compared for one message.
     const NAMES: usize = 2000;
 
     #[test]
-    fn work_for_findings_is_bounded() {
+    fn number_of_compared_names_is_bounded() {
         let any = usize::MAX;
         for (section, most, line) in [
             (

@@ -1,9 +1,9 @@
-//! Checked model: every name resolved, every unit consistent. Input of the derivation;
+//! Checked model: every name is resolved and every unit is consistent. It is the input of the derivation and
 //! independent of TOML.
 //!
-//! All numbers are in coherent SI units. State of a model of order S: the coordinates in the
-//! order of the specification, each field's S modes, the rates of all these in the same order,
-//! and the first-order states.
+//! All numbers are in coherent SI units. The state of a model of order S contains the coordinates in the order of the
+//! specification, the S modes of each field, the rates of coordinates and modes in the same order, and the
+//! first-order states.
 
 use std::sync::Arc;
 
@@ -50,7 +50,7 @@ pub struct Model {
     pub title: String,
     /// Text of the specification.
     pub source: Source,
-    /// Parameters that were set, with their numbers in declared units.
+    /// Parameters that were changed, with their values in declared units.
     pub settings: Vec<(String, f64)>,
     /// Parameters in the order of the specification.
     pub parameters: Vec<Parameter>,
@@ -87,7 +87,7 @@ pub struct Model {
     pub coefficients: Vec<Coefficient>,
     /// Gain, bias and delay of measured channels.
     pub sensors: Vec<Sensor>,
-    /// Sampled controllers. They are no part of the equations.
+    /// Sampled controllers. They are not part of the equations.
     pub controllers: Vec<Controller>,
     /// Drawing of the machine, if the specification has one. Derivation and emission do not use it.
     pub drawing: Option<Drawing>,
@@ -208,7 +208,7 @@ pub struct Coordinate {
     pub span: Span,
 }
 
-/// Range of a coordinate, an input or a state; the model is not valid outside.
+/// Range of a coordinate, an input or a state. Outside the range the model is not valid.
 #[derive(Clone, Debug)]
 pub struct Range {
     /// Lower end (parameters only).
@@ -230,10 +230,9 @@ pub struct Input {
     pub doc: String,
     /// Range of validity, if given.
     pub range: Option<Range>,
-    /// Input that is the rate of this one, if given: `s_dot` for the prescribed motion s, `s_ddot`
-    /// for `s_dot`.
+    /// Input that is the rate of this input, if given: `s_dot` for the prescribed motion s, `s_ddot` for `s_dot`.
     pub rate: Option<InputId>,
-    /// Input of which this one is the rate, if any.
+    /// Input whose rate this input is, if any.
     pub rate_of: Option<InputId>,
     /// Position of the name in the text.
     pub span: Span,
@@ -269,7 +268,7 @@ pub struct State {
 /// Flexible field w(x, t) = sum over i of phi_i(x) q_i(t), x from `from` to `to`.
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// ASCII name; `w` in the paper.
+    /// ASCII name, for example `w`.
     pub name: String,
     /// Unit of the field and of its mode coordinates (phi is dimensionless).
     pub unit: Unit,
@@ -279,7 +278,7 @@ pub struct Field {
     pub from: Expr,
     /// End of the domain (parameters only).
     pub to: Expr,
-    /// The mode shapes.
+    /// Mode shapes.
     pub basis: Basis,
     /// Name of the mode coordinates: `q` gives `q_1 .. q_S`.
     pub coordinates: String,
@@ -308,10 +307,10 @@ pub enum Basis {
     /// are not orthogonal and violate the boundary conditions at the free end. In a specification:
     /// `"clamped_free_printed"`.
     ClampedFreePrinted,
-    /// Shapes from a file, with a cubic spline between its rows. They are functions of s = (x -
-    /// from)/(to - from), so another length stretches them. In a specification: `"table"`.
+    /// Shapes from a file, with a cubic spline between its rows. They are functions of s = (x - from)/(to - from), so
+    /// they are stretched if the length changes. In a specification: `"table"`.
     Table {
-        /// The shapes.
+        /// Shapes.
         table: Arc<ShapeTable>,
         /// Position of the file's name in the text.
         span: Span,
@@ -343,7 +342,7 @@ pub enum End {
     Pinned,
     /// No moment, no shear.
     Free,
-    /// No slope, no shear: the end moves across the beam without rotation.
+    /// No slope, no shear: the end moves perpendicular to the beam without rotation.
     Guided,
 }
 
@@ -395,8 +394,7 @@ pub struct Force {
     pub span: Span,
 }
 
-/// Returns the name that the specification has at `span`: for a component, the name of the
-/// vector.
+/// Returns the name that is written at `span` in the specification. For a component, this is the name of the vector.
 pub fn written_name<'n>(name: &'n str, span: Span, source: &Source) -> &'n str {
     match source.text.get(span.start..span.end) {
         Some(text) if !text.is_empty() && name.starts_with(text) => &name[..text.len()],
@@ -465,9 +463,9 @@ pub struct Observable {
     pub name: String,
     /// Value, without accelerations.
     pub value: Expr,
-    /// Set if the observable is the time derivative of another one; see [`Model::observe_rate`].
+    /// Present if the observable is the time derivative of another observable; see [`Model::observe_rate`].
     pub rate_of: Option<ObservedRate>,
-    /// Unit (coherent SI), inferred and checked against the declared one.
+    /// Unit (coherent SI), inferred and compared with the declared unit.
     pub unit: Unit,
     /// Description.
     pub doc: String,
@@ -535,7 +533,8 @@ pub struct Sensor {
 }
 
 /// Sampled controller. At the times `offset` + k `period`, k = 0, 1, ..., it computes all new states and all outputs
-/// from the values before that time. An output acts `delay` later, and is held until the next one acts.
+/// from the values before that time. An output takes effect after `delay` and is held until the next output takes
+/// effect.
 #[derive(Clone, Debug)]
 pub struct Controller {
     /// ASCII name.
@@ -546,7 +545,7 @@ pub struct Controller {
     pub period: SampleTime,
     /// Time of the first sample.
     pub offset: SampleTime,
-    /// Time between a sample and the action of its outputs.
+    /// Time between a sample and the effect of its outputs.
     pub delay: SampleTime,
     /// Quantities in the expressions.
     pub measured: Vec<MeasuredQuantity>,
@@ -561,7 +560,7 @@ pub struct Controller {
 /// Time of a controller (parameters only).
 #[derive(Clone, Debug)]
 pub struct SampleTime {
-    /// Value in `unit`; an expression without a unit of its own is in SI.
+    /// Value in `unit`. The value of an expression is in SI if no unit is declared.
     pub value: Expr,
     /// Unit of a plain number.
     pub unit: Unit,
@@ -623,9 +622,9 @@ pub enum SampledKind {
     ),
     /// Function of one or two arguments.
     Call(Function, Vec<SampledExpression>),
-    /// `clamp(x, low, high)`: x, at least low and at most high.
+    /// `clamp(x, low, high)`: x, limited to the interval from `low` to `high`.
     Clamp([Box<SampledExpression>; 3]),
-    /// `quantise(x, step)`: the multiple of step that is nearest to x; halves away from zero.
+    /// `quantise(x, step)`: the multiple of `step` that is nearest to x; halves are rounded away from zero.
     Quantise([Box<SampledExpression>; 2]),
 }
 
@@ -646,7 +645,7 @@ pub enum MeasuredQuantity {
     CoordinateRate(CoordinateId),
     /// First-order state.
     State(StateId),
-    /// Mode coordinate of a field, numbered from 1, or its rate.
+    /// Mode coordinate of a field, or its rate; modes are numbered from 1.
     Mode {
         /// Index of the field.
         field: usize,
@@ -673,14 +672,15 @@ pub struct Expr {
 }
 
 impl Model {
-    /// Returns the index of each prescribed motion among the inputs. Its rate and its second rate follow it.
+    /// Returns the index of each prescribed motion among the inputs. The next two inputs are its rate and its second
+    /// rate.
     pub fn prescribed_inputs(&self) -> impl Iterator<Item = usize> {
         let inputs = self.inputs.iter().enumerate();
         inputs.filter_map(|(place, input)| input.is_prescribed().then_some(place))
     }
 
-    /// Returns true if an expression contains the time, and otherwise only numbers, parameters and
-    /// definitions of these.
+    /// Returns true if an expression contains the time and no other quantities than numbers, parameters, and
+    /// definitions that consist of these.
     pub fn is_function_of_time(&self, expr: &Expr) -> bool {
         let (mut has_time, mut has_others) = (false, false);
         self.visit_time(expr, &mut has_time, &mut has_others);
@@ -725,7 +725,7 @@ impl Model {
 }
 
 impl Expr {
-    /// Calls `see` with this expression and all its parts, the whole before its parts.
+    /// Calls `see` with this expression, then with all its subexpressions.
     pub fn visit<'e>(&'e self, see: &mut impl FnMut(&'e Expr)) {
         see(self);
         match &self.kind {
@@ -805,7 +805,7 @@ pub enum ExprKind {
     SingleMode {
         /// Field of the mode.
         field: FieldId,
-        /// Number of the mode, from 1 on.
+        /// Number of the mode, from 1.
         mode: usize,
     },
     /// Mode shape `phi[i]` of a field, a function of the position; i as for mode coordinates.

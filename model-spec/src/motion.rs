@@ -11,32 +11,32 @@ use crate::model::{
 use crate::rate_order::{Expanded, rate_order};
 use crate::span::Span;
 
-/// Deepest expression accepted after expansion of its definitions.
+/// Largest accepted depth of an expression after expansion of its definitions.
 pub const MAX_EXPANDED_DEPTH: usize = 600;
 
 /// Returns the index of a coordinate among coordinates and fields.
-fn coordinate_number(coordinate: CoordinateId) -> usize {
+fn coordinate_index(coordinate: CoordinateId) -> usize {
     2 * coordinate.index()
 }
 
 /// Returns the index of a field among coordinates and fields.
-fn field_number(field: FieldId) -> usize {
+fn field_index(field: FieldId) -> usize {
     2 * field.index() + 1
 }
 
 #[derive(Clone, Debug, Default)]
 struct Dependencies {
-    /// Coordinates and fields that enter by value.
+    /// Coordinates and fields whose values occur.
     values: IdSet,
-    /// Coordinates and fields that enter by rate.
+    /// Coordinates and fields whose rates occur.
     rates: IdSet,
     /// Position of the first rate.
     rate: Option<Span>,
-    /// States that enter by value.
+    /// States whose values occur.
     states: IdSet,
     /// Position of the first state, or rate of a state.
     state: Option<Span>,
-    /// Number of given rates, and position, of the input with the fewest.
+    /// Number of given rates and position of the input with the fewest given rates.
     input: Option<(u8, Span)>,
     /// Position of the first multiplier or residual of a constraint.
     reaction: Option<Span>,
@@ -56,7 +56,7 @@ pub fn check(model: &mut Model, found: &mut Diagnostics) {
     }
 }
 
-/// Returns for each constraint whether it contains rates.
+/// Checks all expressions. Returns one flag per constraint, which is true if the constraint contains rates.
 fn check_expressions(model: &Model, found: &mut Diagnostics) -> Vec<bool> {
     let mut checker = Checker {
         definitions: vec![Dependencies::default(); model.definitions.len()],
@@ -64,25 +64,26 @@ fn check_expressions(model: &Model, found: &mut Diagnostics) -> Vec<bool> {
         model,
         found,
     };
-    // `resolve` has rejected cycles already.
+    // There are no cycles: `resolve` has rejected them.
     for written in rate_order(model).unwrap_or_default() {
         match written {
             Expanded::Definition(index) => {
-                checker.definitions[index] = checker.motion(&model.definitions[index].value);
+                checker.definitions[index] =
+                    checker.find_dependencies(&model.definitions[index].value);
             }
             Expanded::Rate(index) => {
                 checker.state_rates[index.index()] =
-                    checker.motion(&model.states[index].rate).depth;
+                    checker.find_dependencies(&model.states[index].rate).depth;
             }
             Expanded::RatesWithin(_) => {}
         }
     }
-    checker.energies();
-    checker.forces();
-    let nonholonomic = checker.constraints();
-    checker.impacts();
+    checker.check_energies();
+    checker.check_forces();
+    let nonholonomic = checker.check_constraints();
+    checker.check_impacts();
     for observable in &model.observables {
-        checker.motion_with_reactions(&observable.value);
+        checker.find_dependencies_with_reactions(&observable.value);
     }
     nonholonomic
 }
@@ -96,16 +97,16 @@ struct Checker<'m, 'f> {
 }
 
 impl Checker<'_, '_> {
-    fn energies(&mut self) {
+    fn check_energies(&mut self) {
         let model = self.model;
         let mut inertial = IdSet::default();
         for term in &model.kinetic {
-            let motion = self.motion(&term.value);
+            let motion = self.find_dependencies(&term.value);
             self.reject_inputs_and_states(term, &motion, "the kinetic energy");
             inertial.extend(&motion.rates);
         }
         for term in &model.potential {
-            let motion = self.motion(&term.value);
+            let motion = self.find_dependencies(&term.value);
             self.reject_inputs_and_states(term, &motion, "the potential energy");
             if let Some(place) = motion.rate {
                 self.found.push(
@@ -119,7 +120,7 @@ impl Checker<'_, '_> {
             }
         }
         for term in &model.dissipation {
-            let motion = self.motion(&term.value);
+            let motion = self.find_dependencies(&term.value);
             self.reject_inputs_and_states(term, &motion, "the dissipation");
         }
         if self.found.is_empty() {
@@ -160,22 +161,22 @@ impl Checker<'_, '_> {
             );
         };
         for (index, coordinate) in self.model.coordinates.iter().enumerate() {
-            if !inertial.contains(coordinate_number(CoordinateId::new(index))) {
+            if !inertial.contains(coordinate_index(CoordinateId::new(index))) {
                 refuse(&coordinate.name, "coordinate", coordinate.span);
             }
         }
         for (index, field) in self.model.fields.iter().enumerate() {
-            if !inertial.contains(field_number(FieldId::new(index))) {
+            if !inertial.contains(field_index(FieldId::new(index))) {
                 refuse(&field.name, "field", field.span);
             }
         }
     }
 
-    fn forces(&mut self) {
+    fn check_forces(&mut self) {
         let model = self.model;
         for force in &model.forces {
-            self.motion(&force.value);
-            let on = self.motion(&force.on);
+            self.find_dependencies(&force.value);
+            let on = self.find_dependencies(&force.on);
             let problem = if let Some(place) = on.rate {
                 Some((place, "this is a rate"))
             } else if let Some((0, place)) = on.input {
@@ -198,7 +199,7 @@ impl Checker<'_, '_> {
         }
     }
 
-    fn constraints(&mut self) -> Vec<bool> {
+    fn check_constraints(&mut self) -> Vec<bool> {
         let model = self.model;
         if let Some(excess) = model.constraints.get(MAX_CONSTRAINTS) {
             self.found.push(
@@ -214,13 +215,13 @@ impl Checker<'_, '_> {
         model
             .constraints
             .iter()
-            .map(|constraint| self.constraint(constraint))
+            .map(|constraint| self.check_constraint(constraint))
             .collect()
     }
 
-    /// Checks a constraint. Returns whether it contains rates.
-    fn constraint(&mut self, constraint: &Constraint) -> bool {
-        let motion = self.motion(&constraint.zero);
+    /// Checks a constraint. Returns true if it contains rates.
+    fn check_constraint(&mut self, constraint: &Constraint) -> bool {
+        let motion = self.find_dependencies(&constraint.zero);
         let span = constraint.zero.span;
         let is_nonholonomic = motion.rate.is_some() && !motion.rates.is_empty();
         let needed = if is_nonholonomic { 1 } else { 2 };
@@ -255,7 +256,7 @@ impl Checker<'_, '_> {
         is_nonholonomic
     }
 
-    fn impacts(&mut self) {
+    fn check_impacts(&mut self) {
         let model = self.model;
         if let Some(excess) = model.impacts.get(MAX_IMPACTS) {
             self.found.push(
@@ -269,7 +270,7 @@ impl Checker<'_, '_> {
             return;
         }
         for impact in &model.impacts {
-            let motion = self.motion(&impact.when);
+            let motion = self.find_dependencies(&impact.when);
             let problem = if let Some(place) = motion.rate {
                 Some((place, "this is a rate", "give a distance"))
             } else if let Some(place) = motion.state {
@@ -295,14 +296,14 @@ impl Checker<'_, '_> {
                 );
             }
             if let Some(friction) = &impact.friction {
-                self.slip(&impact.name, &friction.slip);
+                self.check_slip(&impact.name, &friction.slip);
             }
         }
     }
 
     /// Checks the slip of a contact with friction.
-    fn slip(&mut self, impact: &str, slip: &Expr) {
-        let motion = self.motion(slip);
+    fn check_slip(&mut self, impact: &str, slip: &Expr) {
+        let motion = self.find_dependencies(slip);
         let problem = if let Some(place) = motion.state {
             let help = "a slip contains only coordinates, their rates, prescribed motion and t";
             Some((place, "this is a state", help))
@@ -328,7 +329,7 @@ impl Checker<'_, '_> {
         }
     }
 
-    fn given_rates(&self, input: InputId) -> u8 {
+    fn count_given_rates(&self, input: InputId) -> u8 {
         let inputs = &self.model.inputs;
         let rates = std::iter::successors(inputs[input].rate, |rate| inputs[*rate].rate);
         u8::try_from(rates.count()).unwrap_or(u8::MAX)
@@ -336,8 +337,8 @@ impl Checker<'_, '_> {
 
     /// Returns the dependencies of an expression. Reports invalid uses of `dot`, multipliers and
     /// residuals.
-    fn motion(&mut self, expr: &Expr) -> Dependencies {
-        let motion = self.motion_with_reactions(expr);
+    fn find_dependencies(&mut self, expr: &Expr) -> Dependencies {
+        let motion = self.find_dependencies_with_reactions(expr);
         if let Some(place) = motion.reaction {
             self.found.push(
                 Diagnostic::error("multipliers and residuals are allowed only in [observables]")
@@ -351,9 +352,9 @@ impl Checker<'_, '_> {
         motion
     }
 
-    fn motion_with_reactions(&mut self, expr: &Expr) -> Dependencies {
+    fn find_dependencies_with_reactions(&mut self, expr: &Expr) -> Dependencies {
         let mut motion = Dependencies::default();
-        self.add(expr, &mut motion, 1);
+        self.add_dependencies(expr, &mut motion, 1);
         if motion.depth > MAX_EXPANDED_DEPTH {
             self.found.push(
                 Diagnostic::error(format!(
@@ -366,22 +367,22 @@ impl Checker<'_, '_> {
         motion
     }
 
-    fn add(&mut self, expr: &Expr, motion: &mut Dependencies, depth: usize) {
+    fn add_dependencies(&mut self, expr: &Expr, motion: &mut Dependencies, depth: usize) {
         motion.depth = motion.depth.max(depth);
         match &expr.kind {
             ExprKind::Time => motion.time = true,
-            ExprKind::Input(index) => motion.add_input(self.given_rates(*index), expr.span),
+            ExprKind::Input(index) => motion.add_input(self.count_given_rates(*index), expr.span),
             ExprKind::State(index) => {
                 motion.states.insert(index.index());
                 motion.state = motion.state.or(Some(expr.span));
             }
             ExprKind::Coordinate(index) => {
-                motion.values.insert(coordinate_number(*index));
+                motion.values.insert(coordinate_index(*index));
             }
             ExprKind::Field(field)
             | ExprKind::ModeCoordinate(field)
             | ExprKind::SingleMode { field, .. } => {
-                motion.values.insert(field_number(*field));
+                motion.values.insert(field_index(*field));
             }
             ExprKind::Definition(index) => {
                 if let Some(known) = self.definitions.get(index.index()) {
@@ -389,17 +390,21 @@ impl Checker<'_, '_> {
                 }
             }
             ExprKind::Dot(operand) => self.add_rate(operand, motion, depth),
-            ExprKind::Diff(part, _) | ExprKind::Negate(part) => self.add(part, motion, depth + 1),
-            ExprKind::Integral { integrand, .. } => self.add(integrand, motion, depth + 1),
-            ExprKind::Sum { summand, .. } => self.add(summand, motion, depth + 1),
-            ExprKind::At { value, .. } => self.add(value, motion, depth + 1),
+            ExprKind::Diff(part, _) | ExprKind::Negate(part) => {
+                self.add_dependencies(part, motion, depth + 1)
+            }
+            ExprKind::Integral { integrand, .. } => {
+                self.add_dependencies(integrand, motion, depth + 1)
+            }
+            ExprKind::Sum { summand, .. } => self.add_dependencies(summand, motion, depth + 1),
+            ExprKind::At { value, .. } => self.add_dependencies(value, motion, depth + 1),
             ExprKind::Binary(_, left, right) => {
-                self.add(left, motion, depth + 1);
-                self.add(right, motion, depth + 1);
+                self.add_dependencies(left, motion, depth + 1);
+                self.add_dependencies(right, motion, depth + 1);
             }
             ExprKind::Call(function, arguments) => {
                 for argument in arguments {
-                    self.add(argument, motion, depth + 1);
+                    self.add_dependencies(argument, motion, depth + 1);
                 }
                 if function.has_switches() && arguments.iter().any(may_move) {
                     motion.switch = motion.switch.or(Some(expr.span));
@@ -419,7 +424,7 @@ impl Checker<'_, '_> {
 
     fn add_rate(&mut self, operand: &Expr, motion: &mut Dependencies, depth: usize) {
         let mut inner = Dependencies::default();
-        self.add(operand, &mut inner, depth + 1);
+        self.add_dependencies(operand, &mut inner, depth + 1);
         if let Some(diagnostic) = rate_error(operand.span, &inner) {
             self.found.push(diagnostic);
         }
@@ -432,7 +437,7 @@ impl Checker<'_, '_> {
             motion.rate = motion.rate.or(Some(operand.span));
         }
         motion.rates.extend(&inner.values);
-        // The rate of a definition, or of `at`, depends on the coordinates too.
+        // The rate of a definition or of `at` depends on the coordinates, too.
         if matches!(operand.kind, ExprKind::Definition(_) | ExprKind::At { .. }) {
             motion.values.extend(&inner.values);
             motion.states.extend(&inner.states);
@@ -446,7 +451,7 @@ impl Checker<'_, '_> {
 }
 
 impl Dependencies {
-    /// Returns true if the value depends on nothing but parameters and the time.
+    /// Returns true if the value depends only on parameters and the time.
     fn is_function_of_time(&self) -> bool {
         let is_moved = self.rate.is_some() || !self.values.is_empty() || !self.states.is_empty();
         !is_moved && self.input.is_none()

@@ -13,7 +13,7 @@ use crate::quantity::Name;
 use crate::raw::Document;
 use crate::span::Span;
 
-/// Longest name accepted, in characters.
+/// Largest length of a name, in characters.
 pub const MAX_NAME: usize = 64;
 
 /// Meaning of a name in an expression.
@@ -72,7 +72,7 @@ impl Symbol {
 pub struct Names {
     symbols: HashMap<String, (Symbol, Span)>,
     observables: HashSet<String>,
-    /// For each input, the input that is its rate, if given.
+    /// For each input: the input that is its rate, if given.
     input_rates: Vec<Option<InputId>>,
     pub fields: Vec<FieldNames>,
 }
@@ -198,7 +198,7 @@ impl Names {
                 Symbol::Modes(FieldId::new(index)),
                 found,
             );
-            // Fields may share the name of their positions.
+            // Fields may have positions of the same name.
             if self.get(&field.along.text) != Some(Symbol::Position) {
                 self.add(&field.along, Symbol::Position, found);
             }
@@ -220,7 +220,7 @@ impl Names {
     }
 
     fn add(&mut self, name: &Name, symbol: Symbol, found: &mut Diagnostics) {
-        // An invalid name is declared nevertheless, so that one mistake gives one finding.
+        // An invalid name is declared as well, so that one mistake gives one error.
         found.push_error(check_identifier(name));
         if let Some((other, place)) = self.symbols.get(&name.text) {
             found.push(
@@ -255,8 +255,7 @@ impl Names {
         }
     }
 
-    /// Checks the observables. An observable may share the name of the definition or coefficient
-    /// that it reports.
+    /// Checks the observables. An observable may have the name of the definition or coefficient that is its value.
     fn check_observables(&mut self, document: &Document, found: &mut Diagnostics) {
         for (observable, _) in &document.observables {
             let name = &observable.name;
@@ -273,7 +272,7 @@ impl Names {
         }
     }
 
-    /// Rejects declared names that the program generates: `q_3`, `theta_dot`, `q_3_dot`.
+    /// Rejects declared names that are equal to generated names: `q_3`, `theta_dot`, `q_3_dot`.
     fn check_generated(&self, document: &Document, found: &mut Diagnostics) {
         let mut declared: Vec<(&str, Span)> = self
             .symbols

@@ -1,6 +1,5 @@
-//! Time derivatives of observables as additional observables, for sensors that measure rates
-//! and accelerations of points. They are derived on request: a specification contains no
-//! accelerations.
+//! Time derivatives of observables as additional observables, for sensors that measure rates and accelerations of
+//! points. They are derived only if requested, because a specification contains no accelerations.
 
 use crate::dimension::Dimension;
 use crate::ids::DefinitionId;
@@ -8,7 +7,7 @@ use crate::model::{Expr, ExprKind, Model, Observable, ObservedRate};
 use crate::unit::Unit;
 
 impl ObservedRate {
-    /// Returns the name: that of the observable with `_dot` or `_ddot`.
+    /// Returns the name of the observable with the suffix `_dot` or `_ddot`.
     pub fn name(self, model: &Model) -> String {
         let ending = if self.times == 1 { "_dot" } else { "_ddot" };
         format!("{}{ending}", model.observables[self.observable].name)
@@ -27,7 +26,7 @@ impl ObservedRate {
         }
     }
 
-    /// Returns the rate or acceleration of this name, if the stem is an observable.
+    /// Returns the rate or acceleration with this name, if the name without its suffix is an observable.
     pub fn from_name(model: &Model, name: &str) -> Option<Self> {
         let of = |name: &str| model.observables.iter().position(|o| o.name == name);
         let within =
@@ -77,7 +76,7 @@ impl Model {
             ExprKind::Definition(definition) => definitions.push(definition),
             _ => {}
         });
-        // The recursion ends: definitions have no cycle.
+        // The recursion terminates, because definitions have no cycle.
         let mut inner = definitions.iter();
         holds || inner.any(|definition| self.contains_rate(&self.definitions[*definition].value))
     }

@@ -1,5 +1,5 @@
-//! Sorts things by their references, or reports a cycle. Iterative: a chain can be as long as
-//! the specification.
+//! Sorts entries by their references, or reports a cycle. The algorithm is iterative, because a chain can be as long
+//! as the specification.
 
 use crate::diagnostic::Diagnostic;
 use crate::span::Span;
@@ -7,10 +7,11 @@ use crate::span::Span;
 /// Index of the target of a reference, and its position.
 pub type Reference = (usize, Span);
 
-/// Returns indices such that each follows those it refers to.
+/// Returns the indices of the entries in an order in which each entry follows the entries to which it refers.
 ///
 /// # Errors
-/// A cycle: its entries in order, each with the place that refers to the next.
+/// The references have a cycle. The error contains its entries in order, each with the position of the reference to
+/// the next entry.
 pub fn sort_by_references(references: &[Vec<Reference>]) -> Result<Vec<usize>, Vec<Reference>> {
     let mut state = vec![State::Untouched; references.len()];
     let mut sorted = Vec::with_capacity(references.len());

@@ -1,6 +1,6 @@
-//! Parses tokens to a syntax tree, with the precedence of mathematics. `^` has the highest
-//! precedence and is right-associative, above unary minus: -x^2 is -(x^2), and 2^-1 is valid.
-//! The depth of the tree is bounded because the later steps recurse over it.
+//! Parses tokens to a syntax tree, with the usual mathematical precedence. `^` has the highest precedence and is
+//! right-associative, above unary minus: -x^2 is -(x^2), and 2^-1 is valid. The depth of the tree is bounded because
+//! the later steps recurse over it.
 
 use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
 use crate::diagnostic::Diagnostic;
@@ -9,7 +9,7 @@ use crate::lexer::{Token, TokenKind};
 use crate::span::Span;
 use crate::unit::Unit;
 
-/// Deepest tree accepted. A sum of 200 terms has this depth.
+/// Largest accepted depth of a tree. A sum of 200 terms has this depth.
 pub const MAX_DEPTH: usize = 200;
 
 /// Precedence of the operators.
@@ -21,7 +21,7 @@ const POWER: u8 = 4;
 /// Parses a whole expression; `end` is the position after its last token.
 ///
 /// # Errors
-/// The first unexpected or missing token.
+/// A token is unexpected or missing.
 pub fn parse(tokens: &[Token], end: Span) -> Result<Syntax, Diagnostic> {
     let mut parser = Parser {
         tokens,
@@ -29,7 +29,7 @@ pub fn parse(tokens: &[Token], end: Span) -> Result<Syntax, Diagnostic> {
         end,
         nesting: 0,
     };
-    let tree = parser.expression(ADDITIVE)?;
+    let tree = parser.parse_expression(ADDITIVE)?;
     match parser.peek() {
         None => Ok(tree.syntax),
         Some(token) => {
@@ -65,21 +65,24 @@ impl<'t> Parser<'t> {
     }
 
     /// Parses operators of at least this precedence.
-    fn expression(&mut self, tightest: u8) -> Parsed {
+    fn parse_expression(&mut self, tightest: u8) -> Parsed {
         self.nesting += 1;
         if self.nesting > MAX_DEPTH {
             let place = self.peek().map_or(self.end, |token| token.span);
             return Err(depth_error(place));
         }
-        let mut left = self.operand()?;
-        while let Some((operator, binding)) = self.peek().and_then(|token| infix(&token.kind)) {
+        let mut left = self.parse_operand()?;
+        while let Some((operator, binding)) = self
+            .peek()
+            .and_then(|token| find_infix_operator(&token.kind))
+        {
             if binding < tightest {
                 break;
             }
             self.next += 1;
             let right = match binding {
-                POWER => self.expression(UNARY)?,
-                _ => self.expression(binding + 1)?,
+                POWER => self.parse_expression(UNARY)?,
+                _ => self.parse_expression(binding + 1)?,
             };
             left = combine(operator, left, right)?;
         }
@@ -88,18 +91,18 @@ impl<'t> Parser<'t> {
     }
 
     /// Parses an operand with its members: `r`, `r.x`, `arm.origin.x`.
-    fn operand(&mut self) -> Parsed {
+    fn parse_operand(&mut self) -> Parsed {
         let minus = self.peek().is_some_and(|t| t.kind == TokenKind::Minus);
-        let mut tree = self.atom()?;
-        // The operand of a minus has parsed its members already.
+        let mut tree = self.parse_atom()?;
+        // If there is a minus, its operand has already parsed the members.
         while !minus && self.peek().is_some_and(|t| t.kind == TokenKind::Point) {
             self.next += 1;
-            tree = self.member(tree)?;
+            tree = self.parse_member(tree)?;
         }
         Ok(tree)
     }
 
-    fn member(&mut self, of: Tree) -> Parsed {
+    fn parse_member(&mut self, of: Tree) -> Parsed {
         let (member, member_span) = match self.take() {
             Some(Token {
                 kind: TokenKind::Name(member),
@@ -120,7 +123,7 @@ impl<'t> Parser<'t> {
         nest(Syntax { kind, span }, of.depth)
     }
 
-    fn atom(&mut self) -> Parsed {
+    fn parse_atom(&mut self) -> Parsed {
         let Some(token) = self.take() else {
             let what = if self.tokens.is_empty() {
                 "is empty"
@@ -132,17 +135,17 @@ impl<'t> Parser<'t> {
         };
         match &token.kind {
             TokenKind::Number(value) => Ok(leaf(SyntaxKind::Number(*value), token.span)),
-            TokenKind::Name(name) => self.named(name, token.span),
-            TokenKind::Minus => self.negated(token.span),
+            TokenKind::Name(name) => self.parse_name(name, token.span),
+            TokenKind::Minus => self.parse_negation(token.span),
             TokenKind::OpenIndex => {
-                let (components, depth) = self.list(&TokenKind::CloseIndex)?;
+                let (components, depth) = self.parse_list(&TokenKind::CloseIndex)?;
                 let close = self.expect_closing(&TokenKind::CloseIndex, token.span)?;
                 let kind = SyntaxKind::Vector(components);
                 let span = token.span.join(close);
                 nest(Syntax { kind, span }, depth)
             }
             TokenKind::Open => {
-                let inner = self.expression(ADDITIVE)?;
+                let inner = self.parse_expression(ADDITIVE)?;
                 let close = self.expect_closing(&TokenKind::Close, token.span)?;
                 let span = token.span.join(close);
                 let syntax = Syntax {
@@ -159,24 +162,24 @@ impl<'t> Parser<'t> {
     }
 
     /// Parses `-operand`; the operand includes powers.
-    fn negated(&mut self, minus: Span) -> Parsed {
-        let operand = self.expression(UNARY)?;
+    fn parse_negation(&mut self, minus: Span) -> Parsed {
+        let operand = self.parse_expression(UNARY)?;
         let span = minus.join(operand.syntax.span);
         let kind = SyntaxKind::Negate(Box::new(operand.syntax));
         nest(Syntax { kind, span }, operand.depth)
     }
 
-    fn named(&mut self, name: &str, span: Span) -> Parsed {
+    fn parse_name(&mut self, name: &str, span: Span) -> Parsed {
         match self.peek().map(|token| &token.kind) {
-            Some(TokenKind::Open) => self.call(name, span),
-            Some(TokenKind::OpenIndex) => self.element(name, span),
+            Some(TokenKind::Open) => self.parse_call(name, span),
+            Some(TokenKind::OpenIndex) => self.parse_element(name, span),
             _ => Ok(leaf(SyntaxKind::Name(name.to_owned()), span)),
         }
     }
 
-    fn call(&mut self, function: &str, function_span: Span) -> Parsed {
+    fn parse_call(&mut self, function: &str, function_span: Span) -> Parsed {
         let open = self.take().map_or(self.end, |token| token.span);
-        let (arguments, depth) = self.list(&TokenKind::Close)?;
+        let (arguments, depth) = self.parse_list(&TokenKind::Close)?;
         let close = self.expect_closing(&TokenKind::Close, open)?;
         let kind = SyntaxKind::Call {
             function: function.to_owned(),
@@ -189,13 +192,13 @@ impl<'t> Parser<'t> {
 
     /// Parses expressions between commas up to a closing bracket. Returns them and the largest
     /// depth.
-    fn list(&mut self, close: &TokenKind) -> Result<(Vec<Syntax>, usize), Diagnostic> {
+    fn parse_list(&mut self, close: &TokenKind) -> Result<(Vec<Syntax>, usize), Diagnostic> {
         let (mut list, mut depth) = (Vec::new(), 0);
         if self.peek().is_some_and(|token| token.kind == *close) {
             return Ok((list, depth));
         }
         loop {
-            let tree = self.expression(ADDITIVE)?;
+            let tree = self.parse_expression(ADDITIVE)?;
             depth = depth.max(tree.depth);
             list.push(tree.syntax);
             match self.peek() {
@@ -205,7 +208,7 @@ impl<'t> Parser<'t> {
         }
     }
 
-    fn element(&mut self, name: &str, span: Span) -> Parsed {
+    fn parse_element(&mut self, name: &str, span: Span) -> Parsed {
         let open = self.take().map_or(self.end, |token| token.span);
         let (index, index_span) = match self.take() {
             Some(Token {
@@ -242,7 +245,7 @@ impl<'t> Parser<'t> {
                 let unexpected = format!("expected {shown}, found {}", token.kind.to_quoted());
                 let diagnostic = Diagnostic::error(unexpected).with_span(token.span, "here");
                 let diagnostic = diagnostic.with_related_span(open, "to close this bracket");
-                Err(diagnostic.with_optional_help(missing_operator(before, &token.kind)))
+                Err(diagnostic.with_optional_help(missing_operator_help(before, &token.kind)))
             }
             None => Err(
                 Diagnostic::error(format!("a {} is missing", expected.to_quoted()))
@@ -253,7 +256,7 @@ impl<'t> Parser<'t> {
     }
 }
 
-fn infix(kind: &TokenKind) -> Option<(BinaryOperator, u8)> {
+fn find_infix_operator(kind: &TokenKind) -> Option<(BinaryOperator, u8)> {
     Some(match kind {
         TokenKind::Plus => (BinaryOperator::Add, ADDITIVE),
         TokenKind::Minus => (BinaryOperator::Subtract, ADDITIVE),
@@ -314,11 +317,11 @@ fn leftover_token_error(last: Option<&Token>, token: &Token, before: &Syntax) ->
         SyntaxKind::Name(name) => find_word_equivalent(name).map(str::to_owned),
         _ => None,
     };
-    diagnostic.with_optional_help(word.or_else(|| missing_operator(last, &token.kind)))
+    diagnostic.with_optional_help(word.or_else(|| missing_operator_help(last, &token.kind)))
 }
 
 /// Returns help for an operand that follows another operand, whose last token is `before`.
-fn missing_operator(before: Option<&Token>, found: &TokenKind) -> Option<String> {
+fn missing_operator_help(before: Option<&Token>, found: &TokenKind) -> Option<String> {
     if let TokenKind::Name(word) = found
         && let Some(help) = find_word_equivalent(word)
     {
@@ -329,13 +332,13 @@ fn missing_operator(before: Option<&Token>, found: &TokenKind) -> Option<String>
         TokenKind::Number(_) | TokenKind::Name(_) | TokenKind::Open
     );
     starts.then(|| {
-        let unit = before.and_then(|before| unit_in_expression(&before.kind, found));
+        let unit = before.and_then(|before| unit_help(&before.kind, found));
         unit.unwrap_or_else(|| "write a product with `*`: 2*x, not 2 x".to_owned())
     })
 }
 
 /// Returns help for a number with a unit after it, such as `20 deg`.
-fn unit_in_expression(number: &TokenKind, unit: &TokenKind) -> Option<String> {
+fn unit_help(number: &TokenKind, unit: &TokenKind) -> Option<String> {
     let (TokenKind::Number(number), TokenKind::Name(word)) = (number, unit) else {
         return None;
     };

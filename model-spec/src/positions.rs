@@ -4,7 +4,8 @@ use crate::evaluate::evaluate;
 use crate::model::{Expr, ExprKind, Model};
 use crate::span::Span;
 
-/// Rounding errors of an expression for a position, relative to the greatest of position and ends: a dozen operations.
+/// Largest rounding error in the value of a position, relative to the largest of position and ends. It covers about a
+/// dozen operations.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Position outside the domain of its field.
@@ -40,7 +41,7 @@ fn check_part(model: &Model, part: &Expr, parameters: &[f64]) -> Result<(), Posi
     let value = |expr: &Expr| evaluate(expr, parameters);
     let (from, to, x) = (value(&field.from), value(&field.to), value(position));
     let slack = ROUNDING * from.abs().max(to.abs()).max(x.abs());
-    // A position that is not a number has its own error.
+    // A position that is NaN is reported by another check.
     if x.is_nan() || (from - slack..=to + slack).contains(&x) {
         return Ok(());
     }

@@ -22,8 +22,8 @@ pub struct StringValue {
     pub text: String,
     /// Position, including the quotes.
     pub span: Span,
-    /// Offset of the first character, if the string has no escapes: its bytes are then those of the
-    /// file.
+    /// Offset of the first character in the file, if the string has no escapes. The bytes of the string are then
+    /// equal to the bytes of the file.
     pub(crate) first: Option<usize>,
 }
 
@@ -50,7 +50,7 @@ pub enum Quantity {
 }
 
 impl StringValue {
-    /// Creates a string that the file does not contain; `span` is the place that needs it.
+    /// Creates a string that the file does not contain. `span` is the position in the file for which it is created.
     pub fn without_text(text: &str, span: Span) -> Self {
         Self {
             text: text.to_owned(),
@@ -59,7 +59,7 @@ impl StringValue {
         }
     }
 
-    /// Returns the position of the bytes `start..end` of the string, or the whole string if it has
+    /// Returns the position of the bytes `start..end` of the string, or the position of the whole string if it has
     /// escapes.
     pub fn place(&self, start: usize, end: usize) -> Span {
         match self.first {
@@ -71,7 +71,7 @@ impl StringValue {
     /// Parses the string as an expression.
     ///
     /// # Errors
-    /// The first syntax error, at its token.
+    /// The expression has a syntax error.
     pub fn syntax(&self) -> Result<Syntax, Diagnostic> {
         let tokens = tokenize(&self.text, |start, end| self.place(start, end))?;
         let written = self.text.trim_end().len();
@@ -85,7 +85,7 @@ impl Quantity {
     /// Parses the expression; a number is a literal.
     ///
     /// # Errors
-    /// Those of [`StringValue::syntax`].
+    /// As for [`StringValue::syntax`].
     pub fn syntax(&self) -> Result<Syntax, Diagnostic> {
         match self {
             Self::Number(number) => Ok(Syntax {

@@ -1,5 +1,5 @@
-//! Sorts definitions and rates of states for expansion; `dot(z)` expands to the rate of the
-//! state z. Reports cycles: a rate that contains itself is an equation to be solved.
+//! Sorts definitions and rates of states for expansion; `dot(z)` expands to the rate of the state z. Reports cycles:
+//! a rate that depends on itself would be an implicit equation.
 
 use std::collections::BTreeMap;
 
@@ -21,8 +21,8 @@ pub enum Expanded {
 /// Returns definitions and rates in dependency order.
 ///
 /// # Errors
-/// A cycle, starting with the rate of a state: each entry with the place that refers to the
-/// next.
+/// The rates have a cycle. The error contains its entries, starting with the rate of a state, each with the position
+/// of the reference to the next entry.
 pub fn rate_order(model: &Model) -> Result<Vec<Expanded>, Vec<(Expanded, Span)>> {
     let sizes = Sizes {
         definitions: model.definitions.len(),
@@ -55,8 +55,7 @@ pub fn rate_order(model: &Model) -> Result<Vec<Expanded>, Vec<(Expanded, Span)>>
     }
 }
 
-/// Sizes for indices into one list: values of definitions, rates of states, rates within
-/// definitions.
+/// Sizes of the three parts of a list: values of definitions, rates of states, rates of all states in a definition.
 #[derive(Clone, Copy)]
 struct Sizes {
     definitions: usize,

@@ -1,5 +1,5 @@
-//! Specification as read from TOML: names, numbers and expressions with positions, nothing
-//! resolved and nothing parsed. Written by `document` and `entries`, read by `resolve`.
+//! Specification as read from TOML: names, numbers and unparsed expressions, with their positions. `document` and
+//! `entries` create it, and `resolve` reads it.
 
 use crate::model::{Basis, STABILISATION_RATE};
 use crate::quantity::{Name, Number, Quantity, StringValue};
@@ -10,7 +10,7 @@ pub struct Document {
     /// `name` of `[model]`; the span includes its quotes.
     pub name: Name,
     pub title: String,
-    /// Acceleration of free fall, along the fixed axes.
+    /// Acceleration of free fall, as components along the fixed axes.
     pub gravity: Option<Vec<Quantity>>,
     pub parameters: Vec<RawParameter>,
     pub coordinates: Vec<RawCoordinate>,
@@ -129,9 +129,9 @@ pub struct RawInput {
     pub unit: Option<StringValue>,
     pub doc: String,
     pub range: Option<RawRange>,
-    /// Order of the rate: 0 for the input itself, 1 for `s_dot`, 2 for `s_ddot`.
+    /// Order of the derivative: 0 for the input itself, 1 for `s_dot`, 2 for `s_ddot`.
     pub rate_order: u8,
-    /// Number of given rates above this one.
+    /// Number of given time derivatives of this input.
     pub rates: u8,
 }
 
@@ -162,9 +162,9 @@ impl RawInput {
 
 #[derive(Debug)]
 pub enum RawBasis {
-    /// Shapes of a formula.
+    /// Shapes with a formula, selected by name.
     Named(Basis),
-    /// Shapes of a file.
+    /// Shapes from a file.
     Table(StringValue),
 }
 

@@ -1,4 +1,4 @@
-//! Tables of a file without unknown keys.
+//! Tables of a file whose keys are checked.
 
 use crate::diagnostic::{Diagnostic, Diagnostics, quote};
 use crate::keys::{Key, Keys};
@@ -6,7 +6,7 @@ use crate::quantity::{Name, Number, Quantity, StringValue};
 use crate::suggest::did_you_mean;
 use crate::table::Entry;
 
-/// Table without unknown keys.
+/// Table whose keys were checked.
 pub struct Record<'d> {
     owner: Name,
     entries: Vec<Entry<'d>>,
@@ -16,7 +16,7 @@ pub struct Record<'d> {
 }
 
 impl<'d> Record<'d> {
-    /// Marks the record as the top level of a file, which messages name without quotes.
+    /// Marks the record as the top level of a file. Messages write its name without quotes.
     pub fn as_file(self) -> Self {
         Self {
             is_file: true,
@@ -30,7 +30,7 @@ impl<'d> Record<'d> {
         Some(Self::new(entry.name.clone(), entries, keys, found))
     }
 
-    /// Reads the table of an entry, and reports keys that are not `known`.
+    /// Reads the table of an entry, and reports keys that are not in `known`.
     pub fn read_with(
         entry: &Entry<'d>,
         known: &[&str],
@@ -55,7 +55,7 @@ impl<'d> Record<'d> {
         }
     }
 
-    /// Creates a record, and reports keys that are not `known`.
+    /// Creates a record, and reports keys that are not in `known`.
     pub fn with_keys(
         owner: Name,
         entries: Vec<Entry<'d>>,
@@ -89,15 +89,15 @@ impl<'d> Record<'d> {
         self.entries.iter().find(|entry| entry.name.text == key)
     }
 
-    /// Returns the entry of a key, or reports that it is missing, with the meaning and the example
-    /// of the table of keys.
+    /// Returns the entry of a key. If it is missing, reports an error with the meaning and the example from the
+    /// description of the keys.
     pub fn require(&self, key: &str, found: &mut Diagnostics) -> Option<&Entry<'d>> {
         let keys = self.keys.map_or(&[][..], |keys| keys.list);
         let described = keys.iter().find(|described| described.name == key);
         self.require_with(key, &described.map(Key::help).unwrap_or_default(), found)
     }
 
-    /// Returns the entry of a key, or reports that it is missing, with the help.
+    /// Returns the entry of a key. If it is missing, reports an error with this help.
     pub fn require_with(
         &self,
         key: &str,
@@ -140,34 +140,35 @@ impl<'d> Record<'d> {
         found.push_error(read(self.get(key)?))
     }
 
-    /// Returns the string of a key, "" if absent.
+    /// Returns the string value of a key, "" if absent.
     pub fn text(&self, key: &str, found: &mut Diagnostics) -> String {
         self.written(key, found)
             .map_or_else(String::new, |w| w.text)
     }
 
-    /// Returns the string of a key, if present.
+    /// Returns the string value of a key with its position, if present.
     pub fn written(&self, key: &str, found: &mut Diagnostics) -> Option<StringValue> {
         self.optional(key, Entry::written, found)
     }
 
-    /// Returns the number of a key, if present.
+    /// Returns the numeric value of a key, if present.
     pub fn number(&self, key: &str, found: &mut Diagnostics) -> Option<Number> {
         self.optional(key, Entry::number, found)
     }
 
-    /// Returns the number or expression of a key, if present.
+    /// Returns the value of a key, a number or an expression, if present.
     pub fn quantity(&self, key: &str, found: &mut Diagnostics) -> Option<Quantity> {
         self.optional(key, Entry::quantity, found)
     }
 }
 
-/// Reports an unknown key, with the nearest known one.
+/// Returns the error for an unknown key, with the nearest known key.
 pub fn unknown_key_error(name: &Name, known: &[&str]) -> Diagnostic {
     unknown_entry_error(("key", "keys"), name, known)
 }
 
-/// Reports an unknown entry of a kind, in the singular and the plural, with the nearest known one.
+/// Returns the error for an unknown entry, with the nearest known entry. `one` and `all` are the kind of entry in the
+/// singular and in the plural.
 fn unknown_entry_error((one, all): (&str, &str), name: &Name, known: &[&str]) -> Diagnostic {
     let listed = format!("the {all} are {}", known.join(", "));
     Diagnostic::error(format!("unknown {one} {}", quote(&name.text)))

@@ -1,5 +1,5 @@
-//! Frames and bodies of a model as declared. The energies of the model contain their terms
-//! already; recursive algorithms from body to body use this structure.
+//! Frames and bodies of a model as declared. The energies of the model already contain the terms of the bodies.
+//! Recursive algorithms, which proceed from body to body, use this tree.
 
 use crate::ids::FrameId;
 
@@ -21,8 +21,8 @@ pub struct PlacedFrame<T> {
     pub parent: Option<FrameId>,
     /// Origin along the parent's axes, in m.
     pub origin: [T; 3],
-    /// Rotations from the parent's axes to this frame's, each about an axis rotated by those before
-    /// it.
+    /// Rotations from the axes of the parent to the axes of this frame. Each is about an axis that the earlier
+    /// rotations have rotated.
     pub turns: Vec<AxisTurn<T>>,
 }
 
@@ -53,7 +53,7 @@ pub struct RigidBody<T> {
     /// I_xx, I_yy, I_zz about the centre of mass along the frame's axes, in kg m^2; 0 for a point
     /// mass.
     pub moments: [T; 3],
-    /// I_xy, I_yz, I_xz of the same matrix.
+    /// I_xy, I_yz, I_xz of the same inertia matrix.
     pub products: [T; 3],
 }
 
@@ -61,7 +61,7 @@ impl<T> RigidTree<T> {
     /// Converts every expression of the tree.
     ///
     /// # Errors
-    /// The first error of `change`.
+    /// The first error that `change` returns.
     pub fn try_map<U, E>(
         &self,
         mut change: impl FnMut(&T) -> Result<U, E>,

@@ -1,5 +1,5 @@
-//! Exact factor between a unit and its coherent SI unit: a rational number times a power of pi.
-//! Decimal factors such as 0.001 have no exact double: 9 mm is 9/1000, not 9 * 0.001.
+//! Exact factor between a unit and its coherent SI unit: a rational number times a power of pi. Decimal factors such
+//! as 0.001 are not exact in double precision, so 9 mm is computed as 9/1000, not as 9 * 0.001.
 
 use num_rational::Ratio;
 use num_traits::{CheckedDiv, CheckedMul, One};
@@ -35,7 +35,7 @@ impl Scale {
         pi_power: 1,
     };
 
-    /// Returns `10^exponent`; `None` beyond 10^38.
+    /// Returns `10^exponent`; `None` if the magnitude of the exponent exceeds 38.
     pub fn power_of_ten(exponent: i32) -> Option<Self> {
         let magnitude = 10_i128.checked_pow(exponent.unsigned_abs())?;
         if exponent < 0 {
@@ -102,7 +102,7 @@ impl Scale {
     }
 }
 
-/// Number of double length, as an unevaluated sum.
+/// Number with about twice the precision, stored as an unevaluated sum of two numbers.
 #[derive(Clone, Copy)]
 struct DoubleDouble {
     high: f64,
@@ -134,7 +134,7 @@ impl DoubleDouble {
         }
     }
 
-    /// Returns the nearest double; only the leading part if the rest overflowed.
+    /// Returns the nearest `f64`, or only the leading part if the other part overflowed.
     fn value(self) -> f64 {
         if self.low.is_finite() {
             self.high + self.low

@@ -1,18 +1,18 @@
 //! Times of sampled controllers.
 
-/// Times of a controller at parameter values, s.
+/// Times of a controller for given parameter values, in s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Schedule {
     /// Time between two samples.
     pub period: f64,
     /// Time of the first sample.
     pub offset: f64,
-    /// Time between a sample and the action of its outputs.
+    /// Time between a sample and the effect of its outputs.
     pub delay: f64,
 }
 
 impl Schedule {
-    /// Returns the first time that is not admissible: its name, its value in s, and the rule.
+    /// Returns the first time that is not admissible: its name, its value in s, and the requirement.
     pub fn find_fault(&self) -> Option<(&'static str, f64, &'static str)> {
         let not_negative = "a time of 0 or more";
         let times = [

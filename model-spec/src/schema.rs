@@ -10,9 +10,9 @@ use crate::model::MAX_ORDER;
 use crate::names::MAX_NAME;
 use crate::sections::{SAMPLE_TIME, SECTIONS};
 
-/// Returns the schema, in draft 2020-12 of JSON Schema. Many TOML editors support only older
-/// drafts: it uses only keywords with one meaning in all drafts since 6, and no constraints next to
-/// a `$ref`, which older drafts ignore.
+/// Returns the schema, in draft 2020-12 of JSON Schema. Many TOML editors support only older drafts. The schema
+/// therefore uses only keywords whose meaning has not changed since draft 6, and no constraints next to a `$ref`,
+/// because older drafts ignore them.
 pub fn schema() -> Value {
     let mut schema = table(&SECTIONS);
     let has_entries = |section: &str| json!({ "required": [section], "properties": { section: { "minProperties": 1 } } });
@@ -26,7 +26,7 @@ pub fn schema() -> Value {
     schema
 }
 
-/// Returns the kinds of values by name, with a description.
+/// Returns the schemas of the kinds of values by name, with descriptions.
 pub fn kinds() -> Value {
     let expression = || reference("expression");
     let bases = bases::BASES.iter().map(|(name, _)| *name);
@@ -111,7 +111,7 @@ fn reference(kind: &str) -> Value {
     json!({ "$ref": format!("#/$defs/{kind}") })
 }
 
-/// Adds a description, with a capital letter.
+/// Adds a description that begins with a capital letter.
 fn describe(mut schema: Value, text: &str) -> Value {
     let (first, rest) = text.split_at(text.len().min(1));
     schema["description"] = json!(first.to_uppercase() + rest);

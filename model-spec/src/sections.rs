@@ -1,5 +1,5 @@
-//! Sections and keys of a specification. The reader, its messages, the JSON schema and the reference
-//! page (`docs/specification.md`) follow this table.
+//! Sections and keys of a specification. The reader, its messages, the JSON schema and the reference page
+//! (`docs/specification.md`) use this table.
 
 use crate::keys::{Key, Keys, Kind};
 
@@ -137,7 +137,7 @@ pub(crate) static SENSOR: Keys = Keys::new(&[
     Key::new("bias", "number", "0", "offset in the unit of the channel; 0 if absent"),
     Key::new("delay", "number", "0", "delay in s, negative if earlier than the inputs and other channels; 0 if absent"),
 ]);
-/// Keys of a time of a controller.
+/// Keys of the period, the offset and the delay of a controller.
 pub(crate) static SAMPLE_TIME: Keys = Keys::new(&[
     Key::new("value", "expression", "1", "time in `unit`, or an expression of parameters in SI").required(),
     Key::new("unit", "unit", "\"ms\"", "unit of time; s if absent"),

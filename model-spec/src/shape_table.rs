@@ -1,5 +1,5 @@
-//! Mode shapes from a CSV file, for example from a finite-element program. Columns
-//! `x, phi_1, phi_2, ...`, one row for each position. The generator interpolates the shapes.
+//! Mode shapes from a CSV file, for example from a finite-element program. The columns are `x, phi_1, phi_2, ...`,
+//! with one row for each position. The generator interpolates the shapes.
 
 use std::path::Path;
 
@@ -11,17 +11,16 @@ use crate::span::Span;
 /// Largest number of rows: each row is a knot of the shapes in emitted code.
 pub const MAX_ROWS: usize = 2000;
 
-/// Smallest number of rows: a cubic needs four.
+/// Smallest number of rows: a cubic polynomial needs four.
 const MIN_ROWS: usize = 4;
 
-/// Largest number of cells read from a line: more than any table has.
+/// Largest number of cells read from a line; no valid table has as many.
 const MAX_CELLS: usize = 1000;
 
 /// Largest ratio of a step to its longer neighbour; a larger one is reported as a gap.
 const MAX_STEP_RATIO: f64 = 3.0;
 
-/// Smallest norm of a shape after orthogonalisation, relative to its norm before, that counts
-/// as independent.
+/// Smallest norm of an independent shape after orthogonalisation, relative to its norm before.
 const MIN_INDEPENDENT_NORM: f64 = 1e-8;
 
 /// Largest distance between the ends of the table and those of the field, relative to the
@@ -42,12 +41,12 @@ pub struct ShapeTable {
 }
 
 impl ShapeTable {
-    /// Reads the file of this name, in the folder of a specification or below, with at most `most`
-    /// shapes. `span` is the position of the name.
+    /// Reads a table with at most `most` shapes from the file with this name, in the folder of a specification or
+    /// below. `span` is the position of the name.
     ///
     /// # Errors
-    /// No folder; a name outside it; a file that cannot be read, is too large or is not UTF-8;
-    /// errors of [`Self::parse`].
+    /// The specification has no folder, the name is outside the folder, or the file cannot be read, is too large or
+    /// is not UTF-8; also errors of [`Self::parse`].
     pub fn read(
         folder: Option<&Path>,
         span: Span,
@@ -74,8 +73,8 @@ impl ShapeTable {
     /// Parses a table with at most `most` shapes.
     ///
     /// # Errors
-    /// A header other than `x,phi_1,phi_2,...`, missing or infinite numbers, positions that do not
-    /// increase or leave a gap, too few or too many rows, dependent shapes.
+    /// The header is not `x,phi_1,phi_2,...`, a number is missing or infinite, the positions do not increase or have
+    /// a gap, there are too few or too many rows, or the shapes are linearly dependent.
     pub fn parse(file: &str, text: &str, most: usize) -> Result<Self, TableFault> {
         let content = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut lines = (1..).zip(content.lines());
@@ -90,14 +89,14 @@ impl ShapeTable {
         for (number, line) in lines {
             // A trailing empty line is allowed.
             if !line.trim().is_empty() || content.lines().count() > number {
-                table.row(number, line)?;
+                table.read_row(number, line)?;
             }
         }
         table.check()?;
         Ok(table)
     }
 
-    fn row(&mut self, line: usize, text: &str) -> Result<(), TableFault> {
+    fn read_row(&mut self, line: usize, text: &str) -> Result<(), TableFault> {
         if self.positions.len() == MAX_ROWS {
             let message = format!("more than {MAX_ROWS} rows");
             return Err(TableFault::new(line, 1, message));
@@ -121,14 +120,14 @@ impl ShapeTable {
                 TableFault::new(line, column, message)
             })?;
             match index {
-                0 => self.place(line, column, number)?,
+                0 => self.push_position(line, column, number)?,
                 mode => self.shapes[mode - 1].push(number),
             }
         }
         Ok(())
     }
 
-    fn place(&mut self, line: usize, column: usize, x: f64) -> Result<(), TableFault> {
+    fn push_position(&mut self, line: usize, column: usize, x: f64) -> Result<(), TableFault> {
         if let Some(last) = self.positions.last()
             && x <= *last
         {
@@ -181,7 +180,7 @@ impl ShapeTable {
     /// Checks that the positions span the domain of the field.
     ///
     /// # Errors
-    /// The end that differs.
+    /// The first or last position is not an end of the domain.
     pub fn check_span(&self, from: f64, to: f64) -> Result<(), TableFault> {
         let last = self.positions.len() - 1;
         for (index, end, name) in [(0, from, "from"), (last, to, "to")] {
@@ -262,13 +261,13 @@ fn shorten(cell: &str) -> String {
     }
 }
 
-/// Returns the first shape that depends linearly on those before it, by modified Gram-Schmidt
-/// orthogonalisation, done twice.
+/// Returns the first shape that depends linearly on earlier shapes. The shapes are orthogonalised twice by the
+/// modified Gram-Schmidt process.
 fn find_dependent_shape(shapes: &[Vec<f64>]) -> Option<usize> {
     let norm = |shape: &[f64]| shape.iter().map(|v| v * v).sum::<f64>().sqrt();
     let mut directions: Vec<Vec<f64>> = Vec::new();
     for (mode, shape) in shapes.iter().enumerate() {
-        // Normalised first, so that squares neither overflow nor underflow.
+        // The shape is normalised first, so that squares neither overflow nor underflow.
         let size = shape.iter().fold(0.0, |size: f64, v| size.max(v.abs()));
         let mut rest: Vec<f64> = shape.iter().map(|v| v / size).collect();
         let before = norm(&rest);
@@ -279,7 +278,7 @@ fn find_dependent_shape(shapes: &[Vec<f64>]) -> Option<usize> {
             }
         }
         let left = norm(&rest);
-        // NaN for a shape that is zero everywhere.
+        // The comparison is false for a shape that is zero everywhere, because `left` is NaN.
         let is_another = left > MIN_INDEPENDENT_NORM * before;
         if !is_another {
             return Some(mode);

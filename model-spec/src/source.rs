@@ -21,17 +21,17 @@ pub struct Source {
     origin: Option<Arc<Origin>>,
 }
 
-/// Files of a merged text, the first one being the extended specification.
+/// Files of a merged text. The first file is the specification that extends the others.
 #[derive(Debug)]
 struct Origin {
     files: Vec<Source>,
-    /// In the order of the text.
-    parts: Vec<Copied>,
+    /// Parts, in the order of the text.
+    parts: Vec<CopiedPart>,
 }
 
 /// Part of a merged text that was copied from a file.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Copied {
+pub(crate) struct CopiedPart {
     /// Position in the merged text.
     pub place: Span,
     /// Index of the file.
@@ -68,7 +68,7 @@ impl Source {
     }
 
     /// Returns the source with the merged text of several files.
-    pub(crate) fn merged(&self, text: String, files: Vec<Source>, parts: Vec<Copied>) -> Self {
+    pub(crate) fn merged(&self, text: String, files: Vec<Source>, parts: Vec<CopiedPart>) -> Self {
         Self {
             text: text.into(),
             origin: Some(Arc::new(Origin { files, parts })),
@@ -76,8 +76,8 @@ impl Source {
         }
     }
 
-    /// Returns the paths of all files of the text, as shown in messages: its own, then those that
-    /// it extends.
+    /// Returns the paths of all files of the text, as shown in messages: the file itself, then the files that it
+    /// extends.
     pub fn files(&self) -> Vec<&str> {
         match &self.origin {
             Some(origin) => origin.files.iter().map(|file| &*file.path).collect(),
@@ -90,7 +90,7 @@ impl Source {
         let Some(origin) = &self.origin else {
             return (self, span);
         };
-        let is_before = |part: &Copied| match span.start < span.end {
+        let is_before = |part: &CopiedPart| match span.start < span.end {
             true => part.place.end <= span.start,
             false => part.place.end < span.start,
         };
@@ -98,13 +98,13 @@ impl Source {
         let Some(part) = origin.parts.get(first).or(origin.parts.last()) else {
             return (self, span);
         };
-        let inside = |part: &Copied, offset: usize| {
+        let inside = |part: &CopiedPart, offset: usize| {
             let offset = offset.saturating_sub(part.place.start);
             (part.from.start + offset).min(part.from.end)
         };
         let start = inside(part, span.start);
-        // A table may consist of several parts of one file.
-        let follows = |next: &&Copied| {
+        // A span may cover several consecutive parts of one file, for example a table.
+        let follows = |next: &&CopiedPart| {
             next.file == part.file
                 && next.from.start >= part.from.start
                 && next.place.start < span.end

@@ -1,5 +1,5 @@
-//! Positions in a source, as byte offsets in its text. The source is a file, or the text that a
-//! macro writes from its tokens.
+//! Positions in a source, as byte offsets in its text. The source is a file, or the text that the macro generates
+//! from its tokens.
 
 use serde::Serialize;
 

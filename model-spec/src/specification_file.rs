@@ -10,7 +10,7 @@ use crate::span::Span;
 /// Largest specification read, in bytes.
 pub const MAX_SIZE: u64 = 1 << 20;
 
-/// Reads the text of a file; findings show the path `shown`.
+/// Reads the text of a file. Messages contain the path `shown`.
 pub(crate) fn read_text(file: &Path, shown: &str) -> Result<String, Diagnostics> {
     let bytes = read(file)
         .map_err(|diagnostic| Diagnostics::from_one(Source::new(shown, ""), diagnostic))?;

@@ -1,15 +1,16 @@
 //! Suggests the nearest known name for an unknown one.
 
-/// Largest edit distance of a misspelling. At a larger one, a known name that the wrong one begins with is nearer.
+/// Largest edit distance of a misspelling. Beyond this distance, a known name that is the beginning of the wrong name
+/// is a better suggestion.
 const MAX_MISSPELLING: usize = 2;
 
-/// Shortest known name that a longer one may begin with.
+/// Smallest length of a known name that is suggested as the beginning of a wrong name.
 const MIN_BEGINNING: usize = 3;
 
-/// Returns the nearest known name: one within the limit of the edit distance for its length, or the first words of the
-/// wrong name, such as `initial` for `initial_value`.
+/// Returns the nearest known name: a name within the edit distance that its length permits, or a name that is the
+/// beginning of the wrong name, such as `initial` for `initial_value`.
 pub fn nearest<'k>(wrong: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
-    // Names have at most 64 letters; a longer text is no misspelling.
+    // Names have at most 64 letters, so a much longer text is not a misspelling.
     if wrong.len() > 128 {
         return None;
     }
@@ -22,7 +23,7 @@ pub fn nearest<'k>(wrong: &str, known: impl IntoIterator<Item = &'k str>) -> Opt
     }
 }
 
-/// Returns the longest known name that is the beginning of a longer one, up to a `_`.
+/// Returns the longest known name that is the beginning of the wrong name, up to a `_`.
 fn find_beginning<'k>(lowered: &str, known: &[&'k str]) -> Option<&'k str> {
     let begins = |name: &&&str| {
         let rest = lowered.strip_prefix(&*name.to_lowercase());
@@ -35,7 +36,7 @@ fn find_beginning<'k>(lowered: &str, known: &[&'k str]) -> Option<&'k str> {
         .copied()
 }
 
-/// Returns the known name with the least edit distance, and the distance.
+/// Returns the known name with the smallest edit distance, and this distance.
 fn nearest_by_letters<'k>(lowered: &str, known: &[&'k str]) -> Option<(usize, &'k str)> {
     known
         .iter()

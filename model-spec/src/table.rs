@@ -1,5 +1,5 @@
-//! Entries of TOML tables with the position of every key and value, and errors for values of the
-//! wrong kind. `record` reports unknown keys; `quantity` has the values.
+//! Entries of TOML tables with the position of every key and value, and errors for values of the wrong kind. `record`
+//! reports unknown keys; `quantity` contains the types of the values.
 
 use toml_edit::{Item, Table, TableLike, Value};
 
@@ -14,7 +14,7 @@ use crate::unit::Unit;
 /// One `key = value` of a table.
 #[derive(Clone)]
 pub struct Entry<'d> {
-    /// The key; for an element of a list, the key of the list.
+    /// Key; for an element of a list, the key of the list.
     pub name: Name,
     node: Node<'d>,
     /// Text of the whole file.
@@ -123,10 +123,10 @@ impl<'d> Entry<'d> {
         }
     }
 
-    /// Returns the meaning of one of the known words.
+    /// Returns the value that `known` assigns to the word.
     ///
     /// # Errors
-    /// A value of another kind, or an unknown word, with the nearest known one.
+    /// The value is of another kind, or the word is unknown; the message contains the nearest known word.
     pub fn keyword<T: Copy>(&self, known: &[(&str, T)]) -> Result<T, Diagnostic> {
         let written = self.written()?;
         let meant = known.iter().find(|(word, _)| *word == written.text);
@@ -184,7 +184,7 @@ impl<'d> Entry<'d> {
     /// Returns a finite number.
     ///
     /// # Errors
-    /// A value of another kind, or a number that is not finite.
+    /// The value is of another kind, or the number is not finite.
     pub fn number(&self) -> Result<Number, Diagnostic> {
         let value = self.value();
         value
@@ -233,7 +233,7 @@ impl<'d> Entry<'d> {
     /// Returns the two numbers or expressions of an array, for example a range.
     ///
     /// # Errors
-    /// A value of another kind, or another number of elements.
+    /// The value is of another kind, or the number of elements differs.
     pub fn pair(&self) -> Result<[Quantity; 2], Diagnostic> {
         let example = "[-0.1, 0.1]";
         let Some(Value::Array(array)) = self.value() else {
@@ -261,7 +261,7 @@ impl<'d> Entry<'d> {
     /// Returns the numbers or expressions of an array with one of the lengths in `counts`.
     ///
     /// # Errors
-    /// A value of another kind, or another number of elements.
+    /// The value is of another kind, or the number of elements differs.
     pub fn quantities(&self, counts: &[usize], example: &str) -> Result<Vec<Quantity>, Diagnostic> {
         let list = self.list(example)?;
         if !counts.contains(&list.len()) {

@@ -11,10 +11,10 @@ use crate::span::Span;
 use crate::table::{Entry, entries};
 use crate::unit::Unit;
 
-/// Reads a TOML file with `of`, which receives the entries of the top level.
+/// Reads a TOML file and passes the entries of its top level to `of`.
 ///
 /// # Errors
-/// The first error of the TOML grammar, or all findings of `of`.
+/// The first TOML syntax error, or all errors of `of`.
 pub fn read<T>(
     source: &Source,
     of: impl FnOnce(&[Entry<'_>], &mut Diagnostics) -> Option<T>,
@@ -32,7 +32,7 @@ pub fn read<T>(
 /// Reads a UTF-8 file of at most `limit` bytes.
 ///
 /// # Errors
-/// A file that is missing, too large, unreadable or not UTF-8.
+/// The file is missing, too large, not readable or not UTF-8.
 pub fn source(path: &Path, limit: u64) -> Result<Source, Diagnostics> {
     let shown = path.display().to_string();
     let wrong = |message: String| {
@@ -78,7 +78,7 @@ pub(crate) fn grammar_error(text: &str, error: &toml_edit::TomlError) -> Diagnos
         .with_optional_help(help)
 }
 
-/// Returns the notation of TOML for that of another language at an error.
+/// If the text at a syntax error is a notation of another language, returns the TOML notation.
 fn foreign_grammar(text: &str, place: usize) -> Option<String> {
     let start = text[..place].rfind('\n').map_or(0, |end| end + 1);
     let line = text[start..].lines().next().unwrap_or_default();

@@ -34,11 +34,11 @@ pub enum Law {
 }
 
 impl Model {
-    /// Returns the distributions of the uncertain parameters about their present values, in the
-    /// order of the model. A parameter with a relative uncertainty keeps its sign.
+    /// Returns the distributions of the uncertain parameters about their current values, in the order of the model. A
+    /// parameter with a relative uncertainty keeps its sign.
     ///
     /// # Errors
-    /// An uncertainty that is invalid for the present value, with the name of the parameter.
+    /// An uncertainty is invalid for the current value; the error contains the name of the parameter.
     pub fn distributions(&self) -> Result<Vec<Distribution>, ModelError> {
         let uncertain = self.parameters.iter().filter_map(|parameter| {
             let uncertainty = parameter.uncertainty.as_ref()?;
@@ -116,7 +116,7 @@ fn normal(
     let low = [parameter.min, further[0]].into_iter().flatten();
     let high = [parameter.max, further[1]].into_iter().flatten();
     let bounds = [low.reduce(f64::max), high.reduce(f64::min)];
-    // Each number is rounded when it is read and when it is converted, and their difference once more.
+    // Each number is rounded when it is read and when it is converted, and the difference is rounded again.
     let rounding = |bound: f64| 2.0 * f64::EPSILON * (bound.abs() + value.abs() + sd);
     let near = |bound: &f64| (bound - value).abs() < sd - rounding(*bound);
     if bounds.iter().flatten().any(near) {

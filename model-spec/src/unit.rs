@@ -22,11 +22,11 @@ pub struct Unit {
 /// Error of [`Unit::parse`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnitError {
-    /// The cause.
+    /// Cause.
     pub message: String,
-    /// The cure, if known.
+    /// Proposed correction, if known.
     pub help: Option<String>,
-    /// The unit in the notation of a specification, if it is written in another usual one.
+    /// The unit in the notation of a specification, if it is written in another common notation.
     pub spelling: Option<String>,
 }
 
@@ -69,7 +69,7 @@ const PREFIXED: [(&str, i32, [i32; 7]); 20] = [
     ("H", 0, [1, 2, -2, -2, 0, 0, 0]),
 ];
 
-/// Words for units, without the ending of a plural, and their symbols.
+/// Words for units in the singular, and their symbols.
 const WORDS: [(&str, &str); 30] = [
     ("deg", "deg"),
     ("degree", "deg"),
@@ -116,7 +116,7 @@ const PREFIX_WORDS: [(&str, &str); 9] = [
     ("k", "k"),
 ];
 
-/// Raised digits.
+/// Superscript digits.
 const RAISED: [(char, char); 11] = [
     ('⁰', '0'),
     ('¹', '1'),
@@ -131,7 +131,7 @@ const RAISED: [(char, char); 11] = [
     ('⁻', '-'),
 ];
 
-/// Units outside SI, with their cure.
+/// Units outside SI, with a proposed correction.
 const OUTSIDE_SI: [(&[&str], &str); 10] = [
     (
         &["rpm", "RPM"],
@@ -166,14 +166,14 @@ const OUTSIDE_SI: [(&[&str], &str); 10] = [
 /// Largest exponent accepted in a unit.
 const MAX_EXPONENT: i32 = 12;
 
-/// Longest unit accepted, in bytes.
+/// Largest length of a unit, in bytes.
 const MAX_LENGTH: usize = 64;
 
 impl Unit {
     /// Parses a unit; `""` and `"1"` are dimensionless.
     ///
     /// # Errors
-    /// The part that is not a unit, with a valid spelling if known.
+    /// A part of the text is not a unit. The error contains a valid spelling if one is known.
     pub fn parse(text: &str) -> Result<Self, UnitError> {
         if text.len() > MAX_LENGTH {
             return Err(UnitError::new("a unit has at most 64 characters", None));
@@ -460,8 +460,8 @@ fn unknown_unit_error(symbol: &str) -> UnitError {
     UnitError::new(format!("unknown unit `{symbol}`"), Some(help))
 }
 
-/// Writes a unit of another usual notation, such as `m/s**2`, `kg.m²` or `newton`, in that of a specification; `None`
-/// if it is the same.
+/// Converts a unit from another common notation, such as `m/s**2`, `kg.m²` or `newton`, to the notation of a
+/// specification. Returns `None` if the text does not change.
 fn respell(text: &str) -> Option<String> {
     let letters: Vec<char> = text.replace("**", "^").chars().collect();
     let (mut spelled, mut word) = (String::new(), String::new());

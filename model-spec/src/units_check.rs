@@ -13,7 +13,7 @@ use crate::model::{
 use crate::resolve::ResolvedModel;
 use crate::unit::Unit;
 
-/// Checks the units of all expressions, and sets those of definitions and observables.
+/// Checks the units of all expressions, and sets the units of definitions and observables.
 pub fn check(resolved: &mut ResolvedModel, found: &mut Diagnostics) {
     let mut units = Units {
         known: Inference {
@@ -29,19 +29,19 @@ pub fn check(resolved: &mut ResolvedModel, found: &mut Diagnostics) {
     units.inputs();
     units.fields();
     // A wrong unit of gravity would be reported at the rotations of frames, whose definitions contain it.
-    if units.demands(&resolved.required_units)
+    if units.check_demands(&resolved.required_units)
         && units.definitions()
-        && units.short_forms(&resolved.required_units, &resolved.same_unit_vectors)
+        && units.check_shorthands(&resolved.required_units, &resolved.same_unit_vectors)
     {
         units.states();
         units.energies();
         units.forces();
-        units.stabilisation_rate();
+        units.check_stabilisation_rate();
         units.coefficients();
     }
     let observables = units.observables(&resolved.declared_units);
     let constraints: Vec<Unit> = units.constraints();
-    let impacts: Vec<Unit> = units.impacts();
+    let impacts: Vec<Unit> = units.check_impacts();
     let definitions = units.known.definitions;
     for (impact, unit) in resolved.model.impacts.iter_mut().zip(impacts) {
         impact.unit = unit;
@@ -182,7 +182,7 @@ impl Units<'_, '_> {
     }
 
     /// Checks the unit of a declared stabilisation rate.
-    fn stabilisation_rate(&mut self) {
+    fn check_stabilisation_rate(&mut self) {
         let model = self.model;
         let declared = model
             .parameters
@@ -221,7 +221,7 @@ impl Units<'_, '_> {
 
     /// Returns the unit of every distance. Checks that restitutions and coefficients of friction are
     /// dimensionless, and that slips are in the unit of the distance per second.
-    fn impacts(&mut self) -> Vec<Unit> {
+    fn check_impacts(&mut self) -> Vec<Unit> {
         let mut units = Vec::with_capacity(self.model.impacts.len());
         for impact in &self.model.impacts {
             let subject = format!("the restitution of `{}`", impact.name);
@@ -256,7 +256,7 @@ impl Units<'_, '_> {
                 None => {
                     let inferred = self.known.infer(&observable.value);
                     let inferred = match observable.value.kind {
-                        // An error in a constraint is reported at the constraint.
+                        // If the constraint has an error, it is reported at the constraint.
                         ExprKind::Multiplier(_) | ExprKind::Residual(_) => inferred.ok(),
                         _ => self.found.push_error(inferred),
                     }
@@ -282,9 +282,9 @@ impl Units<'_, '_> {
         }
     }
 
-    /// Checks the units of the quantities of shorthands. Returns false after an error: the
-    /// energies of the shorthand would repeat it.
-    fn short_forms(
+    /// Checks the units of the quantities in shorthands. Returns false after an error; the energies of the shorthand
+    /// are then not checked, because they would repeat the error.
+    fn check_shorthands(
         &mut self,
         demanded: &[(Expr, Dimension, String)],
         vectors: &[Vec<Expr>],
@@ -293,18 +293,18 @@ impl Units<'_, '_> {
         for vector in vectors {
             self.expect_same_unit(vector);
         }
-        self.demands(demanded);
+        self.check_demands(demanded);
         !clean || self.found.is_empty()
     }
 
-    /// Checks the units of quantities as far as they are known. Returns false after an error.
-    fn demands(&mut self, demanded: &[(Expr, Dimension, String)]) -> bool {
+    /// Checks the units of the quantities that have a unit. Returns false after an error.
+    fn check_demands(&mut self, demanded: &[(Expr, Dimension, String)]) -> bool {
         let clean = self.found.is_empty();
         for (value, dimension, subject) in demanded {
             let expected = format!("expected {}", UnitPhrase(*dimension));
             self.expect(value, *dimension, subject, &expected);
         }
-        // A quotient with the divisor 0 has no unit; `constants` reports it.
+        // A quotient with the divisor 0 has no unit; the module `constants` reports this error.
         let has_unit = |(value, ..): &(Expr, Dimension, String)| !self.divides_by_zero(value);
         let all_have_units = demanded.iter().all(has_unit);
         !clean || self.found.is_empty() && all_have_units
@@ -324,7 +324,7 @@ impl Units<'_, '_> {
         }
     }
 
-    /// Checks that the components of a vector have one unit.
+    /// Checks that the components of a vector have equal units.
     fn expect_same_unit(&mut self, components: &[Expr]) {
         let mut first: Option<(Dimension, &Expr)> = None;
         for component in components {
@@ -353,7 +353,7 @@ impl Units<'_, '_> {
         }
     }
 
-    /// Checks the unit of a quantity for which a bare number is in SI.
+    /// Checks the unit of a quantity. A number without a unit is in SI.
     fn expect_quantity(&mut self, expr: &Expr, expected: Dimension, subject: &str) {
         if !matches!(expr.kind, ExprKind::Number(_)) {
             self.expect(

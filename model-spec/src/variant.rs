@@ -1,5 +1,4 @@
-//! Evaluates and changes the numbers of a model: values of parameters, orders of fields, names
-//! of states.
+//! Numbers of a model and their changes: values of parameters, orders of fields, names of states.
 
 use std::path::{Path, PathBuf};
 
@@ -14,12 +13,12 @@ use crate::{constants, positions};
 /// Largest number of names in a suggestion.
 const MAX_SUGGESTIONS: usize = 12;
 
-/// Error of a change: the model is invalid with these numbers.
+/// Error of a model that is invalid with its numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ModelError {
-    /// The cause.
+    /// Cause.
     pub message: String,
-    /// The cure, if known.
+    /// Proposed correction, if known.
     pub help: Option<String>,
     /// Position in the specification, if there is one.
     pub span: Option<Span>,
@@ -44,7 +43,7 @@ impl ModelError {
         self
     }
 
-    /// Converts the error to a finding on the model's source.
+    /// Converts the error to a diagnostic of the source of the model.
     pub fn diagnostic(self) -> Diagnostic {
         let diagnostic = Diagnostic::error(self.message).with_optional_help(self.help);
         match self.span {
@@ -67,9 +66,9 @@ impl std::fmt::Display for ModelError {
 impl std::error::Error for ModelError {}
 
 impl Model {
-    /// Returns the SHA-256 of everything that the model was read from. Without tables it is the
-    /// hash of the specification's text. With tables it is the hash of the hexadecimal digits of
-    /// that hash followed by those of the tables, in the order of the fields.
+    /// Returns the SHA-256 of all text from which the model was read. If there are no tables, it is the hash of the
+    /// text of the specification. If there are tables, the hexadecimal hashes of the specification and of the tables,
+    /// in the order of the fields, are concatenated and hashed.
     pub fn hash(&self) -> String {
         let tables = self.fields.iter().filter_map(|field| field.basis.table());
         let tables: String = tables.map(|table| table.sha256.as_str()).collect();
@@ -79,8 +78,8 @@ impl Model {
         }
     }
 
-    /// Returns the paths of all files that the model was read from, as shown in messages: the
-    /// specification, those that it extends, and its tables.
+    /// Returns the paths of all files that the model was read from, as shown in messages: the specification, the
+    /// files that it extends, and its tables.
     pub fn files(&self) -> Vec<PathBuf> {
         let folder = Path::new(&self.source.path).parent();
         let folder = folder.unwrap_or(Path::new(""));
@@ -91,7 +90,7 @@ impl Model {
             .collect()
     }
 
-    /// Returns the highest order of all fields: a table has one shape per column.
+    /// Returns the highest order that all fields support. A table supports as many modes as it has shapes.
     pub fn highest_order(&self) -> usize {
         let tables = self.fields.iter().filter_map(|field| field.basis.table());
         tables.fold(MAX_ORDER, |order, table| order.min(table.shapes.len()))
@@ -109,7 +108,7 @@ impl Model {
             .chain(self.observables.iter().map(|observable| &observable.value))
     }
 
-    /// Returns the lowest order with all single modes that the expressions of the motion name.
+    /// Returns the lowest order that contains all single modes that the expressions of the motion name.
     pub fn lowest_order(&self) -> usize {
         let mut lowest = 0;
         for expression in self.motion_expressions() {
@@ -125,7 +124,7 @@ impl Model {
     /// Returns the values of all parameters in SI, in the order of [`Model::parameters`].
     ///
     /// # Errors
-    /// A value that is not finite or outside its bounds, with the name of the parameter.
+    /// A value is not finite or outside its bounds; the error contains the name of the parameter.
     pub fn parameter_values(&self) -> Result<Vec<f64>, ModelError> {
         let values = self.evaluated_parameters();
         for &index in &self.parameter_order {
@@ -150,7 +149,7 @@ impl Model {
     /// rates, and the first-order states.
     ///
     /// # Errors
-    /// Those of [`Model::parameter_values`], and initial values that are not finite.
+    /// As for [`Model::parameter_values`], or an initial value is not finite.
     pub fn initial_state(&self, orders: &[usize]) -> Result<Vec<f64>, ModelError> {
         let parameters = self.parameter_values()?;
         let modes: usize = orders.iter().sum();
@@ -180,7 +179,7 @@ impl Model {
     /// Returns the ranges of the coordinates, in SI; `None` without a `range`.
     ///
     /// # Errors
-    /// Those of [`Model::parameter_values`].
+    /// As for [`Model::parameter_values`].
     pub fn coordinate_ranges(&self) -> Result<Vec<Option<(f64, f64)>>, ModelError> {
         let values = self.parameter_values()?;
         let ranges = self.coordinates.iter().map(|c| c.range.as_ref());
@@ -192,7 +191,7 @@ impl Model {
     /// Returns the ranges of the first-order states, in SI; `None` without a `range`.
     ///
     /// # Errors
-    /// Those of [`Model::parameter_values`].
+    /// As for [`Model::parameter_values`].
     pub fn state_ranges(&self) -> Result<Vec<Option<(f64, f64)>>, ModelError> {
         let values = self.parameter_values()?;
         let ranges = self.states.iter().map(|state| state.range.as_ref());
@@ -205,7 +204,7 @@ impl Model {
     /// energies, gets the middle of its range, or `without_range`; any other input gets 0.
     ///
     /// # Errors
-    /// Those of [`Model::parameter_values`].
+    /// As for [`Model::parameter_values`].
     pub fn typical_inputs(&self, without_range: f64) -> Result<Vec<f64>, ModelError> {
         let ranges = self.input_ranges()?;
         let typical = self.inputs.iter().zip(ranges).map(|(input, range)| {
@@ -221,7 +220,7 @@ impl Model {
     /// Returns the ranges of the inputs, in SI; `None` without a `range`.
     ///
     /// # Errors
-    /// Those of [`Model::parameter_values`].
+    /// As for [`Model::parameter_values`].
     pub fn input_ranges(&self) -> Result<Vec<Option<(f64, f64)>>, ModelError> {
         let values = self.parameter_values()?;
         let ranges = self.inputs.iter().map(|input| input.range.as_ref());
@@ -234,8 +233,7 @@ impl Model {
     /// parameters are recomputed.
     ///
     /// # Errors
-    /// An unknown name, a number that is not finite or outside its bounds, or a dependent value
-    /// that is not finite.
+    /// The name is unknown, the number is not finite or outside its bounds, or a dependent value is not finite.
     pub fn with_parameter(&self, name: &str, value: f64) -> Result<Self, ModelError> {
         self.with_parameters(&[(name, value)])
     }
@@ -243,7 +241,7 @@ impl Model {
     /// Returns the model with several parameters set. Only the final values are checked.
     ///
     /// # Errors
-    /// Those of [`Model::with_parameter`].
+    /// As for [`Model::with_parameter`].
     pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Self, ModelError> {
         let mut model = self.clone();
         for (name, value) in settings {
@@ -269,8 +267,8 @@ impl Model {
         Ok(())
     }
 
-    /// Suggests parameters for an unknown name: the nearest, those with a common part, or the first
-    /// of all.
+    /// Suggests parameters for an unknown name: the nearest name, names with a common part, or the first parameters
+    /// of the model.
     pub(crate) fn suggest_parameters(&self, name: &str) -> String {
         let known = || self.parameters.iter().map(|known| known.name.as_str());
         if let Some(help) = did_you_mean(name, known()) {
@@ -309,8 +307,8 @@ impl Model {
     /// Returns the order of each field: its default, or `order` for all of them.
     ///
     /// # Errors
-    /// An order above [`MAX_ORDER`] or above the number of shapes in a table; an order other than 0
-    /// without a field.
+    /// The order is above [`MAX_ORDER`] or above the number of shapes in a table, or the order is not 0 and the model
+    /// has no field.
     pub fn orders(&self, order: Option<usize>) -> Result<Vec<usize>, ModelError> {
         match order {
             Some(order) if order > MAX_ORDER => {

@@ -1,8 +1,8 @@
-//! Quantities from options, as `NAME=VALUE`, with the syntax of a specification.
+//! Quantities in command-line options, as `NAME=VALUE`, with the syntax of a specification.
 //!
-//! A plain number is in the unit of the quantity. Any other value is an expression of
-//! parameters and constants in SI, with the right unit, for example `pi/3` or `2*l`; or it ends
-//! with a unit, for example `30 deg` or `2*sqrt(2) mm`.
+//! A plain number is in the unit of the quantity. A value can also end with a unit, for example `30 deg` or
+//! `2*sqrt(2) mm`. Any other value is an expression of parameters and constants in SI whose unit must match, for
+//! example `pi/3` or `2*l`.
 
 mod quantity_reader;
 mod settings;
@@ -27,7 +27,7 @@ impl Assignment {
     /// messages.
     ///
     /// # Errors
-    /// No `=`, or an empty name or value.
+    /// The text has no `=`, or the name or the value is empty.
     pub fn split(option: &str, text: &str) -> Result<Self, Diagnostics> {
         let source = Source::new(option, text);
         let trimmed = |start: usize, end: usize| {
@@ -54,7 +54,7 @@ impl Assignment {
         }
     }
 
-    /// Returns the option that contains it.
+    /// Returns the option that contains the assignment.
     pub fn option(&self) -> &str {
         &self.source.path
     }
@@ -69,7 +69,7 @@ impl Assignment {
         &self.source.text
     }
 
-    /// Returns the finding that the name is wrong.
+    /// Returns the error that the name is wrong.
     pub fn name_error(&self, message: String, help: Option<String>) -> Diagnostics {
         let wrong = Diagnostic::error(message)
             .with_span(self.name, "")
@@ -77,8 +77,8 @@ impl Assignment {
         Diagnostics::from_one(self.source.clone(), wrong)
     }
 
-    /// Returns findings of a text that contains the value, at their places in this option. `None` if a finding has
-    /// no place in the value.
+    /// Converts errors in a text that contains the value to errors at their positions in this option. Returns `None`
+    /// if an error has no position in the value.
     pub fn relocated(&self, found: &Diagnostics) -> Option<Diagnostics> {
         let (text, value) = (&found.source().text, self.value());
         let shifted = |span: Span| {
@@ -244,7 +244,7 @@ kept = "a + d/l"
 
     #[test]
     fn settings_do_not_depend_on_their_order() {
-        // d = l/r is declared: r = 5*d/l refers to l by it, and to its own declared value 3.
+        // d = l/r is declared. Therefore r = 5*d/l refers to l, and also to its own declared value 3.
         for texts in [
             ["l=1 m", "m=2*m", "a=d/l", "r=6*d/l"],
             ["r=6*d/l", "a=d/l", "m=2*m", "l=1 m"],
@@ -290,7 +290,7 @@ kept = "a + d/l"
     }
 
     #[test]
-    fn findings_of_an_edited_text_are_relocated() {
+    fn errors_of_an_edited_text_are_relocated() {
         let given = Assignment::split("--input", "u = 2*zz + 1").expect("an assignment");
         let text = "# 1\n[definitions]\nu = \"2*zz + 1\"\n";
         let start = text.find("zz").expect("the name");

@@ -24,10 +24,10 @@ pub struct QuantityReader<'m> {
 }
 
 impl<'m> QuantityReader<'m> {
-    /// Creates a reader at the present parameter values of the model.
+    /// Creates a reader with the current parameter values of the model.
     ///
     /// # Errors
-    /// Those of [`crate::check`], for a model that was changed by hand.
+    /// As for [`crate::check`], if the model was changed by the caller.
     pub fn new(model: &'m Model) -> Result<Self, Diagnostics> {
         let mut document = document::read(&model.source)?;
         space::expand(&mut document, &model.source)?;
@@ -46,8 +46,8 @@ impl<'m> QuantityReader<'m> {
     /// Returns the value of an assignment, in the unit of the quantity.
     ///
     /// # Errors
-    /// An invalid expression, an unknown name, a unit that does not match, or a value that is not
-    /// finite, with the position in the option.
+    /// The expression is invalid, a name is unknown, the unit does not match, or the value is not finite. Errors have
+    /// a position in the option.
     pub fn read(&self, given: &Assignment, unit: &Unit) -> Result<f64, Diagnostics> {
         let value = self.value(given, unit);
         let checked = value.and_then(|value| check_magnitude(given, value, unit));
@@ -88,7 +88,7 @@ impl<'m> QuantityReader<'m> {
         inference.infer(value)
     }
 
-    /// Converts a number with an explicit unit.
+    /// Converts a number with an explicit unit to the unit of the quantity.
     fn convert_with_unit(
         &self,
         given: &Assignment,
@@ -148,7 +148,7 @@ fn underflow_error(given: &Assignment) -> Diagnostic {
         .with_span(given.value, "below 4.9e-324 in SI, it would be read as 0")
 }
 
-/// Converts an expression without an explicit unit, which is in SI.
+/// Converts the value of an expression without an explicit unit, which is in SI, to the unit of the quantity.
 fn convert_from_si(
     given: &Assignment,
     number: f64,

@@ -10,13 +10,12 @@ use crate::span::Span;
 use crate::unit::Unit;
 
 impl Model {
-    /// Returns the values of assignments to parameters, in the declared units and the given order.
-    /// An expression uses the assigned values of the parameters in it; its own parameter has the
-    /// declared value. The order of the assignments has no effect.
+    /// Returns the values of assignments to parameters, in the declared units and the given order. An expression uses
+    /// the assigned values of other parameters, and the declared value of the parameter that it sets. The order of
+    /// the assignments has no effect.
     ///
     /// # Errors
-    /// An unknown parameter, assignments that refer to each other, and errors of
-    /// [`QuantityReader::read`].
+    /// A parameter is unknown, or assignments refer to each other; also errors of [`QuantityReader::read`].
     pub fn read_settings(&self, given: &[Assignment]) -> Result<Vec<(String, f64)>, Diagnostics> {
         let places = given
             .iter()
@@ -37,7 +36,7 @@ impl Model {
         Ok(names.zip(values).collect())
     }
 
-    /// Returns the index of the parameter of an assignment.
+    /// Returns the index of the parameter that an assignment sets.
     fn find_assigned(&self, assignment: &Assignment) -> Result<usize, Diagnostics> {
         let name = assignment.name();
         let place = self.parameters.iter().position(|known| known.name == name);
@@ -47,7 +46,7 @@ impl Model {
         })
     }
 
-    /// Returns the other assignments to which one refers, directly or by declared expressions of
+    /// Returns the other assignments to which an assignment refers, directly or through declared expressions of
     /// parameters that are not assigned.
     fn find_references(
         &self,
@@ -76,8 +75,7 @@ impl Model {
         found
     }
 
-    /// Returns the units of the states at these orders: coordinates and modes, their rates, states
-    /// of first order.
+    /// Returns the units of the states at these orders: coordinates and modes, their rates, and first-order states.
     pub fn state_units(&self, orders: &[usize]) -> Vec<Unit> {
         let mut units: Vec<Unit> = self
             .coordinates
@@ -118,7 +116,7 @@ fn parameters_of(value: &Expr) -> Vec<usize> {
     found
 }
 
-/// Returns the error of assignments that refer to each other.
+/// Returns the error for assignments that refer to each other.
 fn cycle_error(given: &[Assignment], cycle: &[Reference]) -> Diagnostics {
     let names: Vec<String> = cycle
         .iter()

@@ -1,9 +1,9 @@
-//! Expressions of controllers, over numbers that are known at a sample.
+//! Expressions of controllers. Their quantities are known at a sample.
 
 use crate::model::{MeasuredQuantity, Model, SampledExpression, SampledKind};
 
 impl MeasuredQuantity {
-    /// Returns the name in the state of the model, for a part of it.
+    /// Returns the name of the quantity in the state of the model, if it is an element of the state.
     pub fn state_name(&self, model: &Model) -> Option<String> {
         Some(match self {
             Self::Coordinate(id) => model.coordinates[*id].name.clone(),
@@ -25,7 +25,7 @@ impl MeasuredQuantity {
 }
 
 impl SampledExpression {
-    /// Calls `see` with this expression and all its parts.
+    /// Calls `see` with this expression and all its subexpressions.
     pub fn visit(&self, see: &mut impl FnMut(&Self)) {
         see(self);
         match &self.kind {

@@ -18,10 +18,10 @@ use crate::unit::Unit;
 use crate::variant::ModelError;
 
 impl Controller {
-    /// Returns the times at parameter values, SI.
+    /// Returns the times for parameter values in SI.
     ///
     /// # Errors
-    /// A period that is not positive, a negative offset or delay, each with its place.
+    /// The period is not positive, or the offset or delay is negative. Errors have a position in the text.
     pub fn schedule(&self, parameters: &[f64]) -> Result<Schedule, ModelError> {
         let times = [&self.period, &self.offset, &self.delay];
         let [period, offset, delay] =
@@ -45,10 +45,10 @@ impl Controller {
             .at(place.span))
     }
 
-    /// Returns the initial values of the states at parameter values, SI.
+    /// Returns the initial values of the states for parameter values in SI.
     ///
     /// # Errors
-    /// A value that is not finite.
+    /// A value is not finite.
     pub fn initial_states(&self, parameters: &[f64]) -> Result<Vec<f64>, ModelError> {
         let states = self.states.iter().map(|state| {
             let Some(initial) = &state.initial else {
@@ -87,10 +87,10 @@ impl Model {
         outputs.any(|output| output.input.index() == input)
     }
 
-    /// Rejects a model with controllers for `what`, which does not run them.
+    /// Rejects a model with controllers. `what` names the computation that does not support controllers.
     ///
     /// # Errors
-    /// The first controller.
+    /// The model has a controller; the error names the first one.
     pub fn reject_controllers(&self, what: &str) -> Result<(), ModelError> {
         self.controllers.first().map_or(Ok(()), |controller| {
             let message = format!(

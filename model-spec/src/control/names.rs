@@ -34,14 +34,14 @@ impl ControlResolver<'_> {
             SyntaxKind::Number(value) => SampledKind::Number(*value),
             SyntaxKind::Name(name) if name == "pi" => SampledKind::Number(std::f64::consts::PI),
             SyntaxKind::Name(name) => {
-                let quantity = self.quantity(name, span)?;
+                let quantity = self.resolve_quantity(name, span)?;
                 self.measure(quantity)
             }
             SyntaxKind::Call {
                 function,
                 function_span,
                 arguments,
-            } => self.call(function, *function_span, span, arguments)?,
+            } => self.resolve_call(function, *function_span, span, arguments)?,
             SyntaxKind::Negate(operand) => SampledKind::Negate(Box::new(self.resolve(operand)?)),
             SyntaxKind::Binary(operator, left, right) => {
                 let left = Box::new(self.resolve(left)?);
@@ -69,7 +69,7 @@ impl ControlResolver<'_> {
         }))
     }
 
-    fn quantity(&self, name: &str, span: Span) -> Result<MeasuredQuantity, Diagnostic> {
+    fn resolve_quantity(&self, name: &str, span: Span) -> Result<MeasuredQuantity, Diagnostic> {
         if let Some(place) = self.own.iter().position(|own| own == name) {
             return Ok(MeasuredQuantity::Own(place));
         }
@@ -107,13 +107,13 @@ impl ControlResolver<'_> {
                     .with_help("add it to [observables] and use the name of the observable"),
             ),
             None => self
-                .mode(name, false, span)
-                .ok_or_else(|| self.unknown_name(name, span)),
+                .find_mode(name, false, span)
+                .ok_or_else(|| self.unknown_name_error(name, span)),
         }
     }
 
     /// Returns the single mode of this name.
-    fn mode(&self, name: &str, is_rate: bool, span: Span) -> Option<MeasuredQuantity> {
+    fn find_mode(&self, name: &str, is_rate: bool, span: Span) -> Option<MeasuredQuantity> {
         let (stem, number) = name.rsplit_once('_')?;
         let Some(Symbol::Modes(field)) = self.names.get(stem) else {
             return None;
@@ -131,7 +131,7 @@ impl ControlResolver<'_> {
         })
     }
 
-    fn unknown_name(&self, name: &str, span: Span) -> Diagnostic {
+    fn unknown_name_error(&self, name: &str, span: Span) -> Diagnostic {
         let rate = name.strip_suffix("_dot");
         let rate = rate.filter(|stem| self.names.get(stem).is_some());
         let own = self.own.iter().map(String::as_str);
@@ -149,7 +149,7 @@ impl ControlResolver<'_> {
             .with_optional_help(help)
     }
 
-    fn call(
+    fn resolve_call(
         &mut self,
         name: &str,
         name_span: Span,
@@ -157,7 +157,7 @@ impl ControlResolver<'_> {
         arguments: &[Syntax],
     ) -> Result<SampledKind, Diagnostic> {
         if name == "dot" {
-            let rate = self.rate(span, arguments)?;
+            let rate = self.resolve_rate(span, arguments)?;
             return Ok(self.measure(rate));
         }
         if FORMS.contains(&name) {
@@ -172,7 +172,7 @@ impl ControlResolver<'_> {
         let expected = match (own, function) {
             (Some((_, expected)), _) => *expected,
             (None, Some(function)) => function.arguments(),
-            (None, None) => return Err(self.unknown_function(name, name_span)),
+            (None, None) => return Err(self.unknown_function_error(name, name_span)),
         };
         if arguments.len() != expected.len() {
             let (count, plural) = (arguments.len(), if arguments.len() == 1 { "" } else { "s" });
@@ -200,7 +200,11 @@ impl ControlResolver<'_> {
         })
     }
 
-    fn rate(&self, span: Span, arguments: &[Syntax]) -> Result<MeasuredQuantity, Diagnostic> {
+    fn resolve_rate(
+        &self,
+        span: Span,
+        arguments: &[Syntax],
+    ) -> Result<MeasuredQuantity, Diagnostic> {
         let not_measured = || {
             Diagnostic::error("this rate is not measured")
                 .with_span(
@@ -222,12 +226,12 @@ impl ControlResolver<'_> {
             Some(Symbol::Coordinate(id)) => Ok(MeasuredQuantity::CoordinateRate(id)),
             Some(_) => Err(not_measured()),
             None => self
-                .mode(name, true, span)
-                .ok_or_else(|| self.unknown_name(name, *name_span)),
+                .find_mode(name, true, span)
+                .ok_or_else(|| self.unknown_name_error(name, *name_span)),
         }
     }
 
-    fn unknown_function(&self, name: &str, span: Span) -> Diagnostic {
+    fn unknown_function_error(&self, name: &str, span: Span) -> Diagnostic {
         let known = crate::functions::callable_names();
         let known = known.chain(FUNCTIONS.iter().map(|(known, _)| *known));
         Diagnostic::error(format!("unknown function {}", quote(name)))

@@ -12,7 +12,7 @@ use crate::raw::{RawController, RawTime};
 use crate::suggest::did_you_mean;
 use crate::unit::Unit;
 
-/// Builds a controller. `driven` are the inputs of earlier controllers with the places of these outputs.
+/// Builds a controller. `driven` are the inputs that earlier controllers drive, with the positions of these outputs.
 pub(crate) fn resolve_controller(
     raw: RawController,
     names: &Names,
@@ -29,7 +29,7 @@ pub(crate) fn resolve_controller(
             .collect(),
         measured: Vec::new(),
     };
-    let mut time = |raw: &RawTime| sample_time(raw, names, found);
+    let mut time = |raw: &RawTime| resolve_sample_time(raw, names, found);
     let (period, offset, delay) = (time(&raw.period), time(&raw.offset), time(&raw.delay));
     let mut states = Vec::with_capacity(raw.states.len());
     for state in raw.states {
@@ -39,7 +39,9 @@ pub(crate) fn resolve_controller(
             .syntax()
             .and_then(|syntax| resolver.resolve(&syntax));
         let next = found.push_error(next);
-        let initial = state.initial.map(|value| constant(&value, names, found));
+        let initial = state
+            .initial
+            .map(|value| resolve_constant(&value, names, found));
         let (Some(unit), Some(next)) = (unit, next) else {
             continue;
         };
@@ -55,7 +57,7 @@ pub(crate) fn resolve_controller(
     let mut outputs: Vec<ControllerOutput> = Vec::with_capacity(raw.outputs.len());
     for (name, value) in raw.outputs {
         let input = find_input(&name, names, inputs);
-        let input = input.and_then(|input| refuse_second_controller(&name, input, driven));
+        let input = input.and_then(|input| reject_second_controller(&name, input, driven));
         let value = value.syntax().and_then(|syntax| resolver.resolve(&syntax));
         let (input, value) = (found.push_error(input), found.push_error(value));
         if let (Some(input), Some(value)) = (input, value) {
@@ -76,7 +78,11 @@ pub(crate) fn resolve_controller(
     })
 }
 
-fn sample_time(raw: &RawTime, names: &Names, found: &mut Diagnostics) -> Option<SampleTime> {
+fn resolve_sample_time(
+    raw: &RawTime,
+    names: &Names,
+    found: &mut Diagnostics,
+) -> Option<SampleTime> {
     let span = raw.value.span();
     let unit = match &raw.unit {
         None => Unit::coherent(Dimension::TIME),
@@ -93,8 +99,8 @@ fn sample_time(raw: &RawTime, names: &Names, found: &mut Diagnostics) -> Option<
             unit
         }
     };
-    let value = constant(&raw.value, names, found)?;
-    // An expression of parameters is in SI.
+    let value = resolve_constant(&raw.value, names, found)?;
+    // The value of an expression of parameters is in SI.
     let unit = match raw.value {
         Quantity::Number(_) => unit,
         _ => Unit::coherent(Dimension::TIME),
@@ -102,7 +108,7 @@ fn sample_time(raw: &RawTime, names: &Names, found: &mut Diagnostics) -> Option<
     Some(SampleTime { value, unit, span })
 }
 
-fn constant(value: &Quantity, names: &Names, found: &mut Diagnostics) -> Option<Expr> {
+fn resolve_constant(value: &Quantity, names: &Names, found: &mut Diagnostics) -> Option<Expr> {
     let resolved = value
         .syntax()
         .and_then(|syntax| Resolver::new(names, Scope::Parameters).resolve(&syntax));
@@ -155,7 +161,7 @@ fn find_input(name: &Name, names: &Names, inputs: &[Name]) -> Result<InputId, Di
     }
 }
 
-fn refuse_second_controller(
+fn reject_second_controller(
     name: &Name,
     input: InputId,
     driven: &[ControllerOutput],

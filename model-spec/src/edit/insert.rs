@@ -6,8 +6,8 @@ use super::{
     EditError, NewCoordinate, NewForce, NewParameter, NewState, NewTerm, NewValue, Section,
 };
 
-/// Adds a term, as a bare expression if it has no description and no origin.
-pub fn term(document: &mut DocumentMut, new: &NewTerm) -> Result<(), EditError> {
+/// Adds a term. If it has no description and no origin, the entry is only the expression.
+pub fn insert_term(document: &mut DocumentMut, new: &NewTerm) -> Result<(), EditError> {
     let value = if new.doc.is_empty() && new.source.is_empty() {
         Value::from(new.value.as_str())
     } else {
@@ -21,31 +21,31 @@ pub fn term(document: &mut DocumentMut, new: &NewTerm) -> Result<(), EditError> 
     insert(document, new.section.name(), &new.name, value)
 }
 
-pub fn parameter(document: &mut DocumentMut, new: &NewParameter) -> Result<(), EditError> {
+pub fn insert_parameter(document: &mut DocumentMut, new: &NewParameter) -> Result<(), EditError> {
     let mut table = InlineTable::new();
-    table.insert("value", new_value(&new.name, &new.value)?);
+    table.insert("value", format_value(&new.name, &new.value)?);
     table.insert("unit", Value::from(new.unit.as_str()));
     let value = add_texts(table, &[("doc", &new.doc), ("source", &new.source)]);
     insert(document, "parameters", &new.name, value)
 }
 
-pub fn coordinate(document: &mut DocumentMut, new: &NewCoordinate) -> Result<(), EditError> {
+pub fn insert_coordinate(document: &mut DocumentMut, new: &NewCoordinate) -> Result<(), EditError> {
     let mut table = InlineTable::new();
     table.insert("unit", Value::from(new.unit.as_str()));
     if let Some(initial) = &new.initial {
-        table.insert("initial", new_value(&new.name, initial)?);
+        table.insert("initial", format_value(&new.name, initial)?);
     }
     let value = add_texts(table, &[("doc", &new.doc)]);
     insert(document, "coordinates", &new.name, value)
 }
 
-pub fn state(document: &mut DocumentMut, new: &NewState) -> Result<(), EditError> {
+pub fn insert_state(document: &mut DocumentMut, new: &NewState) -> Result<(), EditError> {
     let texts = [("unit", &new.unit), ("rate", &new.rate), ("doc", &new.doc)];
     let value = add_texts(InlineTable::new(), &texts);
     insert(document, Section::States.name(), &new.name, value)
 }
 
-pub fn force(document: &mut DocumentMut, new: &NewForce) -> Result<(), EditError> {
+pub fn insert_force(document: &mut DocumentMut, new: &NewForce) -> Result<(), EditError> {
     let head = [("on", &new.on), ("value", &new.value)];
     let tail = [("doc", &new.doc), ("source", &new.source)];
     let value = add_texts(InlineTable::new(), &[head, tail].concat());
@@ -79,7 +79,7 @@ fn insert(
 /// Appends an empty section after an empty line.
 fn add_section(document: &mut DocumentMut, section: &str) {
     let mut table = Table::new();
-    // Text after the last entry, such as a closing comment, stays in front of the new section.
+    // Text after the last entry, such as a comment at the end, stays before the new section.
     let trailing = document.trailing().as_str().unwrap_or_default().to_owned();
     document.set_trailing("");
     let separator = if trailing.is_empty() || trailing.ends_with('\n') {
@@ -103,7 +103,7 @@ fn add_texts(mut table: InlineTable, texts: &[(&str, &String)]) -> Value {
 }
 
 /// Formats a number in the shortest form that parses to the same value.
-fn new_value(name: &str, value: &NewValue) -> Result<Value, EditError> {
+fn format_value(name: &str, value: &NewValue) -> Result<Value, EditError> {
     match value {
         NewValue::Expression(text) => Ok(Value::from(text.as_str())),
         NewValue::Number(number) => {

@@ -1,6 +1,5 @@
-//! Edits a specification: adds terms, parameters, coordinates and states, replaces expressions
-//! in terms, sets numbers. Comments, order and layout of the rest are kept. The result is
-//! checked.
+//! Edits a specification: adds terms, parameters, coordinates and states, replaces expressions in terms, and sets
+//! numbers. Comments, order and layout of the other text are kept. The result is checked.
 
 mod insert;
 mod prescribe;
@@ -93,7 +92,7 @@ pub enum Edit {
 /// input in its unit, with `t` in s. Otherwise the units have to match.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrescribeInput {
-    /// Name of the input, then of the definition.
+    /// Name of the input, which becomes the name of the definition.
     pub name: String,
     /// Expression.
     pub value: String,
@@ -106,7 +105,7 @@ pub struct SetParameter {
     pub name: String,
     /// Finite number in the declared unit; it also replaces an expression.
     pub value: f64,
-    /// Origin of the number; if empty, the present origin remains.
+    /// Origin of the number; if it is empty, the existing origin is kept.
     pub source: String,
 }
 
@@ -128,7 +127,7 @@ pub struct SetSensor {
 /// New term.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NewTerm {
-    /// Section; not `Forces` or `States`, whose entries need more than a value.
+    /// Section, except `Forces` and `States`, whose entries need more than a value.
     pub section: Section,
     /// Name, not yet used in the section.
     pub name: String,
@@ -196,9 +195,9 @@ pub struct NewForce {
     pub source: String,
 }
 
-/// Replacement of an expression in the values of named terms; each of the terms must contain
-/// it. Expressions are compared as syntax trees: spaces and superfluous brackets do not matter,
-/// the order of operands does.
+/// Replacement of an expression in the values of named terms. Each of the terms must contain the expression.
+/// Expressions are compared as syntax trees, so spaces and redundant brackets have no effect, but the order of
+/// operands has.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Substitution {
     /// Section of the terms.
@@ -243,7 +242,7 @@ pub enum EditError {
     Expression {
         /// Expression.
         text: String,
-        /// Finding, with positions as bytes of the expression.
+        /// Error; its positions are byte offsets in the expression.
         diagnostic: Box<Diagnostic>,
     },
     /// A value of the edit is not a finite number.
@@ -291,7 +290,7 @@ impl std::error::Error for EditError {}
 /// [`crate::check`].
 ///
 /// # Errors
-/// The first edit with a missing or existing target; or all findings on the result.
+/// The target of an edit is missing or already exists, or the result is invalid (all errors are returned).
 pub fn apply(source: &Source, edits: &[Edit]) -> Result<String, EditError> {
     let parsed: Result<DocumentMut, _> = source.text.parse();
     let Ok(mut document) = parsed else {
@@ -329,14 +328,14 @@ fn restore_line_ends(original: &str, edited: String) -> String {
 
 fn apply_one(document: &mut DocumentMut, edit: &Edit) -> Result<(), EditError> {
     match edit {
-        Edit::AddTerm(term) => insert::term(document, term),
-        Edit::AddParameter(parameter) => insert::parameter(document, parameter),
-        Edit::AddCoordinate(coordinate) => insert::coordinate(document, coordinate),
-        Edit::AddState(state) => insert::state(document, state),
-        Edit::AddForce(force) => insert::force(document, force),
+        Edit::AddTerm(term) => insert::insert_term(document, term),
+        Edit::AddParameter(parameter) => insert::insert_parameter(document, parameter),
+        Edit::AddCoordinate(coordinate) => insert::insert_coordinate(document, coordinate),
+        Edit::AddState(state) => insert::insert_state(document, state),
+        Edit::AddForce(force) => insert::insert_force(document, force),
         Edit::Substitute(substitution) => substitute::substitute(document, substitution),
-        Edit::SetParameter(parameter) => set::parameter(document, parameter),
-        Edit::SetSensor(sensor) => set::sensor(document, sensor),
+        Edit::SetParameter(parameter) => set::set_parameter(document, parameter),
+        Edit::SetSensor(sensor) => set::set_sensor(document, sensor),
         Edit::PrescribeInput(input) => prescribe::prescribe(document, input),
         Edit::RemoveControllers => {
             document.remove("controllers");

@@ -2,8 +2,8 @@
 
 use toml_edit::{DocumentMut, Item};
 
-use super::insert::{parameter, term};
-use super::substitute::{replaced, syntax};
+use super::insert::{insert_parameter, insert_term};
+use super::substitute::{replace_all, syntax};
 use super::{EditError, NewParameter, NewTerm, NewValue, PrescribeInput, Section};
 use crate::assignment::find_unit_start;
 use crate::ast::{Syntax, SyntaxKind};
@@ -28,15 +28,15 @@ pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<()
     if !of_numbers {
         check_value(with_input, edit, (given, own_unit), (&tree, &unit))?;
     }
-    // Numbers are dimensionless, and units are checked: parameters of value 1, a second and a
-    // unit of the input, supply the units.
+    // Numbers are dimensionless, and units are checked. Parameters of value 1, one in s and one in the unit of the
+    // input, supply the units.
     let needs_second = if is_timed { of_numbers } else { has_rates };
     let second = match needs_second {
         true => Some(add_unit_factor(document, "one_second", "s")?),
         false => None,
     };
     let timed = match &second {
-        Some(second) if is_timed => replaced(given, "t", &format!("t/{second}"))?,
+        Some(second) if is_timed => replace_all(given, "t", &format!("t/{second}"))?,
         _ => None,
     };
     let mut value = timed.unwrap_or_else(|| given.to_owned());
@@ -47,7 +47,7 @@ pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<()
     if !has_rates {
         return define(document, &edit.name, value);
     }
-    // The factor depends on the time, so that the definition has a rate.
+    // The factor depends on time, because the definition must have a rate.
     if let Some(second) = second.filter(|_| !is_timed) {
         value = format!("({value})*(1 + 0*t/{second})");
     }
@@ -64,7 +64,8 @@ pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<()
 }
 
 /// Checks that an expression of parameters and definitions does not depend on the motion, and that it has the unit of
-/// the input, or none if a unit follows it. Other errors are left to the check of the edited specification.
+/// the input, or no unit if a unit follows the expression. The check of the edited specification reports other
+/// errors.
 fn check_value(
     mut document: DocumentMut,
     edit: &PrescribeInput,
@@ -119,7 +120,7 @@ fn check_value(
         _ => return Ok(()),
     };
     let label = ("the value of the input", help.as_str());
-    Err(rejected(edit, tree.span, &message, label))
+    Err(expression_error(edit, tree.span, &message, label))
 }
 
 /// Splits a value into an expression and the unit after it, for example `5` and `kN`.
@@ -132,7 +133,7 @@ fn split_unit<'e>(
     };
     let is_word = |token: &Token| token.kind == TokenKind::Name("if".to_owned());
     let first = tokens.get(find_unit_start(&tokens));
-    // The parser explains conditions.
+    // The parser reports words of conditions such as `if`.
     let Some(first) = first.filter(|first| !is_word(first)) else {
         return Ok((&edit.value, None));
     };
@@ -141,19 +142,19 @@ fn split_unit<'e>(
     let place = Span::new(first.span.start, first.span.start + own.len());
     let found = Unit::parse(own).map_err(|error| {
         let help = "write a product with `*`: 2*x, not 2 x; or end with a unit: 5 N";
-        rejected(edit, place, &error.message, ("not a unit", help))
+        expression_error(edit, place, &error.message, ("not a unit", help))
     })?;
     if Unit::parse(unit).is_ok_and(|unit| unit.dimension != found.dimension) {
         let message = format!("`{}` is in {unit}, not in {found}", edit.name);
         let help = format!("give a unit of the same dimension as {unit}");
         let label = ("another kind of quantity", help.as_str());
-        return Err(rejected(edit, place, &message, label));
+        return Err(expression_error(edit, place, &message, label));
     }
     Ok((expression, Some(own)))
 }
 
-/// Returns the error of an expression at a place in it.
-fn rejected(
+/// Returns the error of an expression at a position in it.
+fn expression_error(
     edit: &PrescribeInput,
     span: Span,
     message: &str,
@@ -196,13 +197,13 @@ fn reject_motion(
     Err(motion_error(edit, span, &format!("`{name}` is a {kind}")))
 }
 
-/// Returns the error of an input that depends on the motion, for a reason.
+/// Returns the error of an input that depends on the motion, with a reason.
 fn motion_error(edit: &PrescribeInput, span: Span, reason: &str) -> EditError {
     let input = &edit.name;
     let message = format!("{reason}: the input `{input}` is an expression of t and parameters");
     let help = "write a force that depends on the motion under [forces], and a feedback under [controllers]";
     let label = "not known before the motion";
-    rejected(edit, span, &message, (label, help))
+    expression_error(edit, span, &message, (label, help))
 }
 
 fn define(document: &mut DocumentMut, name: &str, value: String) -> Result<(), EditError> {
@@ -213,7 +214,7 @@ fn define(document: &mut DocumentMut, name: &str, value: String) -> Result<(), E
         doc: String::new(),
         source: String::new(),
     };
-    term(document, &definition)
+    insert_term(document, &definition)
 }
 
 fn contains_name(document: &DocumentMut, name: &str) -> bool {
@@ -283,6 +284,6 @@ fn add_unit_factor(
         doc: String::new(),
         source: UNIT_FACTOR_ORIGIN.to_owned(),
     };
-    parameter(document, &factor)?;
+    insert_parameter(document, &factor)?;
     Ok(name)
 }

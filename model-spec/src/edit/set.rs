@@ -4,8 +4,8 @@ use toml_edit::{DocumentMut, Item, RawString, Table, Value};
 
 use super::{EditError, SetParameter, SetSensor};
 
-/// Replaces the value of a parameter, a number or an expression, by a number.
-pub fn parameter(document: &mut DocumentMut, edit: &SetParameter) -> Result<(), EditError> {
+/// Replaces the value of a parameter by a number. The value can be a number or an expression.
+pub fn set_parameter(document: &mut DocumentMut, edit: &SetParameter) -> Result<(), EditError> {
     let mut entry = document
         .get_mut("parameters")
         .and_then(|item| item.get_mut(&edit.name));
@@ -15,7 +15,7 @@ pub fn parameter(document: &mut DocumentMut, edit: &SetParameter) -> Result<(), 
             name: edit.name.clone(),
         });
     };
-    let number = number(&edit.name, edit.value)?;
+    let number = format_number(&edit.name, edit.value)?;
     replace(table.get_mut("value"), number);
     if edit.source.is_empty() {
         return Ok(());
@@ -30,8 +30,8 @@ pub fn parameter(document: &mut DocumentMut, edit: &SetParameter) -> Result<(), 
     Ok(())
 }
 
-/// Removes spaces before the commas of an inline table: the space before its closing brace belongs to its last value,
-/// which an insertion makes the last but one.
+/// Removes spaces before the commas of an inline table. The space before the closing brace belongs to the last value;
+/// after an insertion it is in front of a comma.
 fn remove_inner_spaces(entry: Option<&mut Item>) {
     let Some(table) = entry.and_then(Item::as_inline_table_mut) else {
         return;
@@ -46,7 +46,7 @@ fn remove_inner_spaces(entry: Option<&mut Item>) {
 }
 
 /// Sets gain, bias and delay of a sensor, and the observable.
-pub fn sensor(document: &mut DocumentMut, edit: &SetSensor) -> Result<(), EditError> {
+pub fn set_sensor(document: &mut DocumentMut, edit: &SetSensor) -> Result<(), EditError> {
     if document.get("sensors").is_none() {
         let mut sensors = Table::new();
         sensors.set_implicit(true);
@@ -70,13 +70,13 @@ pub fn sensor(document: &mut DocumentMut, edit: &SetSensor) -> Result<(), EditEr
         ("bias", edit.bias),
         ("delay", edit.delay),
     ] {
-        table.insert(key, Item::Value(number(&edit.channel, value)?));
+        table.insert(key, Item::Value(format_number(&edit.channel, value)?));
     }
     sensors.insert(&edit.channel, Item::Table(table));
     Ok(())
 }
 
-fn number(name: &str, value: f64) -> Result<Value, EditError> {
+fn format_number(name: &str, value: f64) -> Result<Value, EditError> {
     let written = format!("{value:?}").parse().ok();
     let finite = written.filter(|_| value.is_finite());
     finite.ok_or_else(|| EditError::NotFinite {

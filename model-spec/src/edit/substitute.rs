@@ -1,5 +1,5 @@
-//! Replaces an expression in a term: compared as syntax trees, replaced in the text, so that
-//! the rest of the term is unchanged.
+//! Replaces an expression in a term. Expressions are compared as syntax trees and replaced in the text, so the other
+//! text of the term is unchanged.
 
 use toml_edit::{DocumentMut, Item, Value};
 
@@ -17,9 +17,9 @@ pub fn substitute(document: &mut DocumentMut, edit: &Substitution) -> Result<(),
     Ok(())
 }
 
-/// Returns the text with every `find` replaced; `None` without an occurrence.
-pub fn replaced(text: &str, find: &str, replace: &str) -> Result<Option<String>, EditError> {
-    Replacement::new(find, replace)?.replaced(text)
+/// Returns the text with every occurrence of `find` replaced; `None` if there is no occurrence.
+pub fn replace_all(text: &str, find: &str, replace: &str) -> Result<Option<String>, EditError> {
+    Replacement::new(find, replace)?.replace_all(text)
 }
 
 struct Replacement<'e> {
@@ -60,7 +60,7 @@ impl<'e> Replacement<'e> {
                 name: term.to_owned(),
             });
         };
-        let Some(replaced) = self.replaced(&text)? else {
+        let Some(replaced) = self.replace_all(&text)? else {
             return Err(EditError::MissingExpression {
                 section: section.name().to_owned(),
                 name: term.to_owned(),
@@ -73,7 +73,7 @@ impl<'e> Replacement<'e> {
         Ok(())
     }
 
-    fn replaced(&self, text: &str) -> Result<Option<String>, EditError> {
+    fn replace_all(&self, text: &str) -> Result<Option<String>, EditError> {
         let tree = syntax(text)?;
         let mut places = Vec::new();
         self.find_spans(&tree, false, &mut places);
@@ -96,7 +96,7 @@ impl<'e> Replacement<'e> {
         Ok(Some(replaced))
     }
 
-    /// Collects the spans of the occurrences; the flag is true next to an operator.
+    /// Collects the spans of the occurrences. The flag is true if the occurrence is next to an operator.
     fn find_spans(&self, tree: &Syntax, beside_operator: bool, found: &mut Vec<(Span, bool)>) {
         if is_same_tree(tree, &self.pattern) {
             found.push((tree.span, beside_operator));
@@ -122,8 +122,8 @@ impl<'e> Replacement<'e> {
     }
 }
 
-/// Returns the value with the expression of a term, and its text. If the term is a table, `key`
-/// selects the value.
+/// Returns the TOML value that contains the expression of a term, and the text of the expression. If the term is a
+/// table, `key` selects the value.
 fn expression_of<'i>(item: &'i mut Item, key: &str) -> Option<(&'i mut Value, String)> {
     let value = if item.is_table_like() {
         item.get_mut(key)?.as_value_mut()?

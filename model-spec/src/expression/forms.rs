@@ -26,31 +26,33 @@ impl Resolver<'_> {
             return Err(self.out_of_scope_error(&quote(&what), "not a constant", name_span));
         }
         match (name, arguments) {
-            ("dot", [operand]) => self.dot(operand),
+            ("dot", [operand]) => self.resolve_dot(operand),
             ("dot", _) => Err(argument_count_error(name, span, arguments.len(), "dot(x)")),
-            ("diff", [value, along]) => self.diff(value, along, 1),
-            ("diff", [value, along, times]) => self.diff(value, along, derivative_order(times)?),
+            ("diff", [value, along]) => self.resolve_diff(value, along, 1),
+            ("diff", [value, along, times]) => {
+                self.resolve_diff(value, along, read_derivative_order(times)?)
+            }
             ("diff", _) => Err(argument_count_error(
                 name,
                 span,
                 arguments.len(),
                 "diff(w, x, 2)",
             )),
-            ("at", [value, place]) => self.at(value, place),
+            ("at", [value, place]) => self.resolve_at(value, place),
             ("at", _) => Err(argument_count_error(
                 name,
                 span,
                 arguments.len(),
                 "at(w, l)",
             )),
-            ("integral", [integrand, field]) => self.integral(integrand, field),
+            ("integral", [integrand, field]) => self.resolve_integral(integrand, field),
             ("integral", _) => Err(argument_count_error(
                 name,
                 span,
                 arguments.len(),
                 "integral(w^2, w)",
             )),
-            ("sum", [index, field, summand]) => self.sum(index, field, summand),
+            ("sum", [index, field, summand]) => self.resolve_sum(index, field, summand),
             _ => Err(argument_count_error(
                 name,
                 span,
@@ -60,7 +62,7 @@ impl Resolver<'_> {
         }
     }
 
-    fn dot(&mut self, operand: &Syntax) -> ResolvedKind {
+    fn resolve_dot(&mut self, operand: &Syntax) -> ResolvedKind {
         let resolved = self.resolve(operand)?;
         let span = operand.span;
         match resolved.kind {
@@ -102,7 +104,7 @@ impl Resolver<'_> {
         }
     }
 
-    fn diff(&mut self, value: &Syntax, along: &Syntax, times: u8) -> ResolvedKind {
+    fn resolve_diff(&mut self, value: &Syntax, along: &Syntax, times: u8) -> ResolvedKind {
         if matches!(&along.kind, SyntaxKind::Name(name) if name == "t") {
             let help = match &value.kind {
                 SyntaxKind::Name(name) => format!("write dot({name}) for the rate"),
@@ -142,8 +144,8 @@ impl Resolver<'_> {
         Ok(ExprKind::Diff(inner, total))
     }
 
-    fn at(&mut self, value: &Syntax, place: &Syntax) -> ResolvedKind {
-        let field = self.field_in(value)?;
+    fn resolve_at(&mut self, value: &Syntax, place: &Syntax) -> ResolvedKind {
+        let field = self.find_field(value)?;
         let value = self.resolve_in_field(field, value)?;
         let mut outside = Resolver::new(self.names, Scope::Parameters);
         let position = Box::new(outside.resolve(place)?);
@@ -154,7 +156,7 @@ impl Resolver<'_> {
         })
     }
 
-    fn integral(&mut self, integrand: &Syntax, field: &Syntax) -> ResolvedKind {
+    fn resolve_integral(&mut self, integrand: &Syntax, field: &Syntax) -> ResolvedKind {
         let field = self.resolve_field(field)?;
         let integrand = self.resolve_in_field(field, integrand)?;
         Ok(ExprKind::Integral { field, integrand })
@@ -172,7 +174,7 @@ impl Resolver<'_> {
         resolved.map(Box::new)
     }
 
-    fn sum(&mut self, index: &Syntax, field: &Syntax, summand: &Syntax) -> ResolvedKind {
+    fn resolve_sum(&mut self, index: &Syntax, field: &Syntax, summand: &Syntax) -> ResolvedKind {
         let SyntaxKind::Name(name) = &index.kind else {
             return Err(Diagnostic::error(
                 "the first argument of sum() must be the name of an index",
@@ -220,10 +222,10 @@ impl Resolver<'_> {
     }
 
     /// Returns the field of an expression of the position.
-    fn field_in(&self, syntax: &Syntax) -> Result<FieldId, Diagnostic> {
+    fn find_field(&self, syntax: &Syntax) -> Result<FieldId, Diagnostic> {
         let mut named = Vec::new();
         let mut positions = Vec::new();
-        self.fields_of(syntax, &mut named, &mut positions);
+        self.collect_fields(syntax, &mut named, &mut positions);
         let mut candidates = if named.is_empty() { positions } else { named };
         candidates.sort_unstable();
         candidates.dedup();
@@ -240,10 +242,15 @@ impl Resolver<'_> {
         }
     }
 
-    /// Collects the fields named in an expression, and the fields with a position in it.
-    fn fields_of(&self, syntax: &Syntax, named: &mut Vec<FieldId>, positions: &mut Vec<FieldId>) {
+    /// Collects the fields that an expression names, and the fields whose position it contains.
+    fn collect_fields(
+        &self,
+        syntax: &Syntax,
+        named: &mut Vec<FieldId>,
+        positions: &mut Vec<FieldId>,
+    ) {
         match &syntax.kind {
-            // Vectors have been expanded to scalars, or rejected.
+            // Vectors were already expanded to scalars or rejected.
             SyntaxKind::Number(_) | SyntaxKind::Vector(_) | SyntaxKind::Member { .. } => {}
             SyntaxKind::Name(name) => match self.names.get(name) {
                 Some(Symbol::Field(field)) => named.push(field),
@@ -264,17 +271,17 @@ impl Resolver<'_> {
                 arguments,
                 ..
             } => {
-                // These forms have their own position.
+                // The forms `integral` and `at` have their own position.
                 if function != "integral" && function != "at" {
                     for argument in arguments {
-                        self.fields_of(argument, named, positions);
+                        self.collect_fields(argument, named, positions);
                     }
                 }
             }
-            SyntaxKind::Negate(operand) => self.fields_of(operand, named, positions),
+            SyntaxKind::Negate(operand) => self.collect_fields(operand, named, positions),
             SyntaxKind::Binary(_, left, right) => {
-                self.fields_of(left, named, positions);
-                self.fields_of(right, named, positions);
+                self.collect_fields(left, named, positions);
+                self.collect_fields(right, named, positions);
             }
         }
     }
@@ -289,8 +296,8 @@ fn field_of(expr: &Expr) -> Option<FieldId> {
     }
 }
 
-/// Returns the rate at a fixed position: dot(at(w, l)) = at(dot(w), l). For anything but a
-/// field or its derivative, returns the rate of the whole.
+/// Returns the rate at a fixed position: dot(at(w, l)) = at(dot(w), l). If `value` is not a field or its derivative,
+/// returns the rate of the whole expression.
 fn rate_at(field: FieldId, value: Expr, position: Box<Expr>, span: Span) -> ExprKind {
     let expr = |kind| Box::new(Expr { kind, span });
     let at = |value| ExprKind::At {
@@ -307,7 +314,7 @@ fn rate_at(field: FieldId, value: Expr, position: Box<Expr>, span: Span) -> Expr
     }
 }
 
-fn derivative_order(syntax: &Syntax) -> Result<u8, Diagnostic> {
+fn read_derivative_order(syntax: &Syntax) -> Result<u8, Diagnostic> {
     match syntax.kind {
         SyntaxKind::Number(value)
             if value.fract() == 0.0 && (1.0..=MAX_DERIVATIVE).contains(&value) =>

@@ -1,6 +1,5 @@
-//! Resolves the names of an expression. The valid names depend on the place of the expression
-//! ([`Scope`]) and, along a field, on the enclosing `integral`, `at` and `sum`. Units are
-//! checked later.
+//! Resolves the names of an expression. The valid names depend on the [`Scope`] of the expression and, along a field,
+//! on the enclosing `integral`, `at` and `sum`. Units are checked later.
 
 mod forms;
 
@@ -14,7 +13,7 @@ use crate::names::{Names, Symbol};
 use crate::span::Span;
 use crate::suggest::did_you_mean;
 
-/// Place of an expression, which determines its valid names.
+/// Use of an expression, which determines the valid names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
     /// Only parameters: expressions of parameters, initial values, positions along a field.
@@ -23,14 +22,14 @@ pub enum Scope {
     Motion,
     /// Parameters, integrals of them, and earlier coefficients.
     Coefficient(CoefficientId),
-    /// Quantity multiplied by a coefficient: as `Motion`, and mode coordinates without an index.
+    /// Quantity that a coefficient multiplies: the names of `Motion`, and mode coordinates without an index.
     Factor,
 }
 
 pub struct Resolver<'n> {
     names: &'n Names,
     scope: Scope,
-    /// Fields with a valid position, innermost last.
+    /// Fields whose position is a valid name, innermost last.
     domains: Vec<FieldId>,
     /// Indices and fields of the enclosing sums, innermost last.
     sums: Vec<(String, FieldId)>,
@@ -67,17 +66,17 @@ impl<'n> Resolver<'n> {
         let span = syntax.span;
         let kind = match &syntax.kind {
             SyntaxKind::Number(value) => ExprKind::Number(*value),
-            SyntaxKind::Name(name) => self.name(name, span)?,
+            SyntaxKind::Name(name) => self.resolve_name(name, span)?,
             SyntaxKind::Element {
                 name,
                 index,
                 index_span,
-            } => self.element(name, span, index, *index_span)?,
+            } => self.resolve_element(name, span, index, *index_span)?,
             SyntaxKind::Call {
                 function,
                 function_span,
                 arguments,
-            } => self.call(function, *function_span, span, arguments)?,
+            } => self.resolve_call(function, *function_span, span, arguments)?,
             SyntaxKind::Vector(_) | SyntaxKind::Member { .. } => {
                 return Err(vector_error(span));
             }
@@ -90,7 +89,7 @@ impl<'n> Resolver<'n> {
         Ok(Expr { kind, span })
     }
 
-    fn name(&self, name: &str, span: Span) -> ResolvedKind {
+    fn resolve_name(&self, name: &str, span: Span) -> ResolvedKind {
         match name {
             "pi" => return Ok(ExprKind::Pi),
             "t" if self.scope == Scope::Motion || self.scope == Scope::Factor => {
@@ -100,7 +99,7 @@ impl<'n> Resolver<'n> {
             _ => {}
         }
         let Some(symbol) = self.names.get(name) else {
-            return self.single_mode(name, span);
+            return self.resolve_single_mode(name, span);
         };
         let motion = matches!(self.scope, Scope::Motion | Scope::Factor);
         match symbol {
@@ -109,8 +108,10 @@ impl<'n> Resolver<'n> {
             Symbol::Input(index) if motion => Ok(ExprKind::Input(index)),
             Symbol::State(index) if self.scope == Scope::Motion => Ok(ExprKind::State(index)),
             Symbol::Definition(index) if motion => Ok(ExprKind::Definition(index)),
-            Symbol::Field(field) if motion => self.field(field, name, span),
-            Symbol::Position if self.scope != Scope::Parameters => self.position(name, span),
+            Symbol::Field(field) if motion => self.resolve_field_value(field, name, span),
+            Symbol::Position if self.scope != Scope::Parameters => {
+                self.resolve_position(name, span)
+            }
             Symbol::Modes(field) if self.scope == Scope::Factor => {
                 Ok(ExprKind::ModeCoordinate(field))
             }
@@ -126,7 +127,7 @@ impl<'n> Resolver<'n> {
                 Ok(ExprKind::Multiplier(index))
             }
             Symbol::Residual(index) if self.scope == Scope::Motion => Ok(ExprKind::Residual(index)),
-            Symbol::Coefficient(index) => self.coefficient(index, name, span),
+            Symbol::Coefficient(index) => self.resolve_coefficient(index, name, span),
             other => Err(self.out_of_scope_error(&quote(name), other.kind(), span)),
         }
     }
@@ -138,7 +139,7 @@ impl<'n> Resolver<'n> {
         }
     }
 
-    fn coefficient(&self, index: CoefficientId, name: &str, span: Span) -> ResolvedKind {
+    fn resolve_coefficient(&self, index: CoefficientId, name: &str, span: Span) -> ResolvedKind {
         match self.scope {
             Scope::Coefficient(own) if index < own => {
                 let fields = self
@@ -192,7 +193,7 @@ impl<'n> Resolver<'n> {
             .with_help(rule)
     }
 
-    fn field(&self, field: FieldId, name: &str, span: Span) -> ResolvedKind {
+    fn resolve_field_value(&self, field: FieldId, name: &str, span: Span) -> ResolvedKind {
         if self.domains.last() == Some(&field) {
             return Ok(ExprKind::Field(field));
         }
@@ -205,7 +206,7 @@ impl<'n> Resolver<'n> {
         )
     }
 
-    fn position(&self, name: &str, span: Span) -> ResolvedKind {
+    fn resolve_position(&self, name: &str, span: Span) -> ResolvedKind {
         match self.domains.last() {
             Some(&field) if self.names.fields[field].along == name => Ok(ExprKind::Position(field)),
             _ => Err(
@@ -219,7 +220,7 @@ impl<'n> Resolver<'n> {
     }
 
     /// Resolves `q_3`, the coordinate of one mode.
-    fn single_mode(&self, name: &str, span: Span) -> ResolvedKind {
+    fn resolve_single_mode(&self, name: &str, span: Span) -> ResolvedKind {
         let parts = name.rsplit_once('_').and_then(|(stem, number)| {
             let digits = number.bytes().all(|byte| byte.is_ascii_digit());
             let mode = number.parse::<usize>().ok().filter(|_| digits)?;
@@ -269,7 +270,13 @@ impl<'n> Resolver<'n> {
     }
 
     /// Resolves `q[i]` or `phi[i]`.
-    fn element(&self, name: &str, span: Span, index: &str, index_span: Span) -> ResolvedKind {
+    fn resolve_element(
+        &self,
+        name: &str,
+        span: Span,
+        index: &str,
+        index_span: Span,
+    ) -> ResolvedKind {
         let Some((_, field)) = self.sums.iter().rev().find(|(known, _)| known == index) else {
             return Err(Diagnostic::error(format!("unknown index {}", quote(index)))
                 .with_span(index_span, "no enclosing sum has this index")
@@ -300,7 +307,7 @@ impl<'n> Resolver<'n> {
         }
     }
 
-    fn call(
+    fn resolve_call(
         &mut self,
         name: &str,
         name_span: Span,
@@ -344,7 +351,7 @@ impl<'n> Resolver<'n> {
     }
 }
 
-/// Reports a vector in place of a scalar.
+/// Returns the error for a vector where a scalar is required.
 fn vector_error(span: Span) -> Diagnostic {
     Diagnostic::error("a vector cannot be used here")
         .with_span(span, "expected a scalar")

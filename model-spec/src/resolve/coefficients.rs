@@ -11,19 +11,23 @@ use crate::quantity::{Quantity, StringValue};
 use crate::raw::{RawCoefficient, RawCoefficientKind};
 
 impl Builder {
-    pub(super) fn coefficients(&mut self, raw: Vec<RawCoefficient>) -> Vec<Coefficient> {
+    pub(super) fn build_coefficients(&mut self, raw: Vec<RawCoefficient>) -> Vec<Coefficient> {
         let mut built = Vec::with_capacity(raw.len());
         let mut per_mode = Vec::with_capacity(raw.len());
         for entry in raw {
-            let coefficient = self.coefficient(entry, &per_mode);
+            let coefficient = self.build_coefficient(entry, &per_mode);
             per_mode.push(coefficient.as_ref().map_or_else(Vec::new, modes_of));
             built.extend(coefficient);
         }
         built
     }
 
-    /// Builds one coefficient; `before` are the fields of the earlier ones.
-    fn coefficient(&mut self, raw: RawCoefficient, before: &[Vec<FieldId>]) -> Option<Coefficient> {
+    /// Builds one coefficient. `before` contains the fields of the earlier coefficients.
+    fn build_coefficient(
+        &mut self,
+        raw: RawCoefficient,
+        before: &[Vec<FieldId>],
+    ) -> Option<Coefficient> {
         let each = match &raw.each {
             Some(written) => Some(self.parse_each(written)?),
             None => None,
@@ -44,7 +48,7 @@ impl Builder {
                 let of = resolved(of, Scope::Factor, each.clone()).and_then(check_coordinate);
                 of.and_then(|of| {
                     let by = resolved(by, Scope::Factor, each.clone())?;
-                    // Each mode's equation may have its own factor.
+                    // The equation of each mode may have its own factor.
                     let rows = rows_of(&of).map(|field| (String::new(), field));
                     let each = each.or(rows);
                     let times = times.as_ref().map(|times| resolved(times, known, each));

@@ -19,7 +19,7 @@ struct OrdinateNames<'d> {
 }
 
 impl OrdinateNames<'_> {
-    fn ordinate(&self, quantity: &Quantity) -> Result<Ordinate, Diagnostic> {
+    fn resolve_ordinate(&self, quantity: &Quantity) -> Result<Ordinate, Diagnostic> {
         let written = match quantity {
             Quantity::Number(number) => return Ok(Ordinate::Number(number.value)),
             Quantity::Expression(written) => written,
@@ -47,7 +47,7 @@ impl OrdinateNames<'_> {
 }
 
 impl Builder {
-    pub(super) fn drawing(&mut self, document: &Document) -> Option<Drawing> {
+    pub(super) fn build_drawing(&mut self, document: &Document) -> Option<Drawing> {
         let raw = document.drawing.as_ref()?;
         let coordinates = document.coordinates.iter();
         let observables = document.observables.iter();
@@ -62,18 +62,18 @@ impl Builder {
             spans: [Span::default(); 2],
         }];
         for point in &raw.points {
-            points.extend(self.point(point, &known));
+            points.extend(self.build_point(point, &known));
         }
         let mut names = vec![ORIGIN];
         names.extend(raw.points.iter().map(|point| point.name.text.as_str()));
         let mut lines = Vec::new();
         for line in &raw.lines {
-            lines.push(self.line(line, &names));
+            lines.push(self.build_line(line, &names));
         }
         Some(Drawing { points, lines })
     }
 
-    fn point(&mut self, raw: &RawPoint, known: &OrdinateNames<'_>) -> Option<DrawnPoint> {
+    fn build_point(&mut self, raw: &RawPoint, known: &OrdinateNames<'_>) -> Option<DrawnPoint> {
         if raw.name.text == ORIGIN {
             self.found.push(
                 Diagnostic::error(format!("the point `{ORIGIN}` is predefined"))
@@ -81,8 +81,8 @@ impl Builder {
                     .with_help("choose another name"),
             );
         }
-        let x = self.found.push_error(known.ordinate(&raw.x));
-        let y = self.found.push_error(known.ordinate(&raw.y));
+        let x = self.found.push_error(known.resolve_ordinate(&raw.x));
+        let y = self.found.push_error(known.resolve_ordinate(&raw.y));
         Some(DrawnPoint {
             name: raw.name.text.clone(),
             x: x?,
@@ -91,7 +91,7 @@ impl Builder {
         })
     }
 
-    fn line(&mut self, raw: &RawLine, names: &[&str]) -> DrawnLine {
+    fn build_line(&mut self, raw: &RawLine, names: &[&str]) -> DrawnLine {
         let points = raw.points.iter();
         let points = points.filter_map(|point| self.found.push_error(find_point(point, names)));
         DrawnLine {

@@ -11,8 +11,8 @@ use crate::shape_table::ShapeTable;
 use crate::span::Span;
 
 impl Builder {
-    /// Builds the mode shapes of a field of this order.
-    fn basis(&mut self, raw: RawBasis, (order, span): (i64, Span)) -> Option<Basis> {
+    /// Builds the mode shapes of a field with this order.
+    fn build_basis(&mut self, raw: RawBasis, (order, span): (i64, Span)) -> Option<Basis> {
         let file = match raw {
             RawBasis::Named(basis) => return Some(basis),
             RawBasis::Table(file) => file,
@@ -40,12 +40,12 @@ impl Builder {
         })
     }
 
-    pub(super) fn field(&mut self, raw: RawField) -> Option<Field> {
-        let unit = self.coherent_unit(raw.unit);
-        let from = self.expression(&raw.from, Scope::Parameters);
-        let to = self.expression(&raw.to, Scope::Parameters);
-        let basis = self.basis(raw.basis, raw.order);
-        let order = self.found.push_error(field_order(raw.order));
+    pub(super) fn build_field(&mut self, raw: RawField) -> Option<Field> {
+        let unit = self.parse_coherent_unit(raw.unit);
+        let from = self.resolve_expression(&raw.from, Scope::Parameters);
+        let to = self.resolve_expression(&raw.to, Scope::Parameters);
+        let basis = self.build_basis(raw.basis, raw.order);
+        let order = self.found.push_error(check_field_order(raw.order));
         Some(Field {
             name: raw.name.text,
             unit: unit?,
@@ -61,7 +61,7 @@ impl Builder {
     }
 }
 
-fn field_order((order, span): (i64, Span)) -> Result<usize, Diagnostic> {
+fn check_field_order((order, span): (i64, Span)) -> Result<usize, Diagnostic> {
     match usize::try_from(order) {
         Ok(order) if order <= MAX_ORDER => Ok(order),
         Ok(_) => Err(

@@ -1,6 +1,6 @@
-//! Builds a model from raw entries: parses units, resolves names, sorts by references.
-//! `quantities`, `fields`, `coefficients` and `drawing` build the entries of their sections;
-//! `motion`, `units_check` and `checks` check the result.
+//! Builds a model from raw entries: parses units, resolves names, and sorts entries by their references.
+//! `quantities`, `fields`, `coefficients` and `drawing` build the entries of their sections; `motion`, `units_check`
+//! and `checks` check the result.
 
 mod coefficients;
 mod drawing;
@@ -33,7 +33,7 @@ pub struct ResolvedModel {
     pub declared_units: Vec<Option<Unit>>,
     /// Quantities of shorthands, each with its required unit and its name in messages.
     pub required_units: Vec<(Expr, Dimension, String)>,
-    /// Components of vectors, which need one unit.
+    /// Components of vectors; the components of one vector must have equal units.
     pub same_unit_vectors: Vec<Vec<Expr>>,
     pub inertias: Vec<Inertia<Expr>>,
 }
@@ -46,8 +46,8 @@ pub fn resolve(
     let mut found = Diagnostics::new(source.clone());
     let names = Names::declare(&document, &mut found);
     let mut builder = Builder { names, found };
-    let mut resolved = builder.model(document, source);
-    builder.demands(demands, &mut resolved);
+    let mut resolved = builder.build_model(document, source);
+    builder.resolve_demands(demands, &mut resolved);
     if builder.found.is_empty() {
         Ok(resolved)
     } else {
@@ -61,41 +61,41 @@ struct Builder {
 }
 
 impl Builder {
-    fn model(&mut self, document: Document, source: &Source) -> ResolvedModel {
-        let drawing = self.drawing(&document);
+    fn build_model(&mut self, document: Document, source: &Source) -> ResolvedModel {
+        let drawing = self.build_drawing(&document);
         let inputs: Vec<Name> = document
             .inputs
             .iter()
             .map(|input| input.name.clone())
             .collect();
-        let observables = self.build_all(document.observables, Self::observable);
+        let observables = self.build_all(document.observables, Self::build_observable);
         let (mut observables, mut declared): (Vec<_>, Vec<_>) = observables.into_iter().unzip();
-        let constraints = self.build_all(document.constraints, Self::constraint);
-        observables.extend(constraint_observables(&constraints));
+        let constraints = self.build_all(document.constraints, Self::build_constraint);
+        observables.extend(build_constraint_observables(&constraints));
         declared.resize(observables.len(), None);
-        let parameters = self.build_all(document.parameters, Self::parameter);
-        let definitions = self.build_all(document.definitions, Self::definition);
+        let parameters = self.build_all(document.parameters, Self::build_parameter);
+        let definitions = self.build_all(document.definitions, Self::build_definition);
         let mut model = Model {
             name: document.name.text,
             title: document.title,
             source: source.clone(),
             settings: Vec::new(),
-            coordinates: self.build_all(document.coordinates, Self::coordinate),
-            inputs: self.build_all(document.inputs, Self::input),
-            states: self.build_all(document.states, Self::state),
-            fields: self.build_all(document.fields, Self::field),
-            kinetic: self.build_all(document.kinetic, Self::term),
-            potential: self.build_all(document.potential, Self::term),
-            // Set by `demands`, after the names.
+            coordinates: self.build_all(document.coordinates, Self::build_coordinate),
+            inputs: self.build_all(document.inputs, Self::build_input),
+            states: self.build_all(document.states, Self::build_state),
+            fields: self.build_all(document.fields, Self::build_field),
+            kinetic: self.build_all(document.kinetic, Self::build_term),
+            potential: self.build_all(document.potential, Self::build_term),
+            // `demands` sets this field after the names are resolved.
             rigid_tree: None,
-            dissipation: self.build_all(document.dissipation, Self::term),
-            forces: self.build_all(document.forces, Self::force),
+            dissipation: self.build_all(document.dissipation, Self::build_term),
+            forces: self.build_all(document.forces, Self::build_force),
             constraints,
-            impacts: self.build_all(document.impacts, Self::impact),
+            impacts: self.build_all(document.impacts, Self::build_impact),
             observables,
-            coefficients: self.coefficients(document.coefficients),
-            sensors: document.sensors.into_iter().map(sensor).collect(),
-            controllers: self.controllers(document.controllers, &inputs),
+            coefficients: self.build_coefficients(document.coefficients),
+            sensors: document.sensors.into_iter().map(build_sensor).collect(),
+            controllers: self.build_controllers(document.controllers, &inputs),
             drawing,
             parameter_order: Vec::new(),
             definition_order: Vec::new(),
@@ -117,7 +117,7 @@ impl Builder {
         }
     }
 
-    fn controllers(&mut self, all: Vec<RawController>, inputs: &[Name]) -> Vec<Controller> {
+    fn build_controllers(&mut self, all: Vec<RawController>, inputs: &[Name]) -> Vec<Controller> {
         let mut controllers: Vec<Controller> = Vec::with_capacity(all.len());
         let mut driven = Vec::new();
         for raw in all {
@@ -131,23 +131,23 @@ impl Builder {
         controllers
     }
 
-    fn demands(&mut self, demands: Demands, resolved: &mut ResolvedModel) {
+    fn resolve_demands(&mut self, demands: Demands, resolved: &mut ResolvedModel) {
         if !self.found.is_empty() {
             return;
         }
         for demand in demands.units {
-            if let Some(value) = self.expression(&demand.value, Scope::Motion) {
+            if let Some(value) = self.resolve_expression(&demand.value, Scope::Motion) {
                 let required_units = (value, demand.dimension, demand.subject);
                 resolved.required_units.push(required_units);
             }
         }
         for vector in demands.same_unit_vectors {
-            let mut component = |value: &Quantity| self.expression(value, Scope::Motion);
+            let mut component = |value: &Quantity| self.resolve_expression(value, Scope::Motion);
             let components: Option<Vec<Expr>> = vector.iter().map(&mut component).collect();
             resolved.same_unit_vectors.extend(components);
         }
         for inertia in demands.inertias {
-            let mut constant = |value: &Quantity| self.expression(value, Scope::Parameters);
+            let mut constant = |value: &Quantity| self.resolve_expression(value, Scope::Parameters);
             let mass = match &inertia.mass {
                 Some(mass) => match constant(mass) {
                     None => continue,
@@ -206,7 +206,7 @@ impl Builder {
             }
             Err(circle) => self.found.push(cycle_error("definition", &circle, named)),
         }
-        // Cycles without a rate are reported above.
+        // Cycles of definitions without rates were reported above.
         if self.found.is_empty() && !model.states.is_empty() {
             self.reject_cyclic_rates(model);
         }
@@ -227,7 +227,7 @@ impl Builder {
         self.found.push(diagnostic);
     }
 
-    fn unit(&mut self, written: Option<StringValue>) -> Option<Unit> {
+    fn parse_unit(&mut self, written: Option<StringValue>) -> Option<Unit> {
         let Some(written) = written else {
             return Some(Unit::coherent(Dimension::DIMENSIONLESS));
         };
@@ -240,11 +240,11 @@ impl Builder {
     }
 
     /// Parses a unit with scale 1.
-    fn coherent_unit(&mut self, written: Option<StringValue>) -> Option<Unit> {
+    fn parse_coherent_unit(&mut self, written: Option<StringValue>) -> Option<Unit> {
         let span = written
             .as_ref()
             .map_or_else(Span::default, |written| written.span);
-        let unit = self.unit(written)?;
+        let unit = self.parse_unit(written)?;
         if unit.is_coherent() {
             return Some(unit);
         }
@@ -260,16 +260,16 @@ impl Builder {
         None
     }
 
-    fn expression(&mut self, quantity: &Quantity, scope: Scope) -> Option<Expr> {
+    fn resolve_expression(&mut self, quantity: &Quantity, scope: Scope) -> Option<Expr> {
         let resolved = quantity
             .syntax()
             .and_then(|syntax| Resolver::new(&self.names, scope).resolve(&syntax));
         self.found.push_error(resolved)
     }
 
-    fn definition(&mut self, raw: RawTerm) -> Option<Definition> {
+    fn build_definition(&mut self, raw: RawTerm) -> Option<Definition> {
         Some(Definition {
-            value: self.expression(&raw.value, Scope::Motion)?,
+            value: self.resolve_expression(&raw.value, Scope::Motion)?,
             name: raw.name.text,
             unit: Unit::coherent(Dimension::DIMENSIONLESS),
             doc: raw.doc,
@@ -277,9 +277,9 @@ impl Builder {
         })
     }
 
-    fn term(&mut self, raw: RawTerm) -> Option<Term> {
+    fn build_term(&mut self, raw: RawTerm) -> Option<Term> {
         Some(Term {
-            value: self.expression(&raw.value, Scope::Motion)?,
+            value: self.resolve_expression(&raw.value, Scope::Motion)?,
             name: raw.name.text,
             doc: raw.doc,
             origin: raw.origin,
@@ -287,9 +287,9 @@ impl Builder {
         })
     }
 
-    fn force(&mut self, (raw, on): (RawTerm, Quantity)) -> Option<Force> {
-        let on = self.expression(&on, Scope::Motion);
-        let term = self.term(raw)?;
+    fn build_force(&mut self, (raw, on): (RawTerm, Quantity)) -> Option<Force> {
+        let on = self.resolve_expression(&on, Scope::Motion);
+        let term = self.build_term(raw)?;
         Some(Force {
             name: term.name,
             on: on?,
@@ -300,9 +300,9 @@ impl Builder {
         })
     }
 
-    fn constraint(&mut self, raw: RawTerm) -> Option<Constraint> {
+    fn build_constraint(&mut self, raw: RawTerm) -> Option<Constraint> {
         Some(Constraint {
-            zero: self.expression(&raw.value, Scope::Motion)?,
+            zero: self.resolve_expression(&raw.value, Scope::Motion)?,
             // `motion` and `units_check` set both.
             is_nonholonomic: false,
             unit: Unit::coherent(Dimension::DIMENSIONLESS),
@@ -313,13 +313,13 @@ impl Builder {
         })
     }
 
-    fn impact(&mut self, impact: RawImpact) -> Option<Impact> {
+    fn build_impact(&mut self, impact: RawImpact) -> Option<Impact> {
         let raw = impact.distance;
-        let restitution = self.expression(&impact.restitution, Scope::Parameters);
+        let restitution = self.resolve_expression(&impact.restitution, Scope::Parameters);
         let friction = match impact.friction {
             Some(friction) => {
-                let coefficient = self.expression(&friction.coefficient, Scope::Parameters);
-                let slip = self.expression(&friction.slip, Scope::Motion);
+                let coefficient = self.resolve_expression(&friction.coefficient, Scope::Parameters);
+                let slip = self.resolve_expression(&friction.slip, Scope::Motion);
                 Some(ContactFriction {
                     coefficient: coefficient?,
                     slip: slip?,
@@ -328,10 +328,10 @@ impl Builder {
             None => None,
         };
         Some(Impact {
-            when: self.expression(&raw.value, Scope::Motion)?,
+            when: self.resolve_expression(&raw.value, Scope::Motion)?,
             restitution: restitution?,
             friction,
-            // `units_check` sets it.
+            // `units_check` sets the unit.
             unit: Unit::coherent(Dimension::DIMENSIONLESS),
             name: raw.name.text,
             doc: raw.doc,
@@ -340,17 +340,17 @@ impl Builder {
         })
     }
 
-    fn observable(
+    fn build_observable(
         &mut self,
         (raw, unit): (RawTerm, Option<StringValue>),
     ) -> Option<(Observable, Option<Unit>)> {
         let declared = match unit {
-            Some(written) => Some(self.coherent_unit(Some(written))?),
+            Some(written) => Some(self.parse_coherent_unit(Some(written))?),
             None => None,
         };
         let observable = Observable {
             rate_of: None,
-            value: self.expression(&raw.value, Scope::Motion)?,
+            value: self.resolve_expression(&raw.value, Scope::Motion)?,
             name: raw.name.text,
             unit: Unit::coherent(Dimension::DIMENSIONLESS),
             doc: raw.doc,
@@ -360,7 +360,7 @@ impl Builder {
     }
 }
 
-fn sensor(raw: RawSensor) -> Sensor {
+fn build_sensor(raw: RawSensor) -> Sensor {
     let (observable, span) = match raw.observable {
         Some(written) => (written.text, written.span),
         None => (raw.channel.text.clone(), raw.channel.span),
@@ -376,7 +376,7 @@ fn sensor(raw: RawSensor) -> Sensor {
 }
 
 /// Returns the multiplier and the residual of each constraint as observables.
-fn constraint_observables(constraints: &[Constraint]) -> Vec<Observable> {
+fn build_constraint_observables(constraints: &[Constraint]) -> Vec<Observable> {
     let observable =
         |prefix: &str, kind: ExprKind, doc: &str, constraint: &Constraint| Observable {
             rate_of: None,

@@ -12,15 +12,15 @@ use crate::raw::{RawCoordinate, RawInput, RawParameter, RawRange, RawState, RawU
 use crate::unit::Unit;
 
 impl Builder {
-    pub(super) fn parameter(&mut self, raw: RawParameter) -> Option<Parameter> {
-        let unit = self.unit(raw.unit);
+    pub(super) fn build_parameter(&mut self, raw: RawParameter) -> Option<Parameter> {
+        let unit = self.parse_unit(raw.unit);
         let value = match &raw.value {
             Quantity::Number(number) => {
                 let unit = unit.as_ref()?;
                 ParameterValue::Number(self.convert_to_si(unit, *number)?)
             }
             Quantity::Expression(_) | Quantity::Vector(..) | Quantity::Expansion(_) => {
-                ParameterValue::Expression(self.expression(&raw.value, Scope::Parameters)?)
+                ParameterValue::Expression(self.resolve_expression(&raw.value, Scope::Parameters)?)
             }
         };
         let unit = unit?;
@@ -36,7 +36,7 @@ impl Builder {
         }
         let uncertainty = raw
             .uncertainty
-            .and_then(|raw| self.uncertainty(&unit, &raw));
+            .and_then(|raw| self.build_uncertainty(&unit, &raw));
         Some(Parameter {
             name: raw.name.text,
             unit,
@@ -50,7 +50,7 @@ impl Builder {
         })
     }
 
-    fn uncertainty(&mut self, unit: &Unit, raw: &RawUncertainty) -> Option<Uncertainty> {
+    fn build_uncertainty(&mut self, unit: &Unit, raw: &RawUncertainty) -> Option<Uncertainty> {
         Some(match *raw {
             RawUncertainty::Relative(part) => Uncertainty::Relative(part.value),
             RawUncertainty::StandardDeviation(sd) => {
@@ -76,14 +76,16 @@ impl Builder {
         None
     }
 
-    pub(super) fn coordinate(&mut self, raw: RawCoordinate) -> Option<Coordinate> {
-        let unit = self.coherent_unit(raw.unit);
+    pub(super) fn build_coordinate(&mut self, raw: RawCoordinate) -> Option<Coordinate> {
+        let unit = self.parse_coherent_unit(raw.unit);
         let mut initial = |quantity: Option<Quantity>| match quantity {
-            Some(quantity) => self.expression(&quantity, Scope::Parameters).map(Some),
+            Some(quantity) => self
+                .resolve_expression(&quantity, Scope::Parameters)
+                .map(Some),
             None => Some(None),
         };
         let (value, rate) = (initial(raw.initial), initial(raw.initial_rate));
-        let range = self.range(raw.range);
+        let range = self.build_range(raw.range);
         Some(Coordinate {
             name: raw.name.text,
             unit: unit?,
@@ -96,12 +98,12 @@ impl Builder {
     }
 
     /// Builds a range, `Some(None)` if absent, `None` after an error.
-    fn range(&mut self, raw: Option<RawRange>) -> Option<Option<Range>> {
+    fn build_range(&mut self, raw: Option<RawRange>) -> Option<Option<Range>> {
         let Some(raw) = raw else {
             return Some(None);
         };
-        let low = self.expression(&raw.low, Scope::Parameters);
-        let high = self.expression(&raw.high, Scope::Parameters);
+        let low = self.resolve_expression(&raw.low, Scope::Parameters);
+        let high = self.resolve_expression(&raw.high, Scope::Parameters);
         Some(Some(Range {
             low: low?,
             high: high?,
@@ -109,7 +111,7 @@ impl Builder {
         }))
     }
 
-    pub(super) fn input(&mut self, raw: RawInput) -> Option<Input> {
+    pub(super) fn build_input(&mut self, raw: RawInput) -> Option<Input> {
         let known = |name: &str| match self.names.get(name) {
             Some(Symbol::Input(input)) => Some(input),
             _ => None,
@@ -119,29 +121,31 @@ impl Builder {
         let rate_of = before.filter(|_| raw.rate_order > 0).map(InputId::new);
         let rate = own.and_then(|own| self.names.input_rate(own));
         let unit = match raw.rate_order {
-            // An error in the unit is reported at the input itself.
-            0 => self.coherent_unit(raw.unit)?,
+            // An error in the unit is reported for the input, not for its rates.
+            0 => self.parse_coherent_unit(raw.unit)?,
             order => per_seconds(&Unit::parse(&raw.unit?.text).ok()?, order)?,
         };
         Some(Input {
             unit,
             rate,
             rate_of,
-            range: self.range(raw.range)?,
+            range: self.build_range(raw.range)?,
             name: raw.name.text,
             doc: raw.doc,
             span: raw.name.span,
         })
     }
 
-    pub(super) fn state(&mut self, raw: RawState) -> Option<State> {
-        let unit = self.coherent_unit(raw.unit);
-        let rate = self.expression(&raw.rate, Scope::Motion);
+    pub(super) fn build_state(&mut self, raw: RawState) -> Option<State> {
+        let unit = self.parse_coherent_unit(raw.unit);
+        let rate = self.resolve_expression(&raw.rate, Scope::Motion);
         let initial = match raw.initial {
-            Some(quantity) => self.expression(&quantity, Scope::Parameters).map(Some),
+            Some(quantity) => self
+                .resolve_expression(&quantity, Scope::Parameters)
+                .map(Some),
             None => Some(None),
         };
-        let range = self.range(raw.range);
+        let range = self.build_range(raw.range);
         Some(State {
             name: raw.name.text,
             unit: unit?,

@@ -1,5 +1,5 @@
-//! Energies of a body: 1/2 m v.v + 1/2 omega.I omega, with v the velocity of the centre of
-//! mass, and -m g.p under gravity, with p its position.
+//! Energies of a body: 1/2 m v.v + 1/2 omega.I omega, where v is the velocity of the centre of mass, and -m g.p under
+//! gravity, where p is the position of the centre of mass.
 
 use super::definitions::Owner;
 use super::demands::{Inertia, UnitDemand};
@@ -45,7 +45,7 @@ pub fn expand(
         if found.push_error(space.frames.get(&body.frame)).is_none() {
             continue;
         }
-        let Some(parts) = parts(&body, space, found) else {
+        let Some(parts) = read_parts(&body, space, found) else {
             continue;
         };
         let frames = &space.frames;
@@ -59,7 +59,7 @@ pub fn expand(
             doc: body.doc.clone(),
             origin: body.origin.clone(),
         };
-        let kinetic = kinetic(&parts, motion);
+        let kinetic = build_kinetic_energy(&parts, motion);
         if !is_literal(&kinetic, 0.0) {
             document.kinetic.push(term(kinetic));
         }
@@ -103,7 +103,11 @@ impl BodyParts {
     }
 }
 
-fn parts(body: &RawBody, space: &mut ExpansionState, found: &mut Diagnostics) -> Option<BodyParts> {
+fn read_parts(
+    body: &RawBody,
+    space: &mut ExpansionState,
+    found: &mut Diagnostics,
+) -> Option<BodyParts> {
     let own = &body.name;
     let owner = Owner::new(own, &body.doc);
     let mass = match &body.mass {
@@ -163,7 +167,7 @@ fn parts(body: &RawBody, space: &mut ExpansionState, found: &mut Diagnostics) ->
     })
 }
 
-fn kinetic(parts: &BodyParts, motion: &Motion) -> Syntax {
+fn build_kinetic_energy(parts: &BodyParts, motion: &Motion) -> Syntax {
     let omega = &motion.omega;
     let velocity = sum(motion.velocity.clone(), cross(omega, &parts.centre));
     let [x, y, z] = velocity.map(square);

@@ -1,4 +1,4 @@
-//! Requirements of shorthands on their quantities, checked after units and values are known.
+//! Requirements of shorthands on their quantities. They are checked after units and values are known.
 
 use crate::ast::Syntax;
 use crate::dimension::Dimension;
@@ -9,10 +9,10 @@ use crate::span::Span;
 #[derive(Default)]
 pub struct Demands {
     pub units: Vec<UnitDemand>,
-    /// Components of vectors, which need one unit.
+    /// Components of vectors; the components of one vector must have equal units.
     pub same_unit_vectors: Vec<Vec<Quantity>>,
     pub inertias: Vec<Inertia<Quantity>>,
-    /// Vectors that nothing refers to.
+    /// Unused vectors.
     pub unused: Vec<Name>,
     pub rigid_tree: Option<RigidTree<Syntax>>,
 }
@@ -27,7 +27,7 @@ pub struct UnitDemand {
 pub struct Inertia<T> {
     pub body: Name,
     pub mass: Option<T>,
-    /// None, three or all of I_xx, I_yy, I_zz, I_xy, I_yz, I_xz, in kg m^2.
+    /// Elements of the inertia matrix in kg m^2: none, the first three, or all of I_xx, I_yy, I_zz, I_xy, I_yz, I_xz.
     pub elements: Vec<T>,
     pub span: Span,
 }

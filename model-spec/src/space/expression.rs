@@ -1,6 +1,5 @@
-//! Evaluates expressions with vectors to scalars, and reports operands of the wrong kind. An
-//! expression that is used several times gets a name, so that nested products do not double in
-//! size at every level.
+//! Expands expressions with vectors to scalars, and reports operands of the wrong kind. An expression that is used
+//! several times gets a name, so that nested products do not double in size at every level.
 
 use super::definitions::Owner;
 use super::demands::UnitDemand;
@@ -32,7 +31,7 @@ const MAX_REPEATED: usize = 10_000;
 pub struct Reader<'s> {
     pub(super) space: &'s mut ExpansionState,
     pub(super) owner: &'s Owner,
-    /// Number of open integrals, sums and `at`.
+    /// Number of enclosing integrals, sums and `at`.
     pub(super) open_scopes: usize,
 }
 
@@ -102,14 +101,14 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// Returns the expression, or the name of a new definition if it is not plain.
+    /// Returns a plain expression unchanged. For any other expression, returns the name of a new definition.
     pub(super) fn named(&mut self, value: Syntax) -> Result<Syntax, Diagnostic> {
         if is_plain(&value) {
             return Ok(value);
         }
         if self.open_scopes > 0 || self.is_reported(&value) {
-            // An expression of the position has no name outside its field, and a multiplier or
-            // residual none outside observables.
+            // An expression of the position cannot be named outside its field, and a multiplier or residual cannot be
+            // named outside observables.
             let mut size = 0;
             value.visit(&mut |_| size += 1);
             return match size > MAX_REPEATED {
@@ -161,10 +160,10 @@ impl<'s> Reader<'s> {
         Ok(Value::Scalar(syntax.clone()))
     }
 
-    /// Evaluates a vector of three components; the caller adds the check of their units.
+    /// Evaluates a vector of three components. The caller checks their units.
     ///
     /// # Errors
-    /// Those of `value`, and a value of another kind.
+    /// Errors of `value`; or the value is of another kind.
     pub fn evaluate_spatial_vector(
         &mut self,
         syntax: &Syntax,
@@ -236,7 +235,7 @@ impl<'s> Reader<'s> {
         Ok(Value::Vector(vector, dimensions))
     }
 
-    /// Requires that components have one unit.
+    /// Requires that the components have equal units.
     pub(super) fn require_same_unit(&mut self, vector: &Vector) {
         if self.open_scopes == 0 {
             let components = vector.iter().map(|c| expansion(c.clone()));
@@ -293,7 +292,7 @@ impl<'s> Reader<'s> {
             .with_optional_help(did_you_mean(name, known))
     }
 
-    /// Returns a member of a frame, along the fixed axes.
+    /// Returns a member of a frame, as components along the fixed axes.
     fn frame_member(
         &mut self,
         name: &str,

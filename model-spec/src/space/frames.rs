@@ -1,5 +1,5 @@
-//! Motion of frames: angular velocity, velocity of the origin and direction of gravity, from
-//! frame to frame along each frame's own axes.
+//! Motion of frames: angular velocity, velocity of the origin and direction of gravity. They are computed from frame
+//! to frame, as components along the axes of each frame.
 
 use std::collections::HashMap;
 
@@ -17,7 +17,7 @@ use crate::suggest::did_you_mean;
 /// Longest chain of frames; the energies of a longer one would exceed the depth of expressions.
 const MAX_CHAIN: usize = 100;
 
-/// Motion of a frame, along its own axes.
+/// Motion of a frame, as components along its own axes.
 #[derive(Clone)]
 pub struct Motion {
     pub omega: Vector,
@@ -36,12 +36,12 @@ pub struct Frame {
     pub parent: Option<String>,
     /// Origin along the parent's axes, in m.
     pub origin: Vector,
-    /// Rotations from the parent's axes to the frame's.
+    /// Rotations from the axes of the parent to the axes of the frame.
     pub turns: Vec<Turn>,
     pub motion: Motion,
     /// Index among the frames, in dependency order.
     pub id: FrameId,
-    /// Number of frames up to the fixed axes.
+    /// Number of frames between this frame and the fixed axes.
     level: usize,
 }
 
@@ -55,7 +55,7 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// Creates the list of frames under a gravity, with only the fixed axes.
+    /// Creates the list of frames, with gravity and with the fixed axes only.
     pub fn with_gravity(gravity: Option<Vector>, place: Span) -> Self {
         let is_given = gravity.is_some();
         let (down, strength) = gravity.map_or((zero(place), None), direction);
@@ -141,8 +141,8 @@ pub fn unknown_frame_error<'n>(
         .with_help(did_you_mean(&written.text, known).unwrap_or(help.to_owned()))
 }
 
-/// Splits gravity along one axis into a magnitude and a direction: the rotations then transform
-/// only numbers.
+/// If gravity is along one axis, splits it into a magnitude and a direction. The rotations then transform only
+/// numbers.
 fn direction(gravity: Vector) -> (Vector, Option<Syntax>) {
     let mut along = gravity
         .iter()
@@ -156,7 +156,7 @@ fn direction(gravity: Vector) -> (Vector, Option<Syntax>) {
     (down, Some(strength.clone()))
 }
 
-/// Returns the motion of a frame with this origin, along its parent's axes.
+/// Returns the motion of a frame with this origin, as components along the axes of the parent.
 fn translate_motion(
     mut motion: Motion,
     origin: &Vector,

@@ -153,7 +153,7 @@ impl Reader<'_> {
 
     fn turn(&mut self, axis: usize, angle: &Syntax) -> Result<Factor, Diagnostic> {
         let mut angle = self.angle(angle)?;
-        // A constant angle keeps its form: a quarter turn is then exact.
+        // A constant angle is not replaced by a name, so that a quarter turn is recognised and exact.
         if self.space.definitions.moving.has_rate(&angle) {
             angle = self.named(angle)?;
         }
@@ -169,7 +169,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns the rotation about a direction of any length but 0.
+    /// Returns the rotation about an axis. The axis may have any length other than 0.
     fn rotation_about(&mut self, axis: &Syntax, angle: &Syntax) -> Result<Factor, Diagnostic> {
         let direction = match self.value(axis)? {
             Value::Vector(direction, Dimensions::Three) => direction,

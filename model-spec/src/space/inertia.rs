@@ -1,6 +1,6 @@
-//! Checks that a body is physically possible. Its mass is positive and its inertia matrix
-//! positive semidefinite. No principal moment exceeds the sum of the other two, because I_xx +
-//! I_yy - I_zz is twice the integral of z^2 over the mass.
+//! Checks that the mass properties of a body are physically possible. Its mass is positive and its inertia matrix
+//! positive semidefinite. No principal moment exceeds the sum of the other two, because I_xx + I_yy - I_zz is twice
+//! the integral of z^2 over the mass.
 
 use super::demands::Inertia;
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -15,9 +15,8 @@ const ROUNDING: f64 = 1e-9;
 /// it by 0.046.
 const MEASUREMENT_TOLERANCE: f64 = 0.05;
 
-/// Checks masses and inertias at these values of the parameters. Reports a mass that is not
-/// positive, an inertia that is not positive semidefinite, and an inertia that no mass
-/// distribution has.
+/// Checks masses and inertias for these values of the parameters. Reports a mass that is not positive, an inertia
+/// that is not positive semidefinite, and an inertia that no mass distribution has.
 pub fn check(inertias: &[Inertia<Expr>], parameters: &[f64], found: &mut Diagnostics) {
     for inertia in inertias {
         let value = |index: usize| {

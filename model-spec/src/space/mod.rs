@@ -43,8 +43,8 @@ pub use inertia::check as check_inertias;
 /// Replaces vectors, frames, bodies and gravity by scalars.
 ///
 /// # Errors
-/// Cyclic or unknown frames, invalid rotations, bodies with variable mass or inertia, scalars
-/// in place of vectors and vectors in place of scalars.
+/// Frames are cyclic or unknown, a rotation is invalid, the mass or inertia of a body is not constant, or a scalar is
+/// given instead of a vector or a vector instead of a scalar.
 pub fn expand(document: &mut Document, source: &Source) -> Result<Demands, Diagnostics> {
     if !sections::has_vectors(document) {
         return Ok(Demands::default());

@@ -9,8 +9,8 @@ use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
 use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 
-/// Largest number of factors kept in a named rotation. Three turns reach any rotation; beyond
-/// that a matrix needs fewer products.
+/// Largest number of factors kept in a named rotation. Three turns can represent any rotation. With more factors, a
+/// matrix needs fewer products.
 const MAX_FACTORS: usize = 3;
 
 type Operand = (Value, Span);
@@ -108,7 +108,7 @@ impl Reader<'_> {
     /// elements, so that references have one factor.
     ///
     /// # Errors
-    /// Those of naming.
+    /// Errors of the generation of names.
     pub(super) fn shared_rotation(
         &mut self,
         factors: Vec<Factor>,
@@ -129,7 +129,7 @@ impl Reader<'_> {
         Ok(vec![Factor::Frame(Box::new(rows))])
     }
 
-    /// Rotates a vector by all factors, the last first.
+    /// Rotates a vector by all factors, starting with the last factor.
     pub(super) fn rotate(
         &mut self,
         factors: &[Factor],
@@ -198,7 +198,7 @@ fn power(left: &Operand, right: &Operand) -> Diagnostic {
         .with_help("write dot(v, v) for the square of a vector, norm(v) for its length")
 }
 
-/// Returns `a_x b_x + ...`, with a square for two equal names.
+/// Returns the scalar product `a_x b_x + ...`. The product of two equal names is written as a square.
 pub fn scalar_product([ax, ay, az]: Vector, [bx, by, bz]: Vector) -> Syntax {
     let product = |a: Syntax, b: Syntax| match a.kind == b.kind && is_name(&a) {
         true => super::scalar::square(a),

@@ -1,5 +1,5 @@
-//! Directions of frames' axes, and positions and velocities of their origins, along the fixed
-//! axes. Computed on demand, for a frame and its ancestors.
+//! Directions of the axes of frames, and positions and velocities of their origins, as components along the fixed
+//! axes. They are computed when they are needed, for a frame and its ancestors.
 
 use std::collections::HashMap;
 
@@ -36,7 +36,7 @@ impl Placements {
             rows = rows.map(|row| turn.rotate_axes(&row));
             for (row, fixed) in rows.iter_mut().zip(AXES) {
                 for (element, own) in row.iter_mut().zip(AXES) {
-                    // Component of the frame's axis along a fixed axis.
+                    // Component of the axis `own` of the frame along the fixed axis `fixed`.
                     let what = format!("{stem}{own}_{fixed}");
                     *element = definitions.named(owner, &what, element.clone());
                 }

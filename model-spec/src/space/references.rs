@@ -126,7 +126,7 @@ impl<'d> Names<'d> {
         let mut list = Vec::new();
         let count = self.definitions.len();
         let mut see = |name: &str, is_member: bool, span: Span| {
-            // A frame may share the name of a scalar; a member access then means the frame.
+            // A frame may have the name of a scalar. A member access then refers to the frame.
             let is_frame = is_member || !self.declared.contains(name);
             let frame = self.frames.get(name).filter(|_| is_frame);
             list.extend(frame.map(|index| (count + index, span)));

@@ -21,11 +21,11 @@ pub struct Turn {
 pub enum Factor {
     /// Turn about a coordinate axis.
     Turn(Turn),
-    /// Turn about a unit vector, with the cosine and the sine of the angle.
+    /// Turn about a unit vector, given by the cosine and the sine of the angle.
     AxisAngle(Box<(Vector, Syntax, Syntax)>),
     /// Rotation from a frame's axes to the fixed axes.
     Frame(Box<Rows>),
-    /// Rotation from the fixed axes to a frame's.
+    /// Rotation from the fixed axes to the axes of a frame.
     InverseFrame(Box<Rows>),
 }
 
@@ -45,7 +45,7 @@ impl Factor {
     /// Rotates a vector; `name` names an expression that is used several times.
     ///
     /// # Errors
-    /// Those of `name`.
+    /// Errors of `name`.
     pub fn turn(&self, vector: &Vector, name: &mut Naming<'_>) -> Result<Vector, Diagnostic> {
         let [x, y, z] = vector.clone();
         let vector = [name(x)?, name(y)?, name(z)?];
@@ -73,7 +73,7 @@ pub type Naming<'n> = dyn FnMut(Syntax) -> Result<Syntax, Diagnostic> + 'n;
 /// Returns the turns of a frame's rotation, starting at the parent's axes.
 ///
 /// # Errors
-/// An expression that is not a product of turns.
+/// The expression is not a product of turns.
 pub fn turns(syntax: &Syntax) -> Result<Vec<Turn>, Diagnostic> {
     let mut turns = Vec::new();
     let mut rest = syntax;
@@ -138,8 +138,8 @@ impl Turn {
         turned
     }
 
-    /// Returns cosine and sine of the angle, exact for quarter turns: axes that coincide then
-    /// coincide in the equations.
+    /// Returns cosine and sine of the angle, exact for quarter turns. Axes that coincide then coincide exactly in the
+    /// equations.
     pub fn cosine_and_sine(&self) -> (Syntax, Syntax) {
         let span = self.angle.span;
         let quarters = quarters(&self.angle).filter(|q| q.fract() == 0.0 && q.abs() < 1e9);

@@ -4,7 +4,7 @@ use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
 use crate::quantity::Quantity;
 use crate::span::Span;
 
-/// Returns a generated expression as a quantity.
+/// Converts a generated expression to a quantity.
 pub fn expansion(syntax: Syntax) -> Quantity {
     Quantity::Expansion(Box::new(syntax))
 }

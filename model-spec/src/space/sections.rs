@@ -24,7 +24,7 @@ use crate::raw::{Document, RawFrame, RawTerm};
 
 pub fn has_vectors(document: &Document) -> bool {
     let has_frames = !document.frames.is_empty() || !document.bodies.is_empty();
-    // `resolve` reports syntax errors.
+    // Syntax errors are ignored here: `resolve` reports them.
     let mut read = quantities(document).filter_map(|quantity| quantity.syntax().ok());
     has_frames || document.gravity.is_some() || read.any(|syntax| is_spatial(&syntax))
 }
@@ -86,12 +86,12 @@ pub fn expand(document: &mut Document, found: &mut Diagnostics) -> Option<Demand
             Entry::Definition(index) => {
                 if let Some(term) = raw[index].take() {
                     let syntax = &expressions.definitions[index];
-                    replaced[index] = definition(&mut space, document, term, syntax, found);
+                    replaced[index] = expand_definition(&mut space, document, term, syntax, found);
                 }
             }
             Entry::Frame(index) => {
                 let own = &expressions.frames[index];
-                frame(&mut space, &document.frames[index], own, found);
+                expand_frame(&mut space, &document.frames[index], own, found);
             }
         }
     }
@@ -130,7 +130,7 @@ fn referenced_names(document: &Document) -> HashSet<String> {
 }
 
 /// Returns the scalar definitions that replace a definition.
-fn definition(
+fn expand_definition(
     space: &mut ExpansionState,
     document: &mut Document,
     term: RawTerm,
@@ -229,7 +229,7 @@ fn define_components(
     (written, vector)
 }
 
-fn frame(
+fn expand_frame(
     space: &mut ExpansionState,
     raw: &RawFrame,
     expressions: &FrameExpressions,
@@ -250,7 +250,7 @@ fn frame(
         return;
     }
     let owner = Owner::new(&raw.name, &raw.doc);
-    let placed = placement(space, &owner, raw, expressions);
+    let placed = expand_placement(space, &owner, raw, expressions);
     let placed = placed.and_then(|placed| {
         let ExpansionState {
             frames,
@@ -264,7 +264,7 @@ fn frame(
     }
 }
 
-fn placement(
+fn expand_placement(
     space: &mut ExpansionState,
     owner: &Owner,
     raw: &RawFrame,

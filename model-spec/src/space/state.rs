@@ -1,4 +1,4 @@
-//! State of the expansion of vectors, and the expressions that need it.
+//! State of the expansion of vectors, and the recognition of expressions that must be expanded.
 
 use std::collections::{HashMap, HashSet};
 
@@ -13,7 +13,7 @@ use crate::functions::VECTOR_FUNCTIONS;
 pub struct ExpansionState {
     pub vectors: HashMap<String, Value>,
     pub frames: Frames,
-    /// Names of all frames, added or not.
+    /// Names of all frames, including frames that are not yet expanded.
     pub frame_names: HashSet<String>,
     /// Positions of frames computed so far.
     pub placements: Placements,

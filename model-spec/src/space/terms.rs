@@ -52,11 +52,13 @@ pub fn expand(document: &mut Document, space: &mut ExpansionState, found: &mut D
     }
     let forces = std::mem::take(&mut document.forces);
     for force in forces {
-        document.forces.extend(self::forces(space, force, found));
+        document
+            .forces
+            .extend(self::expand_forces(space, force, found));
     }
     let constraints = std::mem::take(&mut document.constraints);
     for constraint in constraints {
-        let expanded = self::constraints(space, constraint, found);
+        let expanded = self::expand_constraints(space, constraint, found);
         document.constraints.extend(expanded);
     }
     for prefix in [MULTIPLIER, RESIDUAL] {
@@ -66,14 +68,14 @@ pub fn expand(document: &mut Document, space: &mut ExpansionState, found: &mut D
     }
     let observables = std::mem::take(&mut document.observables);
     for (term, unit) in observables {
-        let terms = self::observables(space, term, found);
+        let terms = self::expand_observables(space, term, found);
         document
             .observables
             .extend(terms.into_iter().map(|term| (term, unit.clone())));
     }
 }
 
-/// Evaluates an expression; `None` without vectors or after an error.
+/// Evaluates an expression. Returns `None` if it contains no vectors, or after an error.
 fn read(
     space: &mut ExpansionState,
     owner: &Owner,
@@ -86,7 +88,7 @@ fn read(
 
 /// Returns the expression if it contains vectors and refers to no entry with an error.
 fn parse_if_spatial(space: &ExpansionState, quantity: &Quantity) -> Option<Syntax> {
-    // `resolve` reports syntax errors.
+    // Syntax errors are ignored here: `resolve` reports them.
     let syntax = quantity.syntax().ok()?;
     (space.contains_vectors(&syntax) && !space.is_broken(&syntax)).then_some(syntax)
 }
@@ -127,7 +129,11 @@ fn component_terms(term: &RawTerm, vector: Vector, dimensions: Dimensions) -> Ve
 }
 
 /// Replaces a vector by one observable per component.
-fn observables(space: &mut ExpansionState, term: RawTerm, found: &mut Diagnostics) -> Vec<RawTerm> {
+fn expand_observables(
+    space: &mut ExpansionState,
+    term: RawTerm,
+    found: &mut Diagnostics,
+) -> Vec<RawTerm> {
     let owner = Owner::new(&term.name, &term.doc);
     let place = term.value.span();
     match read(space, &owner, &term.value, found) {
@@ -153,7 +159,11 @@ fn observables(space: &mut ExpansionState, term: RawTerm, found: &mut Diagnostic
 
 /// Replaces a vector by one constraint per component. A component that is the literal 0 gives
 /// no constraint.
-fn constraints(space: &mut ExpansionState, term: RawTerm, found: &mut Diagnostics) -> Vec<RawTerm> {
+fn expand_constraints(
+    space: &mut ExpansionState,
+    term: RawTerm,
+    found: &mut Diagnostics,
+) -> Vec<RawTerm> {
     let owner = Owner::new(&term.name, &term.doc);
     let place = term.value.span();
     match read(space, &owner, &term.value, found) {
@@ -202,7 +212,11 @@ type Force = (RawTerm, Quantity);
 
 /// Replaces a force vector at a point by its components, and a torque by forces on the ends of
 /// axes.
-fn forces(space: &mut ExpansionState, (term, on): Force, found: &mut Diagnostics) -> Vec<Force> {
+fn expand_forces(
+    space: &mut ExpansionState,
+    (term, on): Force,
+    found: &mut Diagnostics,
+) -> Vec<Force> {
     let owner = Owner::new(&term.name, &term.doc);
     if parse_if_spatial(space, &term.value).is_none() && parse_if_spatial(space, &on).is_none() {
         return vec![(term, on)];
@@ -228,7 +242,7 @@ fn forces(space: &mut ExpansionState, (term, on): Force, found: &mut Diagnostics
             keep_moving(space, forces.collect())
         }
         (Value::Vector(torque, Dimensions::Three), Value::Rotation(factors, Dimensions::Three)) => {
-            let made = torques(space, &owner, &term, torque, &factors, on_place);
+            let made = expand_torques(space, &owner, &term, torque, &factors, on_place);
             let forces = found.push_error(made).unwrap_or_default();
             keep_moving(space, forces)
         }
@@ -239,8 +253,8 @@ fn forces(space: &mut ExpansionState, (term, on): Force, found: &mut Diagnostics
     }
 }
 
-/// Keeps the forces on points that move; the first if none moves, for the error in a later
-/// step.
+/// Keeps the forces on points that move. If no point moves, keeps the first force, so that a later step reports the
+/// error.
 fn keep_moving(space: &ExpansionState, mut forces: Vec<(RawTerm, Syntax)>) -> Vec<Force> {
     let moves = |(_, on): &&(RawTerm, Syntax)| space.definitions.moving.has_rate(on);
     if forces.iter().any(|force| moves(&force)) {
@@ -254,7 +268,7 @@ fn keep_moving(space: &ExpansionState, mut forces: Vec<(RawTerm, Syntax)>) -> Ve
 
 /// Expands a torque t on axes e_k. A small rotation d moves their ends by d x e_k, and the sum
 /// of 1/2 (t x e_k).(d x e_k) over three axes is t.d.
-fn torques(
+fn expand_torques(
     space: &mut ExpansionState,
     owner: &Owner,
     term: &RawTerm,

@@ -1,4 +1,4 @@
-//! Frames and bodies as declared, next to their energies.
+//! Builds the tree of frames and bodies as declared. The energies are generated separately.
 
 use super::frames::{Frame, Frames};
 use super::rotation::Turn;

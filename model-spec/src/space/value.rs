@@ -6,7 +6,7 @@ use crate::ast::Syntax;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimensions {
-    /// x and y; z is stored as 0.
+    /// Components x and y; z is stored as 0.
     Two,
     Three,
 }
@@ -25,7 +25,7 @@ pub enum Value {
     Scalar(Syntax),
     /// Components along the fixed axes.
     Vector(Vector, Dimensions),
-    /// Product of rotations, the first on the left.
+    /// Product of rotations; the first factor is on the left.
     Rotation(Vec<Factor>, Dimensions),
 }
 

@@ -17,8 +17,8 @@ pub fn zero(span: Span) -> Vector {
     [0, 1, 2].map(|_| number(0.0, span))
 }
 
-/// Returns a component for use as a scalar. A component that is 0 becomes 0 times another one,
-/// to keep its unit.
+/// Returns a component for use as a scalar. A component that is 0 is replaced by 0 times another component, to keep
+/// the unit.
 pub fn component(vector: &Vector, axis: usize) -> Syntax {
     let own = &vector[axis];
     let other = vector

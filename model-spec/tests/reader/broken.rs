@@ -19,8 +19,8 @@ fn corpus() -> Vec<PathBuf> {
     paths
 }
 
-/// Returns the findings of an invalid specification.
-fn refused(name: &str, text: &str) -> Diagnostics {
+/// Returns the errors of an invalid specification.
+fn expect_rejection(name: &str, text: &str) -> Diagnostics {
     let found = check(Source::new(name, text)).expect_err(name);
     assert!(!found.render(false).is_empty());
     found
@@ -37,7 +37,7 @@ fn broken_specifications_have_the_recorded_messages() {
             .to_string_lossy()
             .into_owned();
         let text = std::fs::read_to_string(&path).expect("readable");
-        let shown = refused(&name, &text).render(false) + "\n";
+        let shown = expect_rejection(&name, &text).render(false) + "\n";
         let golden = path.with_extension("txt");
         if bless {
             std::fs::write(&golden, &shown).expect("writable");
@@ -58,7 +58,7 @@ fn messages_have_a_line_and_a_column() {
             .to_string_lossy()
             .into_owned();
         let text = std::fs::read_to_string(&path).expect("readable");
-        let found = refused(&name, &text);
+        let found = expect_rejection(&name, &text);
         let shown = found.render(false);
         for record in found.records() {
             let (line, column) = (record.line.expect(&name), record.column.expect(&name));
@@ -77,16 +77,16 @@ fn ten_thousand_brackets_are_rejected() {
     let text = format!(
         "[model]\nname = \"a\"\n[kinetic]\ndeep = \"{brackets}\"\n[coordinates]\nx = {{ unit = \"m\" }}\n"
     );
-    let shown = refused("deep.toml", &text).render(false);
+    let shown = expect_rejection("deep.toml", &text).render(false);
     assert!(
         shown.contains("nested more than 200 deep") && shown.contains("deep.toml:4:"),
         "{shown}"
     );
     for (open, close) in [("[", "]"), ("{a=", "}")] {
         let nested = format!("a = {}{}", open.repeat(10_000), close.repeat(10_000));
-        refused("nested.toml", &nested);
+        expect_rejection("nested.toml", &nested);
     }
-    refused("dotted.toml", &format!("{}a = 1", "a.".repeat(10_000)));
+    expect_rejection("dotted.toml", &format!("{}a = 1", "a.".repeat(10_000)));
 }
 
 #[test]
@@ -116,8 +116,8 @@ fn a_megabyte_of_errors_lists_twenty() {
         }
         text
     };
-    let keys = refused("keys.toml", &fill(&|index| format!("k{index} = 1\n")));
-    let sections = refused("sections.toml", &fill(&|index| format!("[s{index}]\n")));
+    let keys = expect_rejection("keys.toml", &fill(&|index| format!("k{index} = 1\n")));
+    let sections = expect_rejection("sections.toml", &fill(&|index| format!("[s{index}]\n")));
     assert_eq!(keys.list().len(), 1);
     assert_eq!(sections.list().len(), MAX_LISTED);
     assert!(
@@ -126,7 +126,7 @@ fn a_megabyte_of_errors_lists_twenty() {
         sections.omitted_count()
     );
     let sum = head.to_owned() + "y = \"" + &"x+".repeat(400_000) + "x\"";
-    assert_eq!(refused("sum.toml", &sum).list().len(), 1);
+    assert_eq!(expect_rejection("sum.toml", &sum).list().len(), 1);
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn long_chains_of_definitions_do_not_exhaust_the_stack() {
     for index in 1..1900 {
         text.push_str(&format!("d{index} = \"-d{}\"\n", index - 1));
     }
-    let shown = refused("chain.toml", &text).render(false);
+    let shown = expect_rejection("chain.toml", &text).render(false);
     assert!(shown.contains("after expansion"), "{shown}");
 }
 

@@ -1,4 +1,4 @@
-//! Controllers of a specification: accepted forms, and mistakes with their places.
+//! Controllers of a specification: accepted forms, and errors with their locations.
 
 use eomgen_model_spec::check;
 use eomgen_model_spec::model::MeasuredQuantity;
@@ -256,7 +256,7 @@ fn mistakes_are_rejected_with_their_place() {
             );
         }
     }
-    // Expressions of the machine do not see states of controllers, and have no clamp.
+    // Expressions of the model cannot use states of controllers or the function `clamp`.
     let seen = MACHINE.replace("z + v", "z + v + k*e")
         + &controller("states = { e = { unit = \"m\", next = \"x\" } }");
     let message = check(Source::new("machine.toml", seen))

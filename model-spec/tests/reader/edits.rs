@@ -1,4 +1,4 @@
-//! Edits by a program: only the edited text changes.
+//! Edits of a specification change only the edited text.
 
 use eomgen_model_spec::edit::{
     Edit, EditError, NewCoordinate, NewForce, NewParameter, NewState, NewTerm, NewValue, Section,

@@ -79,7 +79,7 @@ fn entries_are_replaced_added_and_removed() {
     assert_eq!(names, ["J", "k", "c", "rho", "l"]);
     assert_eq!(model.parameter_values().expect("values")[1], 1000.0);
     assert_eq!(model.observables[0].name, "twist");
-    // The text is complete: it passes the checks without the other file.
+    // The merged text is complete: it passes the checks without the other file.
     let alone = check(Source::new("copy.toml", model.source.text.clone()));
     assert_eq!(
         alone.expect("complete").model.state_names(&[]),
@@ -131,7 +131,7 @@ fn chains_resolve_each_path_from_its_own_file() {
         .map(|path| relative(path, &folder))
         .collect();
     assert_eq!(files, ["flat.toml", "base/arm.toml", "base/shapes.csv"]);
-    // Tables stay in the folder of the first file or below, also through another folder.
+    // Tables must be in the folder of the first file or below, also if their path leads through another folder.
     let message = load(&folder.path().join("top.toml"))
         .expect_err("outside")
         .render(false);
@@ -157,7 +157,7 @@ fn messages_name_the_file_and_the_line_of_the_entry() {
     let shown = rejected(&[("arm.toml", &wrong_base), ("a.toml", changed)], "a.toml");
     assert!(shown.contains("--> FOLDER/arm.toml:30:9"), "{shown}");
     assert!(shown.contains("30 | gear = \"1/2*c*theta^2\""), "{shown}");
-    // A second label in another file.
+    // The second label of an error is in another file.
     let twice = "[model]\nextends = \"arm.toml\"\n[coordinates]\nk = { unit = \"m\" }\n";
     let both = rejected(&[("arm.toml", ARM), ("a.toml", twice)], "a.toml");
     let has = |place: &str| both.contains(&format!("FOLDER/{place}"));
@@ -168,7 +168,7 @@ fn messages_name_the_file_and_the_line_of_the_entry() {
         .map(|record| (record.file.ends_with("arm.toml"), record.line))
         .collect();
     assert!(places.contains(&(true, Some(30))), "{places:?}");
-    // Unused names of several files.
+    // Unused names in several files are reported together.
     let unused = ARM.replace("b = {", "spare = { value = 1 }\nb = {");
     let folder = self::folder(&[
         ("arm.toml", &unused),

@@ -19,9 +19,9 @@ fn parsed(text: &str) -> Option<Syntax> {
 
 /// Prints an expression with only the brackets that precedence needs, and returns its
 /// precedence.
-fn written(syntax: &Syntax) -> (String, u8) {
+fn write_expression(syntax: &Syntax) -> (String, u8) {
     let bracketed = |part: &Syntax, least: u8| {
-        let (text, binding) = written(part);
+        let (text, binding) = write_expression(part);
         if binding < least {
             format!("({text})")
         } else {
@@ -37,11 +37,11 @@ fn written(syntax: &Syntax) -> (String, u8) {
             arguments,
             ..
         } => {
-            let arguments: Vec<_> = arguments.iter().map(|a| written(a).0).collect();
+            let arguments: Vec<_> = arguments.iter().map(|a| write_expression(a).0).collect();
             (format!("{function}({})", arguments.join(", ")), 5)
         }
         SyntaxKind::Vector(components) => {
-            let components: Vec<_> = components.iter().map(|c| written(c).0).collect();
+            let components: Vec<_> = components.iter().map(|c| write_expression(c).0).collect();
             (format!("[{}]", components.join(", ")), 5)
         }
         SyntaxKind::Member { of, member, .. } => (format!("{}.{member}", bracketed(of, 5)), 5),
@@ -54,7 +54,7 @@ fn written(syntax: &Syntax) -> (String, u8) {
                 BinaryOperator::Divide => ("/", 2),
                 BinaryOperator::Power => ("^", 4),
             };
-            // Powers are right-associative and allow a sign on the right.
+            // Powers are right-associative, and the exponent may have a sign.
             let (least_left, least_right) = if own == 4 { (5, 3) } else { (own, own + 1) };
             let (left, right) = (bracketed(left, least_left), bracketed(right, least_right));
             (format!("{left}{sign}{right}"), own)
@@ -63,7 +63,7 @@ fn written(syntax: &Syntax) -> (String, u8) {
 }
 
 /// Returns the tree without positions.
-fn shape(syntax: &Syntax) -> Syntax {
+fn remove_positions(syntax: &Syntax) -> Syntax {
     let span = Span::default();
     let kind = match &syntax.kind {
         SyntaxKind::Call {
@@ -84,14 +84,16 @@ fn shape(syntax: &Syntax) -> Syntax {
             SyntaxKind::Vector(components.iter().map(shape).collect())
         }
         SyntaxKind::Member { of, member, .. } => SyntaxKind::Member {
-            of: Box::new(shape(of)),
+            of: Box::new(remove_positions(of)),
             member: member.clone(),
             member_span: span,
         },
-        SyntaxKind::Negate(operand) => SyntaxKind::Negate(Box::new(shape(operand))),
-        SyntaxKind::Binary(operator, left, right) => {
-            SyntaxKind::Binary(*operator, Box::new(shape(left)), Box::new(shape(right)))
-        }
+        SyntaxKind::Negate(operand) => SyntaxKind::Negate(Box::new(remove_positions(operand))),
+        SyntaxKind::Binary(operator, left, right) => SyntaxKind::Binary(
+            *operator,
+            Box::new(remove_positions(left)),
+            Box::new(remove_positions(right)),
+        ),
         other => other.clone(),
     };
     Syntax { kind, span }
@@ -149,7 +151,7 @@ fn dimension() -> impl Strategy<Value = Dimension> {
 proptest! {
     #[test]
     fn printed_expression_parses_to_the_same_tree(tree in syntax()) {
-        let (text, _) = written(&tree);
+        let (text, _) = write_expression(&tree);
         let read = parsed(&text);
         prop_assert_eq!(read.as_ref().map(shape), Some(tree), "{}", text);
     }
@@ -206,7 +208,7 @@ proptest! {
     ) {
         let unit = Unit::parse(unit).expect("a unit");
         let back = unit.from_si(unit.to_si(value));
-        // Two roundings: at most two units in the last place.
+        // There are two roundings, so the error is at most two units in the last place.
         prop_assert!((back - value).abs() <= 2.0 * f64::EPSILON * value.abs());
     }
 }

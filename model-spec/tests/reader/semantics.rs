@@ -182,7 +182,7 @@ fn values_are_in_si_and_follow_their_references() {
 
 #[test]
 fn settings_are_checked_together_in_any_order() {
-    // With only one of the two set, the domain from a to l would be empty.
+    // If only one of the two parameters were set, the domain from a to l would be empty.
     let text = BEAM.replace("from = 0", "from = \"a\"").replace(
         "[coordinates]",
         "a = { value = 100, unit = \"mm\" }\n\n[coordinates]",
@@ -642,7 +642,7 @@ fn product_with_zero_keeps_its_unit() {
     assert_eq!(unit("0 + b"), "m");
     let message = refused(&with_definition("0*b + k", ""));
     assert!(message.contains("added to a quantity in m"), "{message}");
-    // The literal 0 fits any unit, also through a definition.
+    // The literal 0 has any unit, also if a definition contains it.
     let by_name = with_definition("0", "total = \"d + x\"\nlength = \"max(d, b)\"\n");
     checked(&by_name);
 }
@@ -662,7 +662,8 @@ fn zero_components_keep_the_unit_of_their_vector() {
     checked(GRAVITY);
 }
 
-/// Frames and bodies multiply gravity by their rotations; its unit error is found at gravity.
+/// Frames and bodies multiply gravity by their rotations. An error in its unit is reported at `gravity`, not at the
+/// rotations.
 #[test]
 fn unit_error_of_gravity_is_reported_at_gravity() {
     for (gravity, message) in [

@@ -82,11 +82,11 @@ fn geometry_of_the_arm_closes() {
     let model = shipped("planetary_arm.toml");
     let of = |name| value(&model, name);
     let carrier = of("r_c") * of("alpha").cos();
-    // Each side has several roundings: tolerance of ten units in the last place.
+    // Both sides have several roundings, so the tolerance is ten units in the last place.
     assert!((carrier - of("r_s") - of("r_p")).abs() <= 10.0 * f64::EPSILON * carrier);
     let ratio = 2.0 * (of("z_s") + of("z_p")) / of("z_s");
     assert!((of("i_sH") - ratio).abs() <= 10.0 * f64::EPSILON * ratio);
-    // Inertia of the arm in Table I: 0.033 kg m^2, to the printed digits.
+    // The inertia of the arm in Table I is 0.033 kg m^2; the computed value agrees to the printed digits.
     let arm = of("rho") * of("A") * of("l").powi(3) / 3.0;
     assert!((arm - 0.033).abs() < 0.0005);
 }

@@ -1,4 +1,4 @@
-//! Notations of other programs: the message contains the notation of a specification.
+//! For a notation of another program, the message contains the notation of a specification.
 
 use eomgen_model_spec::check;
 use eomgen_model_spec::source::Source;

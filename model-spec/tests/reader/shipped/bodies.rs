@@ -1,5 +1,5 @@
-//! Bodies against energies from positions: products of homogeneous transforms in numbers, with
-//! rates by differences. No velocity is propagated.
+//! Energies of bodies compared with energies from positions: products of numerical homogeneous transforms, with rates
+//! by difference quotients. No velocity is propagated.
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::model::{Expr, ExprKind, Function, Model, Term};
@@ -213,7 +213,7 @@ fn energies_include_moving_origins_products_of_inertia_and_oblique_gravity() {
 }
 
 /// Returns the first message, and the text that it underlines.
-fn refused(text: &str) -> (String, String) {
+fn expect_rejection(text: &str) -> (String, String) {
     let text = format!(
         "[model]\nname = \"a\"\ngravity = [0, 0, \"-g\"]\n[parameters]\n\
          g = {{ value = 9.81, unit = \"m/s^2\" }}\nm = {{ value = 2, unit = \"kg\" }}\n\
@@ -316,7 +316,7 @@ fn errors_in_frames_and_bodies_have_positions() {
             "b",
         ),
     ] {
-        let (said, underlined) = refused(&text);
+        let (said, underlined) = expect_rejection(&text);
         assert!(said.contains(message), "{text}\n{said}");
         assert_eq!(underlined, place, "{text}\n{said}");
     }
@@ -330,12 +330,13 @@ fn errors_in_frames_and_bodies_have_positions() {
     let many: String = (0..10_000)
         .map(|body| format!("b_{body} = {{ frame = \"f\", mass = \"m\" }}\n"))
         .collect();
-    let (said, _) = refused(&(frame.to_owned() + "[bodies]\n" + &many));
+    let (said, _) = expect_rejection(&(frame.to_owned() + "[bodies]\n" + &many));
     assert!(
         said.contains("[bodies] has more than 2000 entries"),
         "{said}"
     );
-    let (said, _) = refused(&(chain + "[bodies]\nb = { frame = \"f_999\", mass = \"m\" }"));
+    let (said, _) =
+        expect_rejection(&(chain + "[bodies]\nb = { frame = \"f_999\", mass = \"m\" }"));
     assert!(
         said.contains("chain of frames is longer than 100"),
         "{said}"

@@ -1,4 +1,4 @@
-//! Vectors against closed forms, and against transforms and differences of positions.
+//! Vectors compared with closed forms, and with transforms and difference quotients of positions.
 
 use std::fmt::Write as _;
 
@@ -100,8 +100,7 @@ fn top_matches_the_energies_in_euler_angles() {
             vector(&model, "third", state),
         );
         close(&axis, &third, 1e-15);
-        // Momentum about the vertical: derivative of the energy with respect to the precession
-        // rate.
+        // Angular momentum about the vertical: derivative of the kinetic energy with respect to the precession rate.
         let vertical = (a + m * l * l) * rates[0] * sine * sine + c * spin * cosine;
         close(&[observed(&model, "momentum_z", state)], &[vertical], 1e-15);
     }
@@ -178,7 +177,7 @@ fn frames_match_their_transforms() {
     }
 }
 
-/// Returns the PUMA 560 in vectors: rotations, positions and angular velocities link by link.
+/// Returns a specification of the PUMA 560 with vectors: rotations, positions and angular velocities of each link.
 fn arm_of_vectors() -> String {
     let text = include_str!("../../../models/puma_560.toml").replace("gravity =", "# gravity =");
     let (head, rest) = text.split_once("[frames]").expect("frames");
