@@ -89,7 +89,7 @@ macro_rules! compare {
         let states = [state::<{ arm::STATES }>().map(|number| [number; LANES]); STATES / LANES];
         let mut lane_rates = states;
         print!("order {:>2}: one by one {alone:6.1} ns", $order);
-        for registers in Registers::ALL.into_iter().filter(|kind| kind.are_there()) {
+        for registers in Registers::ALL.into_iter().filter(|kind| kind.are_available()) {
             let time = best(|| {
                 eomgen_lanes::run_with(registers, All {
                     states: black_box(&states),

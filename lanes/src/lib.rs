@@ -1,8 +1,9 @@
-//! 8-wide SIMD for emitted equations of motion. At run time the crate selects the widest registers of the machine: one of
-//! 512 bits, two of 256 bits, or eight plain numbers. Each lane has the same bits as a scalar evaluation.
+//! 8-wide SIMD for emitted equations of motion. At run time the crate selects the widest registers of the machine:
+//! one of 512 bits, two of 256 bits, or eight plain numbers. The results of each lane are bit-identical to those of a
+//! scalar evaluation.
 //!
-//! Emit a model with `lanes`, make [`Lanes`] a scalar of it with [`scalar!`], and implement a [`Task`] with the loop over
-//! many states. The task is compiled for each kind of register, and [`run`] selects one.
+//! Emit a model with `lanes`, call [`scalar!`] to make [`Lanes`] a number type of the model, and implement a [`Task`]
+//! that contains the loop over many states. The task is compiled for each kind of register, and [`run`] selects one.
 //!
 //! ```
 //! mod pendulum {

@@ -12,7 +12,7 @@ const SIGN: u64 = 1 << 63;
 const ONE: u64 = 0x3ff0_0000_0000_0000;
 const MANTISSA: u64 = 0x000f_ffff_ffff_ffff;
 
-/// 2^52. Added to an integer below it, the integer's bits are the last bits of the sum.
+/// 2^52. If an integer below 2^52 is added, the last bits of the sum are the bits of the integer.
 const INTEGER_ALIGNER: f64 = (1_u64 << 52) as f64;
 
 impl<V: Vector> Lanes<V> {
@@ -34,8 +34,8 @@ impl<V: Vector> Lanes<V> {
         self.0.to_array()
     }
 
-    /// Creates lanes from the numbers of each entry. `array::map` is not used: it is not inlined, would be compiled for
-    /// the baseline instruction set, and costs more than SIMD gains.
+    /// Creates lanes from the numbers of each entry. `array::map` is not used because it is not inlined. It would be
+    /// compiled for the baseline instruction set, and this would cost more time than SIMD saves.
     #[inline(always)]
     pub fn from_arrays<const N: usize>(entries: &[[f64; LANES]; N]) -> [Self; N] {
         let mut lanes = [Self::splat(0.0); N];
@@ -67,7 +67,7 @@ impl<V: Vector> Lanes<V> {
         Self(V::select_equal(a.0, b.0, then.0, otherwise.0))
     }
 
-    /// Returns whether a > b in every lane.
+    /// Returns true if a > b in every lane.
     #[inline(always)]
     pub fn all_greater(a: Self, b: Self) -> bool {
         let (a, b) = (a.to_array(), b.to_array());
@@ -149,7 +149,7 @@ impl<V: Vector> Neg for Lanes<V> {
     }
 }
 
-/// Makes [`Lanes`] a scalar of an emitted module of this crate.
+/// Implements the trait `Scalar` of an emitted module for [`Lanes`]. The module must be in the calling crate.
 #[macro_export]
 macro_rules! scalar {
     ($($module:ident)::+) => {

@@ -2,8 +2,8 @@
 
 use crate::vector::{Plain, Vector};
 
-/// Work on lanes, compiled for each kind of registers. `run` and all functions of lanes that it calls must be inlined: a
-/// separate function is compiled for the baseline instruction set.
+/// Computation with lanes, compiled for each kind of register. `run` and all functions of lanes that it calls must be
+/// inlined, because a separate function is compiled for the baseline instruction set.
 pub trait Task {
     /// Result of the task.
     type Output;
@@ -26,8 +26,8 @@ impl Registers {
     /// Every kind, widest first.
     pub const ALL: [Self; 3] = [Self::Wide, Self::Pair, Self::Plain];
 
-    /// Returns whether this machine has the registers.
-    pub fn are_there(self) -> bool {
+    /// Returns true if this machine has the registers.
+    pub fn are_available(self) -> bool {
         match self {
             #[cfg(target_arch = "x86_64")]
             Self::Wide => {
@@ -46,7 +46,7 @@ impl Registers {
 #[inline]
 pub fn run<T: Task>(task: T) -> T::Output {
     for registers in Registers::ALL {
-        if registers.are_there() {
+        if registers.are_available() {
             return run_with(registers, task);
         }
     }
@@ -59,13 +59,13 @@ pub fn run<T: Task>(task: T) -> T::Output {
 pub fn run_with<T: Task>(registers: Registers, task: T) -> T::Output {
     match registers {
         #[cfg(target_arch = "x86_64")]
-        Registers::Wide if registers.are_there() => {
+        Registers::Wide if registers.are_available() => {
             // SAFETY: the condition above checks that the machine has the instructions.
             unsafe { crate::x86::with_wide(task) }
         }
         #[cfg(target_arch = "x86_64")]
-        Registers::Pair if registers.are_there() => {
-            // SAFETY: as above.
+        Registers::Pair if registers.are_available() => {
+            // SAFETY: the condition above checks that the machine has the instructions.
             unsafe { crate::x86::with_pairs(task) }
         }
         _ => task.run::<Plain>(),

@@ -6,7 +6,7 @@ pub const LANES: usize = 8;
 /// Restricts [`Vector`] to this crate, so that a [`crate::Task`] never runs with registers that the machine lacks.
 pub trait Sealed {}
 
-/// Eight numbers. Every operation gives the same bits in each lane as `f64`.
+/// Eight numbers. The result of every operation is bit-identical in each lane to that of `f64`.
 pub trait Vector: Sealed + Copy {
     /// Sets every lane to the same number.
     fn splat(value: f64) -> Self;
@@ -38,7 +38,7 @@ pub trait Vector: Sealed + Copy {
     fn exponent_to_mantissa(self) -> Self;
 }
 
-/// Width of the mantissa, bits.
+/// Width of the mantissa, in bits.
 pub const MANTISSA_BITS: u32 = 52;
 
 /// Eight plain numbers, for every machine.

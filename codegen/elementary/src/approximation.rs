@@ -4,19 +4,19 @@
 use crate::precision::Precision;
 use crate::real::{Format, Real};
 
-/// Largest number of coefficients.
-const LARGEST_LENGTH: usize = 13;
+/// Largest number of coefficients of a polynomial.
+const MAX_COEFFICIENTS: usize = 13;
 
-/// Computes the polynomial `sum of coefficients[i] x^i` in Estrin's order: neighbours are combined with `x`,
-/// the results with `x^2`, then `x^4` and so on. The order of summation is fixed and the dependency chain
-/// short.
+/// Computes the polynomial `sum of coefficients[i] x^i` by Estrin's scheme: adjacent coefficients are combined with
+/// `x`, the results with `x^2`, then with `x^4`, and so on. The order of summation is fixed, and the dependency chain
+/// is short.
 #[inline(always)]
 pub(crate) fn polynomial<R: Real>(x: R, coefficients: &[f64]) -> R {
-    let mut terms = [R::constant(0.0); LARGEST_LENGTH];
+    let mut terms = [R::constant(0.0); MAX_COEFFICIENTS];
     for (term, coefficient) in terms.iter_mut().zip(coefficients) {
         *term = R::constant(*coefficient);
     }
-    let mut length = coefficients.len().min(LARGEST_LENGTH);
+    let mut length = coefficients.len().min(MAX_COEFFICIENTS);
     let mut power = x;
     while length > 1 {
         let joined = length / 2;
@@ -32,7 +32,7 @@ pub(crate) fn polynomial<R: Real>(x: R, coefficients: &[f64]) -> R {
     terms[0]
 }
 
-/// Computes the polynomial in Horner's order, which has the fewest operations.
+/// Computes the polynomial by Horner's scheme, which needs the fewest operations.
 #[inline(always)]
 pub(crate) fn short_polynomial<R: Real>(x: R, coefficients: &[f64]) -> R {
     match coefficients {
@@ -65,20 +65,20 @@ pub(crate) fn clamp<R: Real>(x: R, lowest: f64, highest: f64) -> R {
     R::select_less(x, lowest, lowest, below)
 }
 
-/// Returns `value 2^k` for integral `|k| <= 1100` (150 in single precision), rounded once if `value` is near one, also to zero, a
-/// subnormal or infinity.
+/// Returns `value 2^k` for integral `|k| <= 1100` (150 in single precision). If `value` is near one, the result is
+/// rounded once, also if it is zero, subnormal or infinite.
 #[inline(always)]
 pub(crate) fn scale_by_power_of_two<R: Real>(value: R, k: R) -> R {
     let first = nearest_integer(k * R::constant(0.5));
     (value * first.power_of_two()) * (k - first).power_of_two()
 }
 
-/// Returns significand in `[1, 2)` and integral exponent of a positive finite `x = significand 2^exponent`,
-/// subnormals included; meaningless finite values for any other `x`.
+/// Returns the significand in `[1, 2)` and the integral exponent of a positive finite `x = significand 2^exponent`,
+/// subnormals included. For any other `x` the results are finite but meaningless.
 #[inline(always)]
 pub(crate) fn split_exponent<R: Real>(x: R) -> (R, R) {
     let smallest_normal = R::constant(Format::<R>::SMALLEST_NORMAL);
-    let (exponent, factor) = Format::<R>::RAISING;
+    let (exponent, factor) = Format::<R>::SUBNORMAL_SCALING;
     let raised = x * R::constant(factor);
     let normal = R::select_less(x, smallest_normal, raised, x);
     let shift = R::select_less(x, smallest_normal, R::constant(exponent), R::constant(0.0));

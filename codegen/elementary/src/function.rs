@@ -6,10 +6,10 @@ use crate::real::Real;
 use crate::record::record;
 
 /// Largest number of arguments.
-const MOST_ARGUMENTS: usize = 2;
+const MAX_ARGUMENTS: usize = 2;
 
-/// Defines [`Function`]. A row has the variant, the generic function of this crate with the names of its
-/// arguments, and the description, which emitted code repeats.
+/// Defines [`Function`]. Each row contains the variant, the generic function of this crate, the names of its
+/// arguments, and the description, which is also written to emitted code.
 macro_rules! functions {
     ($($variant:ident $name:ident($($argument:ident),+) $description:literal;)+) => {
         /// Elementary or piecewise function.
@@ -43,9 +43,9 @@ macro_rules! functions {
                 }
             }
 
-            /// Calls the generic function with as many arguments as it has.
+            /// Calls the generic function with the first arguments, as many as it has.
             #[inline]
-            fn compute<R: Real>(self, arguments: [R; MOST_ARGUMENTS]) -> R {
+            fn compute<R: Real>(self, arguments: [R; MAX_ARGUMENTS]) -> R {
                 match self {
                     $(Function::$variant => {
                         let [$($argument,)+ ..] = arguments;
@@ -92,8 +92,9 @@ impl Function {
         self.arguments().len()
     }
 
-    /// Returns true if emitted code has one text of the function for all types of numbers. Its operations are
-    /// arithmetic and [`Real::select_less`], and derivatives follow from them.
+    /// Returns true if emitted code contains one generic definition of the function for all number types. Such a
+    /// function consists of arithmetic and [`Real::select_less`], so its derivatives follow by automatic
+    /// differentiation.
     pub fn is_generic(self) -> bool {
         matches!(
             self,
@@ -106,7 +107,7 @@ impl Function {
         self.kernel_in::<Double>()
     }
 
-    /// Returns the primitive operations of the function in a format, with one output.
+    /// Returns the primitive operations of the function in a number format, with one output.
     pub fn kernel_in<P: Precision>(self) -> Kernel {
         record::<P>(self.arity(), |arguments| match *arguments {
             [first] => vec![self.compute([first, first])],
@@ -115,7 +116,7 @@ impl Function {
         })
     }
 
-    /// Computes the value natively, with the same bits as the kernel. A missing argument is NaN.
+    /// Computes the value natively, bit-identical to the kernel. A missing argument is NaN.
     #[inline]
     pub fn apply<R: Real>(self, arguments: &[R]) -> R {
         let nan = R::constant(f64::NAN);
@@ -124,8 +125,8 @@ impl Function {
     }
 }
 
-/// Returns the joint kernel of sine and cosine in a format, with outputs `sin` and `cos`, which have the bits
-/// of the two kernels.
+/// Returns the joint kernel of sine and cosine in a number format. Its outputs `sin` and `cos` are bit-identical to
+/// those of the separate kernels.
 pub fn sin_cos_kernel<P: Precision>() -> Kernel {
     record::<P>(1, |arguments| match *arguments {
         [x] => {

@@ -1,8 +1,8 @@
-//! Arc tangent (of a number and of a point), arc sine and arc cosine.
+//! Arc tangent of one argument (`atan`) and of two (`atan2`), arc sine and arc cosine.
 //!
-//! All arc tangents use one core: the angle of a point `(d, n)` with `0 <= n <= d` is a centre (0, atan 1/2
-//! or pi/4) plus the arc tangent of a small ratio. Arc sine and cosine use a polynomial up to 1/2, and the
-//! half-angle formula with the root as a pair above it.
+//! All arc tangents share one computation: the angle of a point `(d, n)` with `0 <= n <= d` is a constant (0, atan
+//! 1/2 or pi/4) plus the arc tangent of a small ratio. Arc sine and arc cosine use a polynomial up to 1/2. Above 1/2
+//! they use the half-angle formula, with the square root as a pair.
 
 use crate::approximation::polynomial;
 use crate::pair::{Pair, ordered_sum};
@@ -12,7 +12,7 @@ use crate::root::root_pair;
 
 /// Ratio below which the polynomial is used directly.
 const FIRST_BREAK: f64 = 0.406_25;
-/// Ratio above which the centre is pi/4; between the two breaks it is `atan(1/2)`.
+/// Ratio above which the constant is pi/4; between the two breaks it is `atan(1/2)`.
 const SECOND_BREAK: f64 = 0.6875;
 
 /// Computes the arc tangent, in `[-pi/2, pi/2]` radians.
@@ -21,7 +21,7 @@ const SECOND_BREAK: f64 = 0.6875;
 #[inline]
 pub fn atan<R: Real>(x: R) -> R {
     let one = R::constant(1.0);
-    // Larger slopes give the same result, and an infinite one would give NaN.
+    // All larger slopes have the same arc tangent; an infinite slope would give NaN.
     let steepest = R::constant(Format::<R>::HUGE);
     let magnitude = R::select_less(steepest, x.abs(), steepest, x.abs());
     let steep = |then: R, otherwise: R| R::select_less(one, magnitude, then, otherwise);
@@ -33,7 +33,7 @@ pub fn atan<R: Real>(x: R) -> R {
         ),
         direction: steep(R::constant(-1.0), one),
     };
-    let value = angle.plus_arctan(steep(one, magnitude), steep(magnitude, one));
+    let value = angle.add_arctan(steep(one, magnitude), steep(magnitude, one));
     value.copysign(x)
 }
 
@@ -59,7 +59,7 @@ pub fn atan2<R: Real>(y: R, x: R) -> R {
         direction: steep(-turned, turned),
     };
     let (n, d) = scale_to_range(steep(width, height), steep(height, width));
-    let value = angle.plus_arctan(n, d).copysign(y);
+    let value = angle.add_arctan(n, d).copysign(y);
     let value = R::select_equal(x, x, value, x);
     R::select_equal(y, y, value, y)
 }
@@ -113,7 +113,7 @@ fn constant_pair<R: Real>(pair: Pair<f64>) -> Pair<R> {
     }
 }
 
-/// Selects both parts by the same condition.
+/// Selects both parts of a pair by one condition.
 #[inline(always)]
 fn select_pair<R: Real>(select: impl Fn(R, R) -> R, then: Pair<R>, otherwise: Pair<R>) -> Pair<R> {
     Pair {
@@ -122,7 +122,7 @@ fn select_pair<R: Real>(select: impl Fn(R, R) -> R, then: Pair<R>, otherwise: Pa
     }
 }
 
-/// Octant of the plane: angles `base + direction * a` with `a` in `[0, pi/4]`.
+/// Octant of the plane: the angles `base + direction * a` with `a` in `[0, pi/4]`.
 struct Octant<R> {
     base: Pair<R>,
     direction: R,
@@ -131,7 +131,7 @@ struct Octant<R> {
 impl<R: Real> Octant<R> {
     /// Computes `base + direction * atan(n/d)` for `0 <= n <= d`, `d > 0`.
     #[inline(always)]
-    fn plus_arctan(self, n: R, d: R) -> R {
+    fn add_arctan(self, n: R, d: R) -> R {
         let (zero, one) = (R::constant(0.0), R::constant(1.0));
         let first_break = d * R::constant(FIRST_BREAK);
         let second_break = d * R::constant(SECOND_BREAK);
@@ -156,14 +156,14 @@ impl<R: Real> Octant<R> {
         let z = t * t;
         let curved = (t * z) * polynomial(z, Format::<R>::ARC_TANGENT);
         let start = ordered_sum(self.base.high, self.direction * offset.high)
-            .plus_low(self.base.low + self.direction * offset.low);
+            .add_to_low(self.base.low + self.direction * offset.low);
         let sum = ordered_sum(start.high, self.direction * t);
         sum.high + (sum.low + (start.low - self.direction * curved))
     }
 }
 
-/// Scales `(n, d)`, `0 <= n <= d`, to a range in which products with small constants neither overflow nor
-/// lose bits. The ratio is unchanged; that of infinities becomes 1, that of zeros 0.
+/// Scales `(n, d)`, `0 <= n <= d`, to a range in which products with small constants neither overflow nor lose bits.
+/// The ratio is unchanged. The ratio of two infinities becomes 1, the ratio of two zeros 0.
 #[inline(always)]
 fn scale_to_range<R: Real>(n: R, d: R) -> (R, R) {
     let (zero, one) = (R::constant(0.0), R::constant(1.0));

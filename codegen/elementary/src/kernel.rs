@@ -1,10 +1,10 @@
-//! Kernel of a function: a sequence of primitive operations that code generators print or compile, and its
-//! evaluation. `record` builds kernels.
+//! Kernel of a function: a sequence of primitive operations, which code generators print or compile and `evaluate`
+//! executes. `record` builds kernels.
 
 use crate::real::Real;
 
-/// Primitive operation, with the meaning of the method of [`Real`] with the same name. Every `usize` except
-/// that of [`Operation::Input`] is the index of an earlier operation.
+/// Primitive operation. The method of [`Real`] of the same name defines it. Every `usize` except that of
+/// [`Operation::Input`] is the index of an earlier operation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operation {
     /// Argument with this index.
@@ -153,7 +153,7 @@ impl Operation {
 
 /// Straight-line code in single-assignment form: operation `i` defines value `i`.
 ///
-/// No operation is repeated or unused, and none refers to a later one.
+/// No operation is repeated or unused, and no operation refers to a later one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kernel {
     /// Number of arguments.

@@ -1,4 +1,4 @@
-//! Elementary functions as plain floating-point operations, with the same bits on every machine.
+//! Elementary functions as plain floating-point operations, bit-identical on every machine.
 //!
 //! ```
 //! use eomgen_elementary::{Function, exp, sin_cos};
@@ -6,7 +6,7 @@
 //! let (sine, cosine) = sin_cos(0.5_f64);
 //! assert!((sine * sine + cosine * cosine - 1.0).abs() < 1e-15);
 //!
-// The operations of the exponential as data give the same bits.
+// The recorded operations of the exponential give the bit-identical result.
 //! let kernel = Function::Exp.kernel();
 //! assert_eq!(kernel.evaluate(&[0.5]), [exp(0.5_f64)]);
 //! ```
@@ -16,8 +16,8 @@
 //!
 //! * for `f64` and `f32` it is an ordinary function without allocation or standard library, in the operations
 //!   and with the constants of that format;
-//! * with the feature `trace`, `Function::kernel` returns the operations as data (a `Kernel`), which code
-//!   generators print or compile. Native value and kernel agree in every bit.
+//! * with the feature `trace`, `Function::kernel` returns the operations as data (a `Kernel`), which code generators
+//!   print or compile. Native value and kernel are bit-identical.
 //!
 //! There is no fused multiply-add, no conversion or rounding instruction, no table and no branch: a compiler
 //! can vectorise the code but cannot change a result. The sign and payload of NaN are not specified. The
@@ -29,11 +29,11 @@
 //! `piecewise` (the functions) -> `record` -> `kernel` -> `function` (tracing).
 //!
 //! # Accuracy and size
-//! Errors are the largest measured, in units in the last place of the result, compared with 128-bit
-//! arithmetic: 150 000 pseudo-random arguments per range (all magnitudes, dense near changes of method) and
-//! hard cases (doubles nearest to multiples of pi/2, results near overflow and in the subnormal range,
-//! arguments next to 1). Operations are those of the kernel; a selection counts as one. The table is that of
-//! double precision. In single precision no error exceeds two units, for angles up to 1e5.
+//! Errors are the largest measured, in units in the last place of the result, compared with 128-bit arithmetic: 150
+//! 000 pseudo-random arguments per range (all magnitudes, dense near changes of method) and hard cases (doubles
+//! nearest to multiples of pi/2, results near overflow and in the subnormal range, arguments next to 1). The
+//! operations are counted in the kernel; a selection counts as one. The table applies to double precision. In single
+//! precision no error exceeds two units in the last place, for angles up to 1e5.
 //!
 //! | function | domain | largest error (ulp) | operations |
 //! | --- | --- | --- | --- |

@@ -1,4 +1,4 @@
-//! Natural logarithm, rounded, and as a pair of numbers for powers.
+//! Natural logarithm, rounded to one number, and as a pair of numbers for powers.
 //!
 //! `x = 2^k m` with `m` in `[sqrt(1/2), sqrt 2)`, `f = m - 1`, `s = f/(2 + f)`:
 //! `ln x = k ln 2 + 2 artanh s`.
@@ -25,9 +25,8 @@ pub fn ln<R: Real>(x: R) -> R {
     with_special_cases(x, value)
 }
 
-/// Computes the natural logarithm of a positive finite `x` with a relative error below 2^-64 (2^-34 in
-/// single precision); a meaningless
-/// finite pair for any other argument.
+/// Computes the natural logarithm of a positive finite `x` with a relative error below 2^-64 (2^-34 in single
+/// precision). For any other argument the result is a meaningless finite pair.
 #[inline(always)]
 pub(crate) fn logarithm_pair<R: Real>(x: R) -> Pair<R> {
     let one = R::constant(1.0);
@@ -43,11 +42,11 @@ pub(crate) fn logarithm_pair<R: Real>(x: R) -> Pair<R> {
     };
     let s = quotient(numerator, denominator);
     let cubic = cubic_part(s);
-    let fraction = ordered_sum(s.high, cubic.high).plus_low(s.low + cubic.low);
+    let fraction = ordered_sum(s.high, cubic.high).add_to_low(s.low + cubic.low);
     let two = R::constant(2.0);
     let low = fraction.low * two + k * R::constant(Format::<R>::LN_2.low);
     ordered_sum(k * R::constant(Format::<R>::LN_2.high), fraction.high * two)
-        .plus_low(low)
+        .add_to_low(low)
         .normalise()
 }
 
@@ -55,17 +54,17 @@ pub(crate) fn logarithm_pair<R: Real>(x: R) -> Pair<R> {
 #[inline(always)]
 fn cubic_part<R: Real>(s: Pair<R>) -> Pair<R> {
     let square = exact_square(s.high);
-    let square = square.plus_low(s.high * s.low * R::constant(2.0));
+    let square = square.add_to_low(s.high * s.low * R::constant(2.0));
     let beyond = square.high * polynomial(square.high, Format::<R>::LOGARITHM_BEYOND_CUBE);
     let factor = ordered_sum(R::constant(Format::<R>::ONE_THIRD.high), beyond);
-    let factor = factor.plus_low(R::constant(Format::<R>::ONE_THIRD.low));
+    let factor = factor.add_to_low(R::constant(Format::<R>::ONE_THIRD.low));
     product(s, product(square, factor))
 }
 
-/// Multiplies two pairs without the product of their low parts.
+/// Multiplies two pairs; the product of their low parts is neglected.
 #[inline(always)]
 fn product<R: Real>(a: Pair<R>, b: Pair<R>) -> Pair<R> {
-    exact_product(a.high, b.high).plus_low(a.high * b.low + a.low * b.high)
+    exact_product(a.high, b.high).add_to_low(a.high * b.low + a.low * b.high)
 }
 
 /// Returns `(k, m)` with `x = 2^k m`, `m` in `(sqrt(1/2), sqrt 2]`.
@@ -79,7 +78,7 @@ fn centre_significand<R: Real>(x: R) -> (R, R) {
     (k + raised, m * factor)
 }
 
-/// Returns `value` for positive finite `x`, else the limits and NaN.
+/// Returns `value` for positive finite `x`, minus infinity at zero, infinity at infinity, and NaN otherwise.
 #[inline(always)]
 fn with_special_cases<R: Real>(x: R, value: R) -> R {
     let zero = R::constant(0.0);

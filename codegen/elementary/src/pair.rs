@@ -1,12 +1,13 @@
-//! Numbers as an unevaluated sum of two numbers, with error-free operations.
+//! Numbers represented as the unevaluated sum of two numbers, with error-free operations.
 //!
-//! These operations carry the rounding errors of the elementary functions; they are no complete double-double
-//! arithmetic. Without fused multiply-add, products are split in halves (Dekker 1971).
+//! The operations keep the rounding errors of intermediate results of the elementary functions; they are not a
+//! complete double-double arithmetic. Without fused multiply-add, the factors of a product are split in halves
+//! (Dekker 1971).
 
 use crate::precision::Precision;
 use crate::real::{Format, Real};
 
-/// The value `high + low`, with `low` a correction to `high`.
+/// The value `high + low`; `low` is a small correction to `high`.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair<R> {
     /// Leading part.
@@ -22,8 +23,8 @@ impl<R: Real> Pair<R> {
         self.high + self.low
     }
 
-    /// Rounds the leading part from the whole value, after the low part has grown (but not beyond the leading
-    /// part).
+    /// Makes the leading part the rounded value of the sum again. The low part may have grown, but not beyond the
+    /// leading part.
     #[inline(always)]
     pub fn normalise(self) -> Self {
         ordered_sum(self.high, self.low)
@@ -31,7 +32,7 @@ impl<R: Real> Pair<R> {
 
     /// Adds a small correction to the low part.
     #[inline(always)]
-    pub fn plus_low(self, correction: R) -> Self {
+    pub fn add_to_low(self, correction: R) -> Self {
         Pair {
             high: self.high,
             low: self.low + correction,
@@ -39,7 +40,7 @@ impl<R: Real> Pair<R> {
     }
 }
 
-/// Returns `a + b` and its rounding error. It is exact if `a` is zero or a multiple of the last place of `b`,
+/// Returns `a + b` and its rounding error. The error is exact if `a` is zero or a multiple of the last place of `b`,
 /// in particular if `|a| >= |b|`.
 #[inline(always)]
 pub(crate) fn ordered_sum<R: Real>(a: R, b: R) -> Pair<R> {
@@ -98,8 +99,8 @@ pub(crate) fn exact_square<R: Real>(a: R) -> Pair<R> {
     }
 }
 
-/// Computes `numerator / denominator` to about 100 bits: the quotient of the leading parts by a reciprocal,
-/// then one step with the exact remainder.
+/// Computes `numerator / denominator` to about 100 bits: the leading parts are divided by means of a reciprocal, then
+/// one correction step uses the exact remainder.
 ///
 /// The correction is subtracted, so that a zero or tiny numerator keeps its sign.
 #[inline(always)]

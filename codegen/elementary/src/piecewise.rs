@@ -1,18 +1,19 @@
-//! Piecewise functions of models and reciprocals of pivots, in arithmetic and selections only.
+//! Piecewise functions of models and reciprocals of pivots, computed by arithmetic and selections only.
 //!
 //! A comparison with NaN is false: contact and above are 0 for NaN, the dead zone is NaN for a deflection of NaN
 //! and has no edge for a width of NaN.
 
 use crate::real::Real;
 
-/// Returns the deflection beyond a play of half-width b: `p - b`, `p + b`, or 0 within it.
+/// Returns the deflection beyond a play of half-width b: `p - b` above it, `p + b` below it, or 0 within it.
 #[inline]
 pub fn deadzone<R: Real>(p: R, b: R) -> R {
     let held = R::select_less(b, p, b, p);
     p - R::select_less(held, -b, -b, held)
 }
 
-/// Returns 1 if `|p| > b`, else 0. One comparison of the magnitude: gcc compiles two to a branch.
+/// Returns 1 if `|p| > b`, else 0. The magnitude is compared once, because gcc would compile two comparisons to a
+/// branch.
 #[inline]
 pub fn contact<R: Real>(p: R, b: R) -> R {
     let size = R::select_less(p, -p, -p, p);

@@ -1,55 +1,56 @@
 //! Constants of the two number formats: limits, splittings of irrational numbers, polynomials.
 //!
-//! The functions are written once. They differ by format only in these constants and in the remainder of sine
-//! and cosine, which single precision computes with fewer operations.
+//! The functions are written once for both formats. The formats differ only in these constants and in the argument
+//! reduction of sine and cosine, which needs fewer operations in single precision.
 
 use crate::pair::Pair;
 
-/// Constants of a number format. Every value is a number of the format.
+/// Constants of a number format. Every value is exactly representable in the format.
 ///
-/// The coefficients of each polynomial minimise the largest relative error of the *function* over the stated
-/// interval (computed in at least 48 digits, then rounded to the format one after the other, with a new fit of
-/// the others each time).
+/// The coefficients of each polynomial minimise the largest relative error of the *function* over the stated interval
+/// (computed in at least 48 digits). Then the coefficients are rounded to the format one after the other, and the
+/// remaining ones are fitted again after each rounding.
 pub trait Precision: Copy + 'static {
     /// Rounds a double to the format.
     fn round(value: f64) -> f64;
-    /// `1.5 2^(p - 1)` for `p` bits of mantissa: the numbers near it are the integers. Kernels round by adding
-    /// and subtracting it.
+    /// `1.5 2^(p - 1)` for `p` bits of mantissa. The spacing of the numbers near this value is 1; kernels round to an
+    /// integer by adding and subtracting it.
     const ROUNDING_ALIGNER: f64;
-    /// Factor that splits a number into halves (Veltkamp).
+    /// Factor of Veltkamp's splitting of a number into halves.
     const SPLITTER: f64;
-    /// Distance from one to the next number.
+    /// Distance from 1 to the next larger number.
     const EPSILON: f64;
     /// Smallest normal number.
     const SMALLEST_NORMAL: f64;
-    /// Exponent of the power of two that makes any subnormal normal, and that power.
-    const RAISING: (f64, f64);
+    /// Exponent e, and 2^e: the product of 2^e and any subnormal is normal.
+    const SUBNORMAL_SCALING: (f64, f64);
 
     /// Largest magnitude, in radians, of an argument of sine, cosine and tangent.
     const LARGEST_ANGLE: f64;
-    /// `pi/2` in parts. Products of the first four with an integer are exact up to the largest angle (up to 1e5
-    /// in single precision).
+    /// `pi/2` as a sum of five parts. The products of the first four parts with the integer `k` of the reduction are
+    /// exact up to the largest angle (up to 1e5 in single precision).
     const HALF_PI_PARTS: [f64; 5];
-    /// Factor that overflows beyond the largest angle if sine and cosine take the shorter remainder.
+    /// If sine and cosine use the short remainder: factor whose product with `k` overflows beyond the largest angle.
     const SHORT_REMAINDER: Option<f64>;
     /// `(1 - sin(r)/r)/z`, `z = r^2`, `|r| <= pi/4`.
     const SINE: &'static [f64];
     /// `(cos(r) - 1 + z/2)/z^2`, `z = r^2`, `|r| <= pi/4`.
     const COSINE: &'static [f64];
 
-    /// `ln 2` with a product by an exponent that is exact, and the rest.
+    /// `ln 2` as a pair. The product of its leading part with an exponent is exact.
     const LN_2: Pair<f64>;
     /// `(e^r - 1 - r)/r^2`, `|r| <= ln(2)/2`.
     const EXPONENTIAL: &'static [f64];
-    /// Largest argument whose exponential is zero, and smallest whose exponential is infinite.
+    /// Largest argument whose exponential is zero, and smallest argument whose exponential is infinite.
     const EXPONENTIAL_RANGE: (f64, f64);
-    /// Argument below which `e^x - 1` is -1 to the last bit.
+    /// Argument below which `e^x - 1` is rounded to -1.
     const FLAT_EXPONENTIAL: f64;
-    /// Argument above which both hyperbolic functions are infinite, with an exponent that still fits.
+    /// Argument above which hyperbolic sine and cosine are infinite. The power of two in their computation is still
+    /// finite here.
     const LARGEST_HYPERBOLIC: f64;
-    /// Argument above which the hyperbolic tangent is 1 to the last bit.
+    /// Argument above which the hyperbolic tangent is rounded to 1.
     const FLAT_TANGENT: f64;
-    /// Magnitude below which an odd function with `f(x) = x + O(x^3)` equals its argument.
+    /// Magnitude below which an odd function `f(x) = x + O(x^3)` is rounded to its argument.
     const TINY: f64;
 
     /// `(2 artanh(s)/s - 2)/z`, `z = s^2`, `|s| <= (sqrt 2 - 1)/(sqrt 2 + 1)`.
@@ -58,16 +59,16 @@ pub trait Precision: Copy + 'static {
     const LOGARITHM_BEYOND_CUBE: &'static [f64];
     /// One third.
     const ONE_THIRD: Pair<f64>;
-    /// Magnitude of an exponent above which every power of a number other than one overflows or vanishes.
+    /// Magnitude of an exponent above which every power of a number other than 1 overflows or underflows.
     const LARGEST_EXPONENT: f64;
     /// Magnitude of `y ln x` up to which its low part is a rounding error.
     const CORRECTED_RANGE: f64;
-    /// Magnitude from which every number is an integer.
+    /// Magnitude from which on every number of the format is an integer.
     const ALL_INTEGERS: f64;
 
     /// `1/sqrt m`, `m` in `[1, 4]`.
     const INVERSE_ROOT: &'static [f64];
-    /// Newton steps from that polynomial to about half the bits or more.
+    /// Number of Newton steps after that polynomial, for at least about half of the bits.
     const NEWTON_STEPS: usize;
 
     /// `pi`, `pi/2`, `pi/4`.
@@ -80,8 +81,8 @@ pub trait Precision: Copy + 'static {
     const ARC_SINE: &'static [f64];
     /// Magnitude that squares and triples without overflow in a ratio of products.
     const HUGE: f64;
-    /// Power of two for numbers above `HUGE`, magnitude below which products can lose bits, and power of two
-    /// for numbers below it.
+    /// Scale (a power of two) for numbers above `HUGE`, magnitude below which products can lose bits, and scale for
+    /// numbers below this magnitude.
     const SCALING: (f64, f64, f64);
 }
 
@@ -98,10 +99,10 @@ impl Precision for Double {
     const SPLITTER: f64 = ((1_u64 << 27) + 1) as f64;
     const EPSILON: f64 = f64::EPSILON;
     const SMALLEST_NORMAL: f64 = f64::MIN_POSITIVE;
-    const RAISING: (f64, f64) = (54.0, (1_u64 << 54) as f64);
+    const SUBNORMAL_SCALING: (f64, f64) = (54.0, (1_u64 << 54) as f64);
 
     const LARGEST_ANGLE: f64 = 1e9;
-    // Multiples of 2^-22, 2^-45, 2^-68, 2^-91, and the rest.
+    // Four multiples of 2^-22, 2^-45, 2^-68 and 2^-91, and the rest.
     const HALF_PI_PARTS: [f64; 5] = [
         1.570_796_251_296_997,
         7.549_789_415_861_596e-8,
@@ -110,7 +111,7 @@ impl Precision for Double {
         -1.135_111_860_752_220_2e-28,
     ];
     const SHORT_REMAINDER: Option<f64> = None;
-    // Sine to 2^-57.9.
+    // Relative error of the sine: 2^-57.9.
     const SINE: &'static [f64] = &[
         0.166_666_666_666_666_3,
         -0.008_333_333_333_321_917,
@@ -119,7 +120,7 @@ impl Precision for Double {
         2.505_074_247_785_225_2e-8,
         -1.589_595_656_566_405_4e-10,
     ];
-    // Cosine to 2^-63.7.
+    // Relative error of the cosine: 2^-63.7.
     const COSINE: &'static [f64] = &[
         0.041_666_666_666_666_595,
         -0.001_388_888_888_887_334_2,
@@ -131,7 +132,7 @@ impl Precision for Double {
 
     // The leading part is a multiple of 2^-42; exponents have 11 bits.
     const LN_2: Pair<f64> = pair(0.693_147_180_559_890_3, 5.497_923_018_708_371e-14);
-    // `e^r - 1` to 2^-61.6.
+    // Relative error of `e^r - 1`: 2^-61.6.
     const EXPONENTIAL: &'static [f64] = &[
         0.5,
         0.166_666_666_666_666_77,
@@ -151,7 +152,7 @@ impl Precision for Double {
     const FLAT_TANGENT: f64 = 22.0;
     const TINY: f64 = 1.0 / (1_u64 << 28) as f64;
 
-    // Logarithm to 2^-58.5.
+    // Relative error of the logarithm: 2^-58.5.
     const LOGARITHM: &'static [f64] = &[
         0.666_666_666_666_673_4,
         0.399_999_999_994_166_47,
@@ -161,7 +162,7 @@ impl Precision for Double {
         0.153_140_790_370_342_92,
         0.147_956_981_892_253_4,
     ];
-    // Logarithm to 2^-73.3.
+    // Relative error of the logarithm: 2^-73.3.
     const LOGARITHM_BEYOND_CUBE: &'static [f64] = &[
         0.199_999_999_999_999_9,
         0.142_857_142_857_219_2,
@@ -177,7 +178,7 @@ impl Precision for Double {
     const CORRECTED_RANGE: f64 = 800.0;
     const ALL_INTEGERS: f64 = (1_u64 << 52) as f64;
 
-    // To 2^-12.2.
+    // Relative error of `1/sqrt m`: 2^-12.2.
     const INVERSE_ROOT: &'static [f64] = &[
         2.081_649_629_276_674,
         -2.032_425_431_582_041_6,
@@ -195,7 +196,7 @@ impl Precision for Double {
         pair(core::f64::consts::FRAC_PI_4, 3.061_616_997_868_383e-17),
     ];
     const ARCTAN_HALF: Pair<f64> = pair(0.463_647_609_000_806_1, 2.269_877_745_296_168_7e-17);
-    // Arc tangent to 2^-60.0.
+    // Relative error of the arc tangent: 2^-60.0.
     const ARC_TANGENT: &'static [f64] = &[
         0.333_333_333_333_332_4,
         -0.199_999_999_999_677_74,
@@ -209,7 +210,7 @@ impl Precision for Double {
         -0.038_585_239_163_830_554,
         0.018_499_946_444_261_672,
     ];
-    // Arc sine to 2^-59.8.
+    // Relative error of the arc sine: 2^-59.8.
     const ARC_SINE: &'static [f64] = &[
         0.166_666_666_666_667_63,
         0.074_999_999_999_701_72,
@@ -242,13 +243,13 @@ impl Precision for Single {
     const SPLITTER: f64 = ((1_u32 << 12) + 1) as f64;
     const EPSILON: f64 = f32::EPSILON as f64;
     const SMALLEST_NORMAL: f64 = f32::MIN_POSITIVE as f64;
-    const RAISING: (f64, f64) = (25.0, (1_u32 << 25) as f64);
+    const SUBNORMAL_SCALING: (f64, f64) = (25.0, (1_u32 << 25) as f64);
 
-    // The last number below 2^22.
+    // Largest number below 2^22.
     const LARGEST_ANGLE: f64 = 4_194_303.75;
-    // Four parts of 8 bits, because k has 16 bits up to 1e5, and the rest, rounded up: with the nearest number,
-    // the cosine next to 33433 pi/2, and no other below 1e5, is off by more than two units. All parts are
-    // positive, so that a negative zero keeps its sign.
+    // Four parts of 8 bits, because k has 16 bits up to 1e5, and the rest, rounded up. If the rest were rounded to
+    // nearest, the error of the cosine next to 33433 pi/2 would exceed two units; no other argument below 1e5 is
+    // affected. All parts are positive, so that a negative zero keeps its sign.
     const HALF_PI_PARTS: [f64; 5] = [
         1.570_312_5,
         0.000_482_559_204_101_562_5,
@@ -258,14 +259,14 @@ impl Precision for Single {
     ];
     // 2^106: the product with 2^22 is infinite.
     const SHORT_REMAINDER: Option<f64> = Some((1_u128 << 106) as f64);
-    // Sine to 2^-27.9.
+    // Relative error of the sine: 2^-27.9.
     const SINE: &'static [f64] = &[0.166_666_55, -0.008_332_187, 0.000_195_178_97];
-    // Cosine to 2^-32.3.
+    // Relative error of the cosine: 2^-32.3.
     const COSINE: &'static [f64] = &[0.041_666_653, -0.001_388_761, 2.446_175e-5];
 
     // The leading part is a multiple of 2^-16; exponents have 8 bits.
     const LN_2: Pair<f64> = pair(0.693_145_751_953_125, 1.428_606_8e-6);
-    // `e^r - 1` to 2^-27.9.
+    // Relative error of `e^r - 1`: 2^-27.9.
     const EXPONENTIAL: &'static [f64] = &[
         0.5,
         0.166_666_36,
@@ -280,16 +281,16 @@ impl Precision for Single {
     const FLAT_TANGENT: f64 = 10.0;
     const TINY: f64 = 1.0 / (1_u32 << 13) as f64;
 
-    // Logarithm to 2^-30.2.
+    // Relative error of the logarithm: 2^-30.2.
     const LOGARITHM: &'static [f64] = &[0.666_667_76, 0.399_775_68, 0.298_714_6];
-    // Logarithm to 2^-36.1.
+    // Relative error of the logarithm: 2^-36.1.
     const LOGARITHM_BEYOND_CUBE: &'static [f64] = &[0.200_000_46, 0.142_761_07, 0.116_565_33];
     const ONE_THIRD: Pair<f64> = pair(0.333_333_34, -9.934_108e-9);
     const LARGEST_EXPONENT: f64 = (1_u64 << 33) as f64;
     const CORRECTED_RANGE: f64 = 120.0;
     const ALL_INTEGERS: f64 = (1_u32 << 23) as f64;
 
-    // To 2^-10.6.
+    // Relative error of `1/sqrt m`: 2^-10.6.
     const INVERSE_ROOT: &'static [f64] = &[
         1.922_545,
         -1.555_900_9,
@@ -306,7 +307,7 @@ impl Precision for Single {
         pair(core::f32::consts::FRAC_PI_4 as f64, -2.185_569_4e-8),
     ];
     const ARCTAN_HALF: Pair<f64> = pair(0.463_647_6, 5.012_158_7e-9);
-    // Arc tangent to 2^-30.6.
+    // Relative error of the arc tangent: 2^-30.6.
     const ARC_TANGENT: &'static [f64] = &[
         0.333_333_22,
         -0.199_988_72,
@@ -314,7 +315,7 @@ impl Precision for Single {
         -0.106_471_874,
         0.062_143_575,
     ];
-    // Arc sine to 2^-31.6.
+    // Relative error of the arc sine: 2^-31.6.
     const ARC_SINE: &'static [f64] = &[
         0.166_666_63,
         0.075_003_84,

@@ -1,9 +1,8 @@
 //! Primitive operations of the elementary functions, and their implementation for `f64`.
 //!
-//! Four arithmetic operations, two sign operations, two selections and three operations on the exponent and
-//! mantissa fields. Each has one possible result on any IEEE 754 machine, in scalar registers, in SIMD lanes
-//! and in software, so that a sequence of them has the same bits everywhere (except for the sign and payload
-//! of NaN).
+//! There are four arithmetic operations, two sign operations, two selections and three operations on the exponent and
+//! mantissa fields. IEEE 754 defines the result of each, in scalar registers, in SIMD lanes and in software. A
+//! sequence of these operations is therefore bit-identical on every machine, except for the sign and payload of NaN.
 //!
 //! Fused multiply-add, square root, rounding and conversion instructions are excluded, because some targets
 //! lack them or compute them differently.
@@ -11,9 +10,10 @@
 use crate::precision::{Double, Precision, Single};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Number that is computed (`f64`, `f32`) or recorded (a traced value).
+/// Number type: computes values (`f64`, `f32`) or records operations (`Traced`).
 ///
-/// Arithmetic is that of its IEEE 754 format, rounded to nearest even, never contracted.
+/// Arithmetic follows IEEE 754 in the format of the type. It is rounded to nearest, ties to even, and never
+/// contracted.
 pub trait Real:
     Copy
     + Add<Output = Self>
@@ -41,8 +41,8 @@ pub trait Real:
     /// Returns `then` if `left == right`, else `otherwise`, also if either is NaN; `-0 == 0`.
     fn select_equal(left: Self, right: Self, then: Self, otherwise: Self) -> Self;
 
-    /// Returns `2^self` for an integral value in `-1022..=1023`, and infinity for `1024`; in single precision in
-    /// `-126..=127`, and for `128`.
+    /// Returns `2^self` for an integral value in `-1022..=1023` (`-126..=127` in single precision), and infinity for
+    /// `1024` (`128`).
     ///
     /// Defined for every argument: add `2^52 + 1023` (`2^23 + 127`), shift the bits left by 52 (23). Outside the
     /// stated range the value is meaningless.
@@ -101,7 +101,7 @@ macro_rules! implement_real {
                 if left == right { then } else { otherwise }
             }
 
-            // The sum leaves k + bias in its low bits.
+            // The low bits of the sum are k + bias.
             #[inline(always)]
             fn power_of_two(self) -> $number {
                 let aligner = (1_u64 << $mantissa_bits) as $number + $bias;

@@ -1,4 +1,4 @@
-//! Recording of a generic function by running it on handles.
+//! Recording of a generic function: it is called with handles instead of numbers.
 //!
 //! Repeated operations and constants (same operation, same operands, same bits) are merged during the
 //! recording; unused ones are removed at the end. Nothing else is changed.
@@ -11,11 +11,12 @@ use std::collections::HashMap;
 use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Value of the current recording on this thread, by the index of its operation, in a format.
+/// Handle of a recorded value: the index of its operation in the current recording on this thread, in the number
+/// format `P`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Traced<P>(usize, PhantomData<P>);
 
-/// Records `body` applied to `inputs` arguments.
+/// Records the operations of `body` for `inputs` arguments.
 pub(crate) fn record<P: Precision>(
     inputs: usize,
     body: impl FnOnce(&[Traced<P>]) -> Vec<Traced<P>>,
@@ -24,7 +25,7 @@ pub(crate) fn record<P: Precision>(
     let arguments: Vec<Traced<P>> = (0..inputs).map(|i| emit(Operation::Input(i))).collect();
     let outputs: Vec<usize> = body(&arguments).into_iter().map(|t| t.0).collect();
     let recorder = RECORDER.replace(outer);
-    without_dead_operations(inputs, &recorder.operations, &outputs)
+    remove_dead_operations(inputs, &recorder.operations, &outputs)
 }
 
 thread_local! {
@@ -78,7 +79,7 @@ fn emit<P>(operation: Operation) -> Traced<P> {
 }
 
 /// Removes unused operations and renumbers the others in the same order.
-fn without_dead_operations(inputs: usize, all: &[Operation], outputs: &[usize]) -> Kernel {
+fn remove_dead_operations(inputs: usize, all: &[Operation], outputs: &[usize]) -> Kernel {
     let mut needed = vec![false; all.len()];
     for &output in outputs {
         needed[output] = true;

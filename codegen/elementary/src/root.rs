@@ -1,7 +1,8 @@
-//! Square root, correctly rounded, with the same bits as a hardware square root.
+//! Square root, correctly rounded and thus bit-identical to a hardware square root.
 //!
-//! `x = 4^h m` with `m` in `[1, 4)`; a polynomial for `1/sqrt m`, Newton steps, one step with the exact
-//! remainder, and a final comparison of the exact remainder with half a unit in the last place.
+//! The argument is `x = 4^h m` with `m` in `[1, 4)`. A polynomial approximates `1/sqrt m`; Newton steps and one step
+//! with the exact remainder improve it. A final comparison of the exact remainder with half a unit in the last place
+//! gives the correct rounding.
 
 use crate::approximation::{nearest_integer, polynomial, split_exponent};
 use crate::pair::{Pair, exact_square};
@@ -12,7 +13,7 @@ use crate::real::{Format, Real};
 #[inline]
 pub fn sqrt<R: Real>(x: R) -> R {
     let zero = R::constant(0.0);
-    let centred = Centred::new(x);
+    let centred = CentredNumber::new(x);
     let root = centred.rounded_root() * centred.scale;
     let root = R::select_less(x, R::constant(f64::INFINITY), root, x);
     let root = R::select_less(x, zero, R::constant(f64::NAN), root);
@@ -23,7 +24,7 @@ pub fn sqrt<R: Real>(x: R) -> R {
 #[inline(always)]
 pub(crate) fn root_pair<R: Real>(x: R) -> Pair<R> {
     let zero = R::constant(0.0);
-    let centred = Centred::new(x);
+    let centred = CentredNumber::new(x);
     let root = centred.root().normalise();
     let high = R::select_less(zero, x, root.high * centred.scale, x);
     Pair {
@@ -32,14 +33,14 @@ pub(crate) fn root_pair<R: Real>(x: R) -> Pair<R> {
     }
 }
 
-/// Positive finite number `m scale^2` with `m` in `[1, 4)`, and half of `1/sqrt m`.
-struct Centred<R> {
+/// Positive finite number, written as `m scale^2` with `m` in `[1, 4)`, and half of `1/sqrt m`.
+struct CentredNumber<R> {
     m: R,
     scale: R,
     half_inverse: R,
 }
 
-impl<R: Real> Centred<R> {
+impl<R: Real> CentredNumber<R> {
     #[inline(always)]
     fn new(x: R) -> Self {
         let half = R::constant(0.5);
@@ -51,7 +52,7 @@ impl<R: Real> Centred<R> {
         for _ in 0..Format::<R>::NEWTON_STEPS {
             inverse = newton(m, inverse);
         }
-        Centred {
+        CentredNumber {
             m,
             scale: halved.power_of_two(),
             half_inverse: inverse * half,
@@ -71,9 +72,9 @@ impl<R: Real> Centred<R> {
 
     /// Computes the correctly rounded root of `m`.
     ///
-    /// The rounded pair can be on the wrong side of a near tie. Its remainder is exact. The root is more than
-    /// half a last place above it if and only if the remainder exceeds it times the last place; the same
-    /// applies below.
+    /// The rounded pair `r` can be on the wrong side of a near tie. Its remainder `m - r^2` is exact. Let u be a unit
+    /// in the last place. The root exceeds `r` by more than u/2 if and only if the remainder exceeds `r u`; the
+    /// opposite side is analogous.
     #[inline(always)]
     fn rounded_root(&self) -> R {
         let root = self.root().round();

@@ -1,14 +1,14 @@
 //! Sine, cosine and tangent.
 //!
-//! One reduction serves all three: `x = k pi/2 + r`, `|r| <= pi/4`, with the remainder as a pair. In double
-//! precision `pi/2` is split into four parts of 23 bits and a rest, so that the product of `k` (at most 30 bits
-//! up to [`LARGEST_ANGLE`]) with each of the four is exact. Doubles below 1e9 differ from a multiple of `pi/2`
-//! by at least about 2^-60; the parts have 145 bits, which suffices for these too. In single precision the
-//! parts have 8 bits, for a `k` of 16 bits up to 1e5; numbers below 1e5 differ from a multiple of `pi/2` by at
-//! least 2^-28.
+//! All three use the same argument reduction: `x = k pi/2 + r`, `|r| <= pi/4`, with the remainder r as a pair. In
+//! double precision `pi/2` is split into four parts of 23 bits and a rest, so that the product of `k` (at most 30
+//! bits up to [`LARGEST_ANGLE`]) with each of the four is exact. Doubles below 1e9 differ from a multiple of `pi/2`
+//! by at least about 2^-60; the parts have 145 bits together, which is sufficient for these arguments, too. In single
+//! precision the parts have 8 bits, for a `k` of 16 bits up to 1e5; numbers below 1e5 differ from a multiple of
+//! `pi/2` by at least 2^-28.
 //!
-//! Sine and cosine in single precision take a shorter remainder, whose rounding errors are compensated only
-//! where they exceed half a unit of the result, and no selection.
+//! In single precision, sine and cosine use a shorter remainder and no selection. Rounding errors of this remainder
+//! are compensated only if they exceed half a unit of the result.
 
 use crate::approximation::{
     nearest_integer, nearest_multiple_of_four, polynomial, short_polynomial,
@@ -25,7 +25,7 @@ pub const LARGEST_ANGLE: f64 = Double::LARGEST_ANGLE;
 pub const LARGEST_SINGLE_ANGLE: f32 = Single::LARGEST_ANGLE as f32;
 
 /// Result of the reduction: sine and cosine of the remainder, and the quadrant.
-struct Reduced<R> {
+struct ReducedAngle<R> {
     /// `sin(r)`, not rounded.
     sine: Pair<R>,
     /// `cos(r)`, not rounded.
@@ -50,8 +50,8 @@ pub fn cos<R: Real>(x: R) -> R {
     sin_cos(x).1
 }
 
-/// Computes sine and cosine of `x` radians, with the bits of [`sin`] and [`cos`], at little more than the
-/// cost of one.
+/// Computes sine and cosine of `x` radians, bit-identical to [`sin`] and [`cos`], at little more than the cost of one
+/// of them.
 #[inline]
 pub fn sin_cos<R: Real>(x: R) -> (R, R) {
     match Format::<R>::SHORT_REMAINDER {
@@ -60,7 +60,7 @@ pub fn sin_cos<R: Real>(x: R) -> (R, R) {
     }
 }
 
-/// Computes sine and cosine from the remainder as a pair.
+/// Computes sine and cosine from a remainder that is a pair.
 #[inline(always)]
 fn compensated_sin_cos<R: Real>(x: R) -> (R, R) {
     let one = R::constant(1.0);
@@ -78,8 +78,8 @@ fn compensated_sin_cos<R: Real>(x: R) -> (R, R) {
     )
 }
 
-/// Computes sine and cosine from a remainder of one number and the error of its second rounding. Parts and `k`
-/// are as in [`remainder`].
+/// Computes sine and cosine from a remainder that is one number and the error of its second rounding. [`remainder`]
+/// defines the parts and `k`.
 ///
 /// With `q = -k` modulo 4, `e = 1 - |q|` and `o = q (2 - |q|)`, `sin x = e sin r - o cos r` and `cos x = e cos r +
 /// o sin r`: one of the two products is zero and the other exact. The product with `overflowing` is infinite
@@ -115,7 +115,7 @@ fn short_sin_cos<R: Real>(x: R, overflowing: f64) -> (R, R) {
 #[inline]
 pub fn tan<R: Real>(x: R) -> R {
     let one = R::constant(1.0);
-    let Reduced {
+    let ReducedAngle {
         sine,
         cosine,
         quadrant,
@@ -134,14 +134,14 @@ pub fn tan<R: Real>(x: R) -> R {
     };
     let ratio = quotient(numerator, denominator);
     let tangent = ratio.high - (-ratio.low);
-    // The quadrant is NaN for angles above the largest.
+    // The quadrant is NaN for angles above the largest angle.
     R::select_equal(quadrant, quadrant, tangent, quadrant)
 }
 
-/// Computes sine, cosine and quadrant of the remainder. The low part of the sine must be *subtracted*, so
+/// Computes sine and cosine of the remainder, and the quadrant. The low part of the sine must be *subtracted*, so
 /// that a negative zero keeps its sign.
 #[inline(always)]
-fn reduce<R: Real>(x: R) -> Reduced<R> {
+fn reduce<R: Real>(x: R) -> ReducedAngle<R> {
     let k = nearest_integer(x * R::constant(core::f64::consts::FRAC_2_PI));
     let (r, excess) = remainder(x, k);
     let one = R::constant(1.0);
@@ -149,12 +149,12 @@ fn reduce<R: Real>(x: R) -> Reduced<R> {
     let near_cosine = ordered_sum(one, z * R::constant(-0.5));
     let sine_rest = (r * z) * polynomial(z, Format::<R>::SINE) + excess * near_cosine.high;
     let cosine_rest = (z * z) * polynomial(z, Format::<R>::COSINE) + r * excess;
-    Reduced {
+    ReducedAngle {
         sine: Pair {
             high: r,
             low: sine_rest,
         },
-        cosine: near_cosine.plus_low(cosine_rest),
+        cosine: near_cosine.add_to_low(cosine_rest),
         quadrant: quadrant(x, k),
     }
 }
@@ -167,7 +167,7 @@ fn reduce<R: Real>(x: R) -> Reduced<R> {
 fn remainder<R: Real>(x: R, k: R) -> (R, R) {
     let [first, second, third, fourth, rest] = Format::<R>::HALF_PI_PARTS.map(R::constant);
     let leading = (x - k * first) - k * second;
-    let tail = ordered_sum(k * third, k * fourth).plus_low(k * rest);
+    let tail = ordered_sum(k * third, k * fourth).add_to_low(k * rest);
     let r = leading - tail.high;
     let lost = (leading - r) - tail.high;
     (r, tail.low - lost)

@@ -18,20 +18,20 @@ pub fn sign<R: Real>(x: R) -> R {
     R::select_less(zero, x, one, not_positive)
 }
 
-/// Returns the smaller argument, `a` if they are equal, NaN if either is.
+/// Returns the smaller argument, `a` if both are equal, NaN if either is NaN.
 #[inline]
 pub fn min<R: Real>(a: R, b: R) -> R {
     R::select_equal(b, b, R::select_less(b, a, b, a), b)
 }
 
-/// Returns the larger argument, `a` if they are equal, NaN if either is.
+/// Returns the larger argument, `a` if both are equal, NaN if either is NaN.
 #[inline]
 pub fn max<R: Real>(a: R, b: R) -> R {
     R::select_equal(b, b, R::select_less(a, b, b, a), b)
 }
 
-/// Returns the multiple of `step` that is nearest to x, halves away from zero, for up to `2^51` steps (2^22 in single precision); NaN if `step` is
-/// 0.
+/// Returns the multiple of `step` that is nearest to x; halves are rounded away from zero. The quotient `x/step` is
+/// at most `2^51` (2^22 in single precision). Returns NaN if `step` is 0.
 #[inline]
 pub fn quantise<R: Real>(x: R, step: R) -> R {
     let ratio = x / step;

@@ -1,4 +1,4 @@
-//! Instructions of the integer unit.
+//! Execution of integer instructions.
 
 use crate::instruction::Instruction;
 use crate::jump::{Step, assign};
@@ -8,18 +8,22 @@ use crate::value::{
     Flags, Shift, UNKNOWN, Value, add, and, complement, opaque, or, shift, subtract, xor,
 };
 
-/// Instructions with one result that is not followed.
+/// Integer instructions whose result is treated as unknown.
 const OPAQUE: [&str; 17] = [
     "mla", "mls", "udiv", "sdiv", "clz", "rbit", "rev", "ubfx", "sbfx", "bfi", "bfc", "uxtb",
     "uxth", "sxtb", "sxth", "uxtab", "uxtah",
 ];
 
-/// Second operand with its shift, and the carry after it.
-fn second(of: &Instruction, place: usize, state: &State) -> Option<(Value, Option<bool>)> {
+/// Returns the value of the second operand after its shift, and the carry flag after the shift.
+fn read_second_operand(
+    of: &Instruction,
+    place: usize,
+    state: &State,
+) -> Option<(Value, Option<bool>)> {
     let carry = state.flags.c;
     let value = match of.operands.get(place)? {
         Operand::Number(number) => {
-            // A larger constant is a rotated one and sets the carry.
+            // A larger constant is encoded with a rotation, which sets the carry flag.
             let carry = if *number < 256 { carry } else { None };
             return Some((Value::number(*number), carry));
         }
@@ -73,10 +77,10 @@ pub fn compute(of: &Instruction, state: &mut State) -> Option<Step> {
         .iter()
         .filter(|operand| !is_shift(operand))
         .count();
-    // Of two operands the first one is the result, too.
+    // If there are only two operands, the first one is also the result.
     let last = count.checked_sub(1)?;
     let left = state.register(of.register(last.checked_sub(1)?)?);
-    let (right, moved_carry) = second(of, last, state)?;
+    let (right, moved_carry) = read_second_operand(of, last, state)?;
     let logical = |value: Value| {
         let (n, z) = value.sign_and_zero();
         let flags = Flags {

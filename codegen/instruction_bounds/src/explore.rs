@@ -7,7 +7,7 @@ use crate::graph::Graph;
 use crate::instruction::{Instruction, decode};
 use crate::jump::Step;
 use crate::library::{KnownLoop, known_loops};
-use crate::listing::{Listing, Place};
+use crate::listing::{CodeAddress, Listing};
 use crate::state::{Effect, State, Writes};
 use crate::step::Machine;
 use crate::value::{UNKNOWN, Value};
@@ -15,14 +15,15 @@ use crate::value::{UNKNOWN, Value};
 /// Largest number of states at the targets of jumps in one function.
 const MAX_STATES: usize = 20_000;
 
-/// Upper bounds of one call.
+/// Upper bounds for one call of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bound {
-    /// Executed instructions, those with a false condition included.
+    /// Number of executed instructions, including instructions whose condition is false.
     pub instructions: u64,
-    /// The same if no operand of a product or quotient of doubles that libgcc computes is subnormal.
+    /// Number of executed instructions if no operand of a double-precision product or quotient in libgcc is
+    /// subnormal.
     pub without_subnormals: u64,
-    /// Bytes of stack below the caller's stack pointer.
+    /// Stack use below the caller's stack pointer, in bytes.
     pub stack: u64,
 }
 
@@ -33,19 +34,19 @@ struct Summary {
     effect: Effect,
 }
 
-/// Function and known numbers among its arguments.
-type Call = (Place, [Option<u32>; 4]);
+/// Function, and the known numbers among its arguments.
+type Call = (CodeAddress, [Option<u32>; 4]);
 
-/// Bounds functions of a listing.
+/// Computation of the bounds of the functions in a listing.
 pub struct Explorer<'a> {
     listing: &'a Listing,
-    instructions: BTreeMap<Place, Instruction>,
-    targets: BTreeSet<Place>,
-    loops: BTreeMap<Place, KnownLoop>,
-    /// True if numbers may be subnormal.
+    instructions: BTreeMap<CodeAddress, Instruction>,
+    targets: BTreeSet<CodeAddress>,
+    loops: BTreeMap<CodeAddress, KnownLoop>,
+    /// True if operands may be subnormal.
     has_subnormals: bool,
     summaries: HashMap<Call, Result<Rc<Summary>, String>>,
-    active: Vec<Place>,
+    active: Vec<CodeAddress>,
 }
 
 impl<'a> Explorer<'a> {
@@ -63,11 +64,11 @@ impl<'a> Explorer<'a> {
         }
     }
 
-    /// Bounds functions for any arguments. Each bound is missing for a reason.
-    pub fn bounds(mut self, functions: &[Place]) -> Vec<Result<Bound, String>> {
+    /// Computes the bounds of functions for any arguments. If a function has no bound, the error contains the reason.
+    pub fn bound_functions(mut self, functions: &[CodeAddress]) -> Vec<Result<Bound, String>> {
         let all: Vec<_> = functions
             .iter()
-            .map(|function| self.of_any_call(*function))
+            .map(|function| self.summarise_any_call(*function))
             .collect();
         self.has_subnormals = false;
         if !self.loops.is_empty() {
@@ -75,7 +76,7 @@ impl<'a> Explorer<'a> {
         }
         let bounds = functions.iter().zip(all).map(|(function, all)| {
             let all = all?;
-            let without_subnormals = self.of_any_call(*function)?.instructions;
+            let without_subnormals = self.summarise_any_call(*function)?.instructions;
             Ok(Bound {
                 instructions: all.instructions,
                 without_subnormals,
@@ -85,11 +86,11 @@ impl<'a> Explorer<'a> {
         bounds.collect()
     }
 
-    fn of_any_call(&mut self, function: Place) -> Result<Rc<Summary>, String> {
-        self.summary((function, [None; 4]))
+    fn summarise_any_call(&mut self, function: CodeAddress) -> Result<Rc<Summary>, String> {
+        self.summarise_call((function, [None; 4]))
     }
 
-    fn summary(&mut self, call: Call) -> Result<Rc<Summary>, String> {
+    fn summarise_call(&mut self, call: Call) -> Result<Rc<Summary>, String> {
         if let Some(known) = self.summaries.get(&call) {
             return known.clone();
         }
@@ -117,7 +118,7 @@ impl<'a> Explorer<'a> {
         let mut next = 0;
         while next < run.graph.nodes.len() {
             if run.graph.nodes.len() > MAX_STATES {
-                let place = self.listing.describe(run.graph.most_visited());
+                let code_address = self.listing.describe(run.graph.most_visited());
                 return Err(format!(
                     "a loop or branches with more than {MAX_STATES} states, at {place}"
                 ));
@@ -125,8 +126,8 @@ impl<'a> Explorer<'a> {
             self.follow(&mut run, next)?;
             next += 1;
         }
-        let instructions = run.graph.longest_path().map_err(|place| {
-            let place = self.listing.describe(place);
+        let instructions = run.graph.longest_path().map_err(|code_address| {
+            let code_address = self.listing.describe(code_address);
             format!("a loop without proven number of iterations, at {place}")
         })?;
         Ok(Summary {
@@ -141,38 +142,38 @@ impl<'a> Explorer<'a> {
 
     /// Follows all paths from a node to the next nodes.
     fn follow(&mut self, run: &mut Run<'a>, node: usize) -> Result<(), String> {
-        let (place, state) = (*run.graph.nodes[node].at).clone();
-        let mut paths = vec![(place, state, 0_u64)];
+        let (code_address, state) = (*run.graph.nodes[node].at).clone();
+        let mut paths = vec![(code_address, state, 0_u64)];
         let mut is_first = true;
-        while let Some((mut place, mut state, mut count)) = paths.pop() {
+        while let Some((mut code_address, mut state, mut count)) = paths.pop() {
             loop {
-                if !std::mem::take(&mut is_first) && self.targets.contains(&place) {
-                    let next = run.graph.node(place, state);
+                if !std::mem::take(&mut is_first) && self.targets.contains(&code_address) {
+                    let next = run.graph.node(code_address, state);
                     run.graph.nodes[node].edges.push((next, count));
                     break;
                 }
-                let Some(instruction) = self.instructions.get(&place) else {
-                    let place = self.listing.describe(place);
+                let Some(instruction) = self.instructions.get(&code_address) else {
+                    let code_address = self.listing.describe(code_address);
                     return Err(format!("a jump to {place}, which is no instruction"));
                 };
                 count += 1;
-                let after = place + instruction.size;
+                let after = code_address + instruction.size;
                 let holds = instruction.condition.value(state.flags);
                 if holds == Some(false) {
-                    place = after;
+                    code_address = after;
                     continue;
                 }
-                if let Some(known) = self.loops.get(&place) {
+                if let Some(known) = self.loops.get(&code_address) {
                     if !self.has_subnormals {
                         break;
                     }
                     count += known.repeated_instructions;
                     known.forget(&mut state);
-                    place = after;
+                    code_address = after;
                     continue;
                 }
                 let before = holds.is_none().then(|| state.clone());
-                let step = run.machine.execute(place, instruction, &mut state);
+                let step = run.machine.execute(code_address, instruction, &mut state);
                 let step = match step {
                     Step::Branch(target, None) => {
                         paths.push((target, state.clone(), count));
@@ -187,23 +188,23 @@ impl<'a> Explorer<'a> {
                         state = state.join(&before);
                     }
                     run.note_stack(&state, 0)
-                        .map_err(|reason| self.refusal(place, reason))?;
-                    place = after;
+                        .map_err(|reason| self.describe_failure(code_address, reason))?;
+                    code_address = after;
                     continue;
                 }
                 if let Some(before) = before {
                     paths.push((after, before, count));
                 }
                 match step {
-                    Step::Jump(target) => place = target,
+                    Step::Jump(target) => code_address = target,
                     Step::Call(called) => {
-                        let summary = self.summary((called, state.arguments()));
+                        let summary = self.summarise_call((called, state.arguments()));
                         let summary = summary.map_err(|reason| self.in_call(called, reason))?;
                         run.note_stack(&state, summary.stack)
-                            .map_err(|reason| self.refusal(place, reason))?;
+                            .map_err(|reason| self.describe_failure(code_address, reason))?;
                         count += summary.instructions;
                         state.call(&summary.effect, &mut run.machine.writes);
-                        place = after;
+                        code_address = after;
                     }
                     Step::Return => {
                         let end = &mut run.graph.nodes[node].end;
@@ -211,19 +212,21 @@ impl<'a> Explorer<'a> {
                         run.note_end(&state);
                         break;
                     }
-                    Step::Unbounded(reason) => return Err(self.refusal(place, &reason)),
-                    Step::Next | Step::Branch(..) => place = after,
+                    Step::Unbounded(reason) => {
+                        return Err(self.describe_failure(code_address, &reason));
+                    }
+                    Step::Next | Step::Branch(..) => code_address = after,
                 }
             }
         }
         Ok(())
     }
 
-    fn refusal(&self, place: Place, reason: &str) -> String {
-        format!("{reason}, at {}", self.listing.describe(place))
+    fn describe_failure(&self, code_address: CodeAddress, reason: &str) -> String {
+        format!("{reason}, at {}", self.listing.describe(code_address))
     }
 
-    fn in_call(&self, called: Place, reason: String) -> String {
+    fn in_call(&self, called: CodeAddress, reason: String) -> String {
         let called = self.listing.describe(called);
         match reason.contains(&called) {
             true => reason,
@@ -236,7 +239,7 @@ struct Run<'a> {
     machine: Machine<'a>,
     graph: Graph,
     stack: u64,
-    /// Core registers known at all ends.
+    /// Core registers that are known at every return of the function.
     registers: Option<[Value; 15]>,
 }
 
@@ -248,7 +251,7 @@ impl Run<'_> {
         }
     }
 
-    /// Notes the stack in use and `more` bytes of a called function.
+    /// Updates the largest stack use with the stack of a state and `more` bytes of a called function.
     fn note_stack(&mut self, state: &State, more: u64) -> Result<(), &'static str> {
         let offset = state
             .stack_offset()

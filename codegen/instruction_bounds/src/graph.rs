@@ -3,39 +3,39 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use crate::listing::Place;
+use crate::listing::CodeAddress;
 use crate::state::State;
 
-/// States at the targets of jumps, with the instructions between them.
+/// States at the targets of jumps. An edge has the number of instructions between two states.
 #[derive(Default)]
 pub struct Graph {
     /// Nodes in the order in which they were found.
     pub nodes: Vec<Node>,
-    known: HashMap<Rc<(Place, State)>, usize>,
-    /// Number of states by place.
-    counts: HashMap<Place, usize>,
+    known: HashMap<Rc<(CodeAddress, State)>, usize>,
+    /// Number of states at each address.
+    counts: HashMap<CodeAddress, usize>,
 }
 
-/// State with the paths from it.
+/// State, with the paths that begin at it.
 pub struct Node {
-    /// Place and state.
-    pub at: Rc<(Place, State)>,
-    /// Next nodes, with the instructions up to them.
+    /// Address and state.
+    pub at: Rc<(CodeAddress, State)>,
+    /// Next nodes, each with the number of instructions before it.
     pub edges: Vec<(usize, u64)>,
-    /// Instructions up to the end of the function.
+    /// Number of instructions before the return, if a path returns before the next node.
     pub end: Option<u64>,
 }
 
 impl Graph {
-    /// Returns the node of a state, a new one if it is not known.
-    pub fn node(&mut self, place: Place, state: State) -> usize {
-        let at = Rc::new((place, state));
+    /// Returns the node of a state. Adds the node if it is new.
+    pub fn node(&mut self, code_address: CodeAddress, state: State) -> usize {
+        let at = Rc::new((code_address, state));
         if let Some(known) = self.known.get(&at) {
             return *known;
         }
         let index = self.nodes.len();
         self.known.insert(Rc::clone(&at), index);
-        *self.counts.entry(place).or_default() += 1;
+        *self.counts.entry(code_address).or_default() += 1;
         self.nodes.push(Node {
             at,
             edges: Vec::new(),
@@ -44,17 +44,18 @@ impl Graph {
         index
     }
 
-    /// Returns the place with most states.
-    pub fn most_visited(&self) -> Place {
+    /// Returns the address with the most states.
+    pub fn most_visited(&self) -> CodeAddress {
         let most = self
             .counts
             .iter()
-            .max_by_key(|(place, count)| (**count, **place));
-        most.map_or(0, |(place, _)| *place)
+            .max_by_key(|(code_address, count)| (**count, **code_address));
+        most.map_or(0, |(code_address, _)| *code_address)
     }
 
-    /// Returns the longest path from the first node, or the place of a cycle. Paths that do not end have no length.
-    pub fn longest_path(&self) -> Result<u64, Place> {
+    /// Returns the length of the longest path from the first node to a return, in instructions. If the graph has a
+    /// cycle, the error is an address in the cycle. A path that does not return counts as 0.
+    pub fn longest_path(&self) -> Result<u64, CodeAddress> {
         #[derive(Clone, Copy)]
         enum Mark {
             New,

@@ -1,30 +1,30 @@
-//! Instructions with their conditions, from lines of the disassembly.
+//! Instructions with their conditions, decoded from lines of the disassembly.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::listing::{Line, Listing, Place};
-use crate::operand::{Operand, operands};
+use crate::listing::{CodeAddress, Line, Listing};
+use crate::operand::{Operand, parse_operands};
 use crate::value::Flags;
 
 /// Decoded instruction.
 #[derive(Clone, Debug)]
 pub struct Instruction {
-    /// Mnemonic without width, type, condition and the `s` of the flags.
+    /// Mnemonic without the suffixes for width, type, condition and flags (`s`).
     pub name: String,
-    /// True if it sets the flags.
+    /// True if the instruction sets the flags.
     pub sets_flags: bool,
     /// Condition.
     pub condition: Condition,
     /// Operands.
     pub operands: Vec<Operand>,
-    /// Bytes.
+    /// Length, in bytes.
     pub size: u64,
-    /// Symbol of the relocation.
+    /// Symbol of the relocation, if there is one.
     pub symbol: Option<String>,
 }
 
 impl Instruction {
-    /// Returns the register at a place of the operands.
+    /// Returns the register that is the operand with this index.
     pub fn register(&self, place: usize) -> Option<u8> {
         match self.operands.get(place) {
             Some(Operand::Register(number)) => Some(*number),
@@ -36,7 +36,7 @@ impl Instruction {
 /// Condition of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {
-    /// Executed always.
+    /// The instruction is always executed.
     Always,
     /// Condition with this suffix.
     If(&'static str),
@@ -52,7 +52,7 @@ impl Condition {
         known.map(|known| Self::If(known))
     }
 
-    /// Returns the opposite condition: both are neighbours in the list.
+    /// Returns the opposite condition, which is adjacent in the list.
     fn opposite(self) -> Self {
         match self {
             Self::Always => self,
@@ -95,8 +95,8 @@ impl Condition {
     }
 }
 
-/// Decodes all instructions of a listing. Returns them with the targets of jumps.
-pub fn decode(listing: &Listing) -> (BTreeMap<Place, Instruction>, BTreeSet<Place>) {
+/// Decodes all instructions of a listing. Returns the instructions and the targets of jumps.
+pub fn decode(listing: &Listing) -> (BTreeMap<CodeAddress, Instruction>, BTreeSet<CodeAddress>) {
     let mut instructions = BTreeMap::new();
     let mut targets = BTreeSet::new();
     let mut conditions: Vec<Condition> = Vec::new();
@@ -106,9 +106,9 @@ pub fn decode(listing: &Listing) -> (BTreeMap<Place, Instruction>, BTreeSet<Plac
             continue;
         }
         let condition = conditions.pop();
-        let instruction = instruction(line, condition);
+        let instruction = parse_instruction(line, condition);
         if let Some(rest) = instruction.name.strip_prefix("it") {
-            conditions = block(rest, &line.operands);
+            conditions = read_block(rest, &line.operands);
         } else if instruction.name != "bl" {
             for operand in &instruction.operands {
                 if let Operand::Target(target) = operand {
@@ -121,8 +121,9 @@ pub fn decode(listing: &Listing) -> (BTreeMap<Place, Instruction>, BTreeSet<Plac
     (instructions, targets)
 }
 
-/// Returns the conditions of the instructions after `it` with the letters `rest`, the last one first.
-fn block(rest: &str, suffix: &str) -> Vec<Condition> {
+/// Returns the conditions of the instructions in the block after `it`, in reverse order. `rest` are the letters after
+/// `it` in the mnemonic.
+fn read_block(rest: &str, suffix: &str) -> Vec<Condition> {
     let Some(first) = Condition::from_suffix(suffix) else {
         return Vec::new();
     };
@@ -135,7 +136,7 @@ fn block(rest: &str, suffix: &str) -> Vec<Condition> {
     conditions
 }
 
-fn instruction(line: &Line, in_block: Option<Condition>) -> Instruction {
+fn parse_instruction(line: &Line, in_block: Option<Condition>) -> Instruction {
     let mut name = line
         .mnemonic
         .split('.')
@@ -167,7 +168,7 @@ fn instruction(line: &Line, in_block: Option<Condition>) -> Instruction {
         name,
         sets_flags,
         condition,
-        operands: operands(&line.operands),
+        operands: parse_operands(&line.operands),
         size: line.size(),
         symbol: line.symbol.clone(),
     }

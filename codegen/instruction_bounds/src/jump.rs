@@ -1,10 +1,10 @@
 //! Continuation after an instruction.
 
-use crate::listing::Place;
+use crate::listing::CodeAddress;
 use crate::state::{LR, State};
 use crate::value::{Base, UNKNOWN, Value};
 
-/// Number of the program counter.
+/// Register number of the program counter.
 pub const PC: u8 = 15;
 
 /// Continuation after an instruction.
@@ -13,20 +13,20 @@ pub enum Step {
     /// The next instruction.
     Next,
     /// A jump.
-    Jump(Place),
-    /// A jump that is taken if the value is true; `None` if it is not known.
-    Branch(Place, Option<bool>),
+    Jump(CodeAddress),
+    /// A conditional jump. It is taken if the value is true; `None` means that this is unknown.
+    Branch(CodeAddress, Option<bool>),
     /// A call of a function.
-    Call(Place),
+    Call(CodeAddress),
     /// The end of the function.
     Return,
-    /// No bound, for a reason.
+    /// The function has no bound; contains the reason.
     Unbounded(String),
 }
 
-/// Jumps to a value. An unknown one from the link register or the stack is the address of the caller if the stack
-/// pointer has its first value again: compiled functions do not overwrite it.
-pub fn goto(value: Value, is_saved: bool, state: &State) -> Step {
+/// Jumps to a value. An unknown value from the link register or the stack is the return address if the stack pointer
+/// has its value at entry again, because compiled functions do not overwrite the return address.
+pub fn jump_to(value: Value, is_saved: bool, state: &State) -> Step {
     let at_end = state.stack_offset() == Some(0);
     match value {
         Value::Address(Base::Code(section), offset) => {
@@ -38,10 +38,10 @@ pub fn goto(value: Value, is_saved: bool, state: &State) -> Step {
     }
 }
 
-/// Sets a register that may be the program counter.
+/// Sets a register. If it is the program counter, this is a jump.
 pub fn assign(state: &mut State, number: u8, value: Value) -> Step {
     match number {
-        PC => goto(value, false, state),
+        PC => jump_to(value, false, state),
         _ => {
             state.set(number, value);
             Step::Next

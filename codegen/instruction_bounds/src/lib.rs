@@ -1,10 +1,10 @@
-//! Upper bounds of the instructions and the stack of compiled functions of a Cortex-M4F or Cortex-M7, from the
-//! disassembly.
+//! Upper bounds of the executed instructions and of the stack use of functions compiled for a Cortex-M4F or
+//! Cortex-M7, computed from the disassembly.
 //!
 //! `listing` reads the output of objdump, `operand` and `instruction` decode it. `step` (with `compute` and `jump`)
-//! executes an instruction on a `state` of partly known `value`s. `explore` follows all branches whose condition is not
-//! known and takes the longest path of the `graph` of states; a loop ends if its counter is known. `library` has the
-//! loops of libgcc whose limits follow from the number format.
+//! executes an instruction on a `state` of partly known `value`s. `explore` follows both sides of each branch with an
+//! unknown condition and finds the longest path in the `graph` of states. A loop is bounded if its counter is known.
+//! `library` lists the loops of libgcc that the number format bounds.
 
 mod compute;
 mod explore;
@@ -22,30 +22,30 @@ pub use explore::Bound;
 use explore::Explorer;
 use listing::Listing;
 
-/// Function with its bounds.
+/// Function and its bounds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BoundedFunction {
     /// Name.
     pub name: String,
-    /// Bounds, or the reason why there are none.
+    /// Bounds, or the reason why the function has no bounds.
     pub bound: Result<Bound, String>,
 }
 
-/// Bounds the functions that are visible outside the object, in alphabetical order. `listing` is the output of
-/// `objdump -t -d -r` for an object that contains all functions that they call.
+/// Computes the bounds of the functions that are visible outside the object, in alphabetical order. `listing` is the
+/// output of `objdump -t -d -r` for an object that contains all functions that they call.
 ///
 /// # Errors
-/// If the listing is not that of an object for a Cortex-M.
+/// The listing is not the output for an object of a Cortex-M.
 pub fn bound_functions(listing: &str) -> Result<Vec<BoundedFunction>, String> {
     let listing = Listing::read(listing)?;
     let functions = listing
         .functions
         .iter()
         .filter(|(_, function)| function.is_global);
-    let (names, places): (Vec<&String>, Vec<u64>) = functions
-        .map(|(name, function)| (name, function.place))
+    let (names, code_addresses): (Vec<&String>, Vec<u64>) = functions
+        .map(|(name, function)| (name, function.code_address))
         .unzip();
-    let bounds = Explorer::new(&listing).bounds(&places);
+    let bounds = Explorer::new(&listing).bounds(&code_addresses);
     let bounded = names
         .into_iter()
         .zip(bounds)

@@ -1,22 +1,22 @@
-//! Loops of libgcc with limits that follow from the number format.
+//! Loops of libgcc whose number of iterations is bounded by the number format.
 
 use std::collections::BTreeMap;
 
 use eomgen_model_spec::source::sha256;
 
-use crate::listing::{Listing, Place};
+use crate::listing::{CodeAddress, Listing};
 use crate::state::State;
 use crate::value::{Flags, UNKNOWN};
 
 /// Loop that shifts the fraction of a subnormal number to the left until its highest bit is set.
 struct Normalisation {
-    /// Distance of the jump back from the beginning of the function, in bytes.
+    /// Offset of the backward jump from the start of the function, in bytes.
     jump: u64,
     /// Registers that the loop writes.
     registers: [u8; 3],
 }
 
-/// Product of doubles, and the loops that the quotient shares with it.
+/// Function of libgcc for the product of doubles. The quotient uses its loops, too.
 const PRODUCT: &str = "__aeabi_dmul";
 
 /// SHA-256 of the hexadecimal digits of [`PRODUCT`] in libgcc for processors with Thumb-2 (`ieee754-df.S`).
@@ -33,13 +33,14 @@ const NORMALISATIONS: [Normalisation; 2] = [
     },
 ];
 
-/// Instructions of such a loop, from `lsls` to `beq`.
-const INSTRUCTIONS: u64 = 6;
+/// Number of instructions in one iteration, from `lsls` to `beq`.
+const INSTRUCTIONS_PER_ITERATION: u64 = 6;
 
-/// Largest number of iterations: bits of the fraction. The function enters the loop only for numbers that are not 0.
-const ITERATIONS: u64 = 52;
+/// Largest number of iterations: the number of bits of the fraction. The loop is entered only for numbers other than
+/// 0.
+const MAX_ITERATIONS: u64 = 52;
 
-/// Loop with a known limit.
+/// Loop with a known bound on its iterations.
 #[derive(Clone, Copy, Debug)]
 pub struct KnownLoop {
     registers: [u8; 3],
@@ -48,7 +49,7 @@ pub struct KnownLoop {
 }
 
 impl KnownLoop {
-    /// Forgets what the loop changes.
+    /// Marks the registers and flags that the loop changes as unknown.
     pub fn forget(self, state: &mut State) {
         for register in self.registers {
             state.set(register, UNKNOWN);
@@ -57,17 +58,17 @@ impl KnownLoop {
     }
 }
 
-/// Returns the loops with known limits by the places of their jumps back.
-pub fn known_loops(listing: &Listing) -> BTreeMap<Place, KnownLoop> {
+/// Returns the loops with known bounds, by the address of the backward jump.
+pub fn known_loops(listing: &Listing) -> BTreeMap<CodeAddress, KnownLoop> {
     let product = listing.functions.get(PRODUCT);
     let product = product.filter(|product| sha256(listing.bytes(**product)) == PRODUCT_SHA256);
     let loops = product.into_iter().flat_map(|product| {
         NORMALISATIONS.iter().map(|known| {
             let limit = KnownLoop {
                 registers: known.registers,
-                repeated_instructions: (ITERATIONS - 1) * INSTRUCTIONS,
+                repeated_instructions: (MAX_ITERATIONS - 1) * INSTRUCTIONS_PER_ITERATION,
             };
-            (product.place + known.jump, limit)
+            (product.code_address + known.jump, limit)
         })
     });
     loops.collect()

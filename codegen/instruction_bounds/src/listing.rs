@@ -2,31 +2,31 @@
 
 use std::collections::BTreeMap;
 
-/// Address of an instruction: number of the section in the upper, offset in the lower half.
-pub type Place = u64;
+/// Address of an instruction. The upper half is the number of the section, the lower half the offset in the section.
+pub type CodeAddress = u64;
 
 /// Disassembled object.
 #[derive(Debug, Default)]
 pub struct Listing {
-    /// Instructions and data by place.
-    pub lines: BTreeMap<Place, Line>,
-    /// Numbers of the symbols of relocations.
+    /// Instructions and data by address.
+    pub lines: BTreeMap<CodeAddress, Line>,
+    /// Numbers assigned to the symbols of relocations.
     pub symbols: BTreeMap<String, usize>,
     /// Functions by name.
     pub functions: BTreeMap<String, Function>,
-    /// Names of functions by place; of several at one place the last.
-    names: BTreeMap<Place, String>,
+    /// Names of functions by address. If several functions have one address, this is the last name.
+    names: BTreeMap<CodeAddress, String>,
     sections: Vec<String>,
 }
 
 /// Function of the symbol table.
 #[derive(Clone, Copy, Debug)]
 pub struct Function {
-    /// First instruction.
-    pub place: Place,
-    /// Bytes.
+    /// Address of the first instruction.
+    pub code_address: CodeAddress,
+    /// Length, in bytes.
     pub size: u64,
-    /// True if it is visible outside the object.
+    /// True if the function is visible outside the object.
     pub is_global: bool,
 }
 
@@ -35,15 +35,15 @@ pub struct Function {
 pub struct Line {
     /// Bytes as hexadecimal digits, as printed.
     pub bytes: String,
-    /// Mnemonic; of data `.word` and its like.
+    /// Mnemonic; for data a directive such as `.word`.
     pub mnemonic: String,
     /// Operands without comment.
     pub operands: String,
-    /// Symbol of the relocation.
+    /// Symbol of the relocation, if there is one.
     pub symbol: Option<String>,
 }
 
-/// Format of objects.
+/// Required format of the object, as objdump prints it.
 const FORMAT: &str = "elf32-littlearm";
 
 impl Line {
@@ -62,7 +62,7 @@ impl Listing {
     /// Reads the output of objdump.
     ///
     /// # Errors
-    /// If the output is not that of an object for a Cortex-M with instructions.
+    /// The output does not describe an object for a Cortex-M that contains instructions.
     pub fn read(text: &str) -> Result<Self, String> {
         if !text.contains(FORMAT) {
             let format = text.split_once("file format ").map_or("", |(_, rest)| rest);
@@ -76,35 +76,37 @@ impl Listing {
         for line in text.lines() {
             if let Some(name) = line.strip_prefix("Disassembly of section ") {
                 section = listing.section(name.trim_end_matches(':'));
-            } else if let Some((place, symbol)) = relocation(line) {
-                let place = section << 32 | place;
-                // The relocation of a 32-bit instruction has its address, that of a word too.
-                let line = listing
-                    .lines
-                    .get_mut(if place < last { &last } else { &place });
+            } else if let Some((code_address, symbol)) = parse_relocation(line) {
+                let code_address = section << 32 | code_address;
+                // The relocation of a 32-bit instruction or of a word has the address of this instruction or word.
+                let line = listing.lines.get_mut(if code_address < last {
+                    &last
+                } else {
+                    &code_address
+                });
                 if let Some(line) = line {
                     let number = listing.symbols.len();
                     listing.symbols.entry(symbol.clone()).or_insert(number);
                     line.symbol = Some(symbol);
                 }
-            } else if let Some((offset, line)) = instruction(line) {
+            } else if let Some((offset, line)) = parse_instruction(line) {
                 last = section << 32 | offset;
                 listing.lines.insert(last, line);
-            } else if let Some(symbol) = symbol(line) {
+            } else if let Some(symbol) = parse_symbol(line) {
                 symbols.push(symbol);
             }
         }
         for (name, section, offset, size, is_global) in symbols {
-            let place = listing.section(&section) << 32 | offset;
+            let code_address = listing.section(&section) << 32 | offset;
             let function = Function {
-                place,
+                code_address,
                 size,
                 is_global,
             };
-            listing.names.insert(place, name.clone());
+            listing.names.insert(code_address, name.clone());
             listing.functions.insert(name, function);
         }
-        // Instructions of 32 bits are printed as two halves in Thumb.
+        // In Thumb code, objdump prints 32-bit instructions as two halves.
         let mut instructions = listing.lines.values().filter(|line| !line.is_data());
         if instructions.any(|line| line.bytes.len() == 8) {
             return Err(
@@ -123,19 +125,19 @@ impl Listing {
         }) as u64
     }
 
-    /// Returns true if a function of the symbol table begins here.
-    pub fn is_function(&self, place: Place) -> bool {
-        self.names.contains_key(&place)
+    /// Returns true if a function of the symbol table begins at this address.
+    pub fn is_function(&self, code_address: CodeAddress) -> bool {
+        self.names.contains_key(&code_address)
     }
 
-    /// Returns the place as `FUNCTION+0x1c`.
-    pub fn describe(&self, place: Place) -> String {
-        match self.names.range(..=place).next_back() {
-            Some((begin, name)) if *begin == place => name.clone(),
-            Some((begin, name)) if begin >> 32 == place >> 32 => {
-                format!("{name}+{:#x}", place - begin)
+    /// Returns the address as `FUNCTION+0x1c`.
+    pub fn describe(&self, code_address: CodeAddress) -> String {
+        match self.names.range(..=code_address).next_back() {
+            Some((begin, name)) if *begin == code_address => name.clone(),
+            Some((begin, name)) if begin >> 32 == code_address >> 32 => {
+                format!("{name}+{:#x}", code_address - begin)
             }
-            _ => format!("{:#x}", place & 0xffff_ffff),
+            _ => format!("{:#x}", code_address & 0xffff_ffff),
         }
     }
 
@@ -143,24 +145,27 @@ impl Listing {
     pub fn bytes(&self, function: Function) -> String {
         let lines = self
             .lines
-            .range(function.place..function.place + function.size);
+            .range(function.code_address..function.code_address + function.size);
         let bytes = lines.map(|(_, line)| line.bytes.as_str());
         bytes.collect::<String>().replace(' ', "")
     }
 }
 
 /// Reads `  686: R_ARM_THM_CALL  NAME`.
-fn relocation(line: &str) -> Option<(u64, String)> {
+fn parse_relocation(line: &str) -> Option<(u64, String)> {
     let mut words = line.split_whitespace();
-    let place = words.next()?.strip_suffix(':')?;
+    let code_address = words.next()?.strip_suffix(':')?;
     let kind = words.next()?;
     let symbol = words.next()?;
     (kind.starts_with("R_ARM_") && words.next().is_none()).then_some(())?;
-    Some((u64::from_str_radix(place, 16).ok()?, symbol.to_owned()))
+    Some((
+        u64::from_str_radix(code_address, 16).ok()?,
+        symbol.to_owned(),
+    ))
 }
 
 /// Reads `  65a:  ed90 0b00   vldr  d0, [r0]  @ comment`.
-fn instruction(line: &str) -> Option<(u64, Line)> {
+fn parse_instruction(line: &str) -> Option<(u64, Line)> {
     let mut parts = line.split('\t');
     let offset = u64::from_str_radix(parts.next()?.trim().strip_suffix(':')?, 16).ok()?;
     let bytes = parts.next()?.trim().to_owned();
@@ -179,7 +184,7 @@ fn instruction(line: &str) -> Option<(u64, Line)> {
 }
 
 /// Reads `00000654 g     F .text  0000028c crane_rates`: name, section, offset, size, and whether it is global.
-fn symbol(line: &str) -> Option<(String, String, u64, u64, bool)> {
+fn parse_symbol(line: &str) -> Option<(String, String, u64, u64, bool)> {
     let (left, right) = line.split_once('\t')?;
     let mut left = left.split_whitespace();
     let offset = u64::from_str_radix(left.next()?, 16).ok()?;

@@ -7,21 +7,21 @@ use crate::value::Shift;
 pub enum Operand {
     /// Core register.
     Register(u8),
-    /// Core register with write-back, as of `ldmia`.
+    /// Core register with write-back, for example the base of `ldmia`.
     Updated(u8),
     /// Constant.
     Number(u32),
     /// Core registers in braces.
     Registers(Vec<u8>),
-    /// Registers of the floating-point unit: one, or a number of words in braces.
+    /// Registers of the floating-point unit, one or several in braces: their number of 32-bit words.
     Floats(u32),
     /// Address in memory.
     Memory(Memory),
-    /// Shift of the operand before by a constant.
+    /// Shift of the preceding operand by a constant.
     Shifted(Shift, u32),
-    /// Shift of the operand before by a register.
+    /// Shift of the preceding operand by a register.
     ShiftedBy(Shift, u8),
-    /// Place of a jump within the section.
+    /// Target of a jump: offset in the section.
     Target(u64),
     /// Any other word.
     Word(String),
@@ -32,17 +32,20 @@ pub enum Operand {
 pub struct Memory {
     /// Register.
     pub base: u8,
-    /// Constant distance.
+    /// Constant offset.
     pub offset: i32,
-    /// Register that is added, and the places by which it is shifted to the left.
+    /// Register that is added, and the number of bits by which it is shifted to the left.
     pub index: Option<(u8, u32)>,
     /// True if the address is stored in the register before the access.
     pub is_updated: bool,
 }
 
-/// Reads the operands.
-pub fn operands(text: &str) -> Vec<Operand> {
-    split(text).into_iter().map(operand).collect()
+/// Parses the operands of an instruction.
+pub fn parse_operands(text: &str) -> Vec<Operand> {
+    split_operands(text)
+        .into_iter()
+        .map(parse_operand)
+        .collect()
 }
 
 /// Returns the number of a core register.
@@ -62,8 +65,8 @@ pub fn register(name: &str) -> Option<u8> {
     }
 }
 
-/// Splits at the commas outside brackets and braces.
-fn split(text: &str) -> Vec<&str> {
+/// Splits a text at the commas outside brackets and braces.
+fn split_operands(text: &str) -> Vec<&str> {
     let (mut parts, mut depth, mut begin) = (Vec::new(), 0, 0);
     for (place, letter) in text.char_indices() {
         match letter {
@@ -81,7 +84,7 @@ fn split(text: &str) -> Vec<&str> {
     parts
 }
 
-fn operand(text: &str) -> Operand {
+fn parse_operand(text: &str) -> Operand {
     let word = || Operand::Word(text.to_owned());
     if let Some(number) = text.strip_prefix('#') {
         return number_of(number).map_or_else(word, Operand::Number);
@@ -96,7 +99,7 @@ fn operand(text: &str) -> Operand {
         return list_of(list.trim_end_matches('}')).unwrap_or_else(word);
     }
     if let Some(inner) = text.strip_prefix('[') {
-        return memory(inner).map_or_else(word, Operand::Memory);
+        return parse_memory(inner).map_or_else(word, Operand::Memory);
     }
     if let Some(words) = float_words(text) {
         return Operand::Floats(words);
@@ -119,7 +122,7 @@ fn number_of(text: &str) -> Option<u32> {
     Some(number as u32)
 }
 
-/// Returns the words of a register such as `s5`, `d5` or `d5[1]`.
+/// Returns the number of 32-bit words of a register such as `s5`, `d5` or `d5[1]`.
 fn float_words(text: &str) -> Option<u32> {
     let words = match text.chars().next()? {
         's' => 1,
@@ -150,8 +153,8 @@ fn list_of(list: &str) -> Option<Operand> {
     }
 }
 
-/// Reads the text after `[`.
-fn memory(inner: &str) -> Option<Memory> {
+/// Parses the text after `[`.
+fn parse_memory(inner: &str) -> Option<Memory> {
     let (inside, after) = inner.split_once(']')?;
     let mut parts = inside.split(',').map(str::trim);
     let base = register(parts.next()?)?;
@@ -250,7 +253,7 @@ mod tests {
             ),
         ];
         for (text, expected) in cases {
-            assert_eq!(operands(text), expected, "{text}");
+            assert_eq!(parse_operands(text), expected, "{text}");
         }
     }
 }

@@ -4,37 +4,38 @@ use std::collections::BTreeMap;
 
 use crate::value::{Base, Flags, SP, UNKNOWN, Value, add, opaque};
 
-/// Number of the link register.
+/// Register number of the link register.
 pub const LR: u8 = 14;
 
-/// Known part of the machine's state.
+/// Known part of the processor state.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct State {
     registers: [Value; 15],
     /// Condition flags.
     pub flags: Flags,
-    /// Words of the function's stack by their distance from the first stack pointer. Others are unknown.
+    /// Known words of the function's stack, by their offset from the stack pointer at entry.
     words: BTreeMap<i32, Value>,
     /// True if other memory may contain an address of the function's stack.
     has_escaped: bool,
 }
 
-/// Memory outside a function's stack that it may write.
+/// Memory outside its own stack that a function may write.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Writes {
-    /// True if an address is unknown.
+    /// True if the address of a write is unknown.
     pub anywhere: bool,
-    /// First and last distance from the value of a register at entry.
+    /// By register: first and last byte offset of the writes, relative to the value of the register at entry.
     pub relative: BTreeMap<u8, (i32, i32)>,
 }
 
 /// Effect of a call on its caller.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Effect {
-    /// Memory that it may write.
+    /// Memory that the function may write.
     pub writes: Writes,
-    /// Core registers at its end by those at its begin. They are not those of the procedure call standard: a compiler
-    /// keeps values in other registers if it knows that the function does not change them.
+    /// Core registers at the return, expressed by the registers at entry. The procedure call standard is not
+    /// sufficient: a compiler also keeps values in other registers if it knows that the function does not change
+    /// them.
     pub registers: [Value; 15],
 }
 
@@ -71,7 +72,7 @@ impl State {
         value.copied().unwrap_or(UNKNOWN)
     }
 
-    /// Sets a register. Words below a new stack pointer are forgotten.
+    /// Sets a register. Words below a new stack pointer become unknown.
     pub fn set(&mut self, number: u8, value: Value) {
         if let Some(register) = self.registers.get_mut(usize::from(number)) {
             *register = value;
@@ -84,7 +85,7 @@ impl State {
         }
     }
 
-    /// Returns the distance of the stack pointer from its value at entry.
+    /// Returns the offset of the stack pointer from its value at entry.
     pub fn stack_offset(&self) -> Option<i32> {
         self.register(SP).as_stack_offset()
     }
@@ -113,12 +114,13 @@ impl State {
         }
     }
 
-    /// Marks that an address of the function's stack may be stored where it is not followed.
+    /// Records that an address of the function's stack may be stored in memory that is not tracked.
     pub fn note_escape(&mut self, value: Value) {
         self.has_escaped |= value.is_of_frame();
     }
 
-    /// Forgets the words that a write to an unknown number in these distances from an address changes.
+    /// Marks the words as unknown that a write of an unknown number changes. The write is between these offsets from
+    /// an address.
     pub fn overwrite(&mut self, address: Value, [first, last]: [i32; 2], writes: &mut Writes) {
         match address {
             Value::Address(Base::Entry(SP), offset) => {
@@ -160,7 +162,7 @@ impl State {
         self.has_escaped |= words.into_values().any(Value::is_of_frame);
     }
 
-    /// Applies a call of a function with this effect.
+    /// Applies the effect of a call.
     pub fn call(&mut self, called: &Effect, writes: &mut Writes) {
         let arguments = [0, 1, 2, 3].map(|number| self.register(number));
         let passes_frame = arguments.into_iter().any(Value::is_of_frame)
@@ -175,13 +177,14 @@ impl State {
         for (&register, &(first, last)) in &called.writes.relative {
             self.overwrite(before.register(register), [first, last], writes);
         }
-        // The function may store or return the addresses that it was given.
+        // The called function may store or return the addresses that it receives.
         let is_writing = called.writes.anywhere || !called.writes.relative.is_empty();
         self.has_escaped |= is_writing && passes_frame;
         for (number, value) in (0..).zip(called.registers) {
             match (number, before.translate(value)) {
                 (SP, _) => {}
-                // The procedure call standard keeps them; their words on the stack may be unknown.
+                // The procedure call standard preserves these registers, even if the saved words on the stack are
+                // unknown.
                 (4..=11, UNKNOWN) => {}
                 (_, UNKNOWN) => self.set(number, opaque(&arguments)),
                 (_, value) => self.set(number, value),
@@ -190,7 +193,7 @@ impl State {
         self.flags = Flags::default();
     }
 
-    /// Returns a value of a called function by the registers at its call.
+    /// Converts a value of the called function, which refers to its registers at entry, to a value of the caller.
     fn translate(&self, value: Value) -> Value {
         match value {
             Value::Address(Base::Entry(register), offset) => {
@@ -205,7 +208,7 @@ impl State {
         self.registers
     }
 
-    /// Returns what is known in both states.
+    /// Returns the state with the values that are known and equal in both states.
     pub fn join(&self, other: &Self) -> Self {
         let mut joined = self.clone();
         for (register, value) in joined.registers.iter_mut().zip(other.registers) {

@@ -2,21 +2,21 @@
 
 use crate::compute::compute;
 use crate::instruction::Instruction;
-use crate::jump::{PC, Step, assign, goto};
-use crate::listing::{Listing, Place};
+use crate::jump::{PC, Step, assign, jump_to};
+use crate::listing::{CodeAddress, Listing};
 use crate::operand::{Memory, Operand};
 use crate::state::{LR, State, Writes};
 use crate::value::{Base, Flags, SP, Shift, UNKNOWN, Value, add, opaque, shift, subtract};
 
-/// Executes instructions of a listing.
+/// Executor of the instructions of a listing.
 pub struct Machine<'a> {
-    /// Listing, for data and symbols.
+    /// Listing with data and symbols.
     pub listing: &'a Listing,
-    /// Memory that is written.
+    /// Memory that the instructions write.
     pub writes: Writes,
 }
 
-/// Instructions of the floating-point unit without effect on core registers, flags or memory.
+/// Floating-point instructions without effect on core registers, flags or memory.
 const FLOATS: [&str; 30] = [
     "vadd", "vsub", "vmul", "vdiv", "vmla", "vmls", "vnmla", "vnmls", "vnmul", "vneg", "vabs",
     "vsqrt", "vcvt", "vcvtr", "vfma", "vfms", "vfnma", "vfnms", "vmaxnm", "vminnm", "vseleq",
@@ -28,25 +28,30 @@ const IDLE: [&str; 4] = ["nop", "dmb", "dsb", "isb"];
 
 impl Machine<'_> {
     /// Executes an instruction whose condition holds.
-    pub fn execute(&mut self, place: Place, of: &Instruction, state: &mut State) -> Step {
+    pub fn execute(
+        &mut self,
+        code_address: CodeAddress,
+        of: &Instruction,
+        state: &mut State,
+    ) -> Step {
         let name = of.name.as_str();
         let step = match name {
             _ if name.starts_with("it") || IDLE.contains(&name) || FLOATS.contains(&name) => {
                 Some(Step::Next)
             }
             "b" | "bl" => self
-                .target(place, of)
-                .map(|target| self.branch(place, of, target, state)),
+                .target(code_address, of)
+                .map(|target| self.branch(code_address, of, target, state)),
             "bx" => of
                 .register(0)
-                .map(|number| goto(state.register(number), number == LR, state)),
+                .map(|number| jump_to(state.register(number), number == LR, state)),
             "blx" => Some(Step::Unbounded("an indirect call".to_owned())),
             "tbb" | "tbh" => Some(Step::Unbounded("an indirect jump".to_owned())),
-            "cbz" | "cbnz" => self.compare_and_branch(place, of, state),
+            "cbz" | "cbnz" => self.compare_and_branch(code_address, of, state),
             "push" | "pop" | "stmdb" | "stmia" | "ldmia" | "ldmdb" | "vpush" | "vpop"
             | "vldmia" | "vldmdb" | "vstmia" | "vstmdb" => self.move_many(of, state),
             "ldr" | "ldrd" | "ldrb" | "ldrh" | "ldrsb" | "ldrsh" | "str" | "strd" | "strb"
-            | "strh" | "vstr" => self.access(place, of, state),
+            | "strh" | "vstr" => self.access(code_address, of, state),
             "vmov" => Some(move_float(of, state)),
             "vmrs" => {
                 match of.register(0) {
@@ -61,48 +66,61 @@ impl Machine<'_> {
     }
 
     /// Returns the target of a jump or the reason why it is not known.
-    fn target(&self, place: Place, of: &Instruction) -> Option<Result<Place, String>> {
+    fn target(
+        &self,
+        code_address: CodeAddress,
+        of: &Instruction,
+    ) -> Option<Result<CodeAddress, String>> {
         if let Some(symbol) = &of.symbol {
             let function = self.listing.functions.get(symbol);
             let missing =
                 || format!("a call of `{symbol}`, which neither the object nor libgcc contains");
-            return Some(function.map(|function| function.place).ok_or_else(missing));
+            return Some(
+                function
+                    .map(|function| function.code_address)
+                    .ok_or_else(missing),
+            );
         }
         of.operands.iter().find_map(|operand| match operand {
-            Operand::Target(target) => Some(Ok(place >> 32 << 32 | target)),
+            Operand::Target(target) => Some(Ok(code_address >> 32 << 32 | target)),
             _ => None,
         })
     }
 
     fn branch(
         &self,
-        place: Place,
+        code_address: CodeAddress,
         of: &Instruction,
-        target: Result<Place, String>,
+        target: Result<CodeAddress, String>,
         state: &mut State,
     ) -> Step {
         match target {
             Err(reason) => Step::Unbounded(reason),
             Ok(target) if of.name == "b" => Step::Jump(target),
             Ok(target) if self.listing.is_function(target) => Step::Call(target),
-            // A part of a function of libgcc that others share.
+            // The target is a part of a libgcc function that other functions share.
             Ok(target) => {
-                state.set(LR, code(place + of.size));
+                state.set(LR, code(code_address + of.size));
                 Step::Jump(target)
             }
         }
     }
 
-    fn compare_and_branch(&self, place: Place, of: &Instruction, state: &State) -> Option<Step> {
+    fn compare_and_branch(
+        &self,
+        code_address: CodeAddress,
+        of: &Instruction,
+        state: &State,
+    ) -> Option<Step> {
         let (_, is_zero) = state.register(of.register(0)?).sign_and_zero();
         let is_taken = is_zero.map(|is_zero| is_zero == (of.name == "cbz"));
-        match self.target(place, of)? {
+        match self.target(code_address, of)? {
             Ok(target) => Some(Step::Branch(target, is_taken)),
             Err(reason) => Some(Step::Unbounded(reason)),
         }
     }
 
-    /// Executes an access to several words.
+    /// Executes a load or store of several registers.
     fn move_many(&mut self, of: &Instruction, state: &mut State) -> Option<Step> {
         let (base, is_updated, list) = match (&of.operands[..], &*of.name) {
             ([list], _) => (SP, true, list),
@@ -123,7 +141,8 @@ impl Machine<'_> {
             false => add(before, Value::number(4 * words), Some(false)).0,
         };
         let first = if is_down { moved } else { before };
-        // The words are written before the stack pointer moves up, and after it moves down.
+        // Words are accessed before the stack pointer moves up, and after it moves down: words below it become
+        // unknown.
         if is_updated && is_down {
             state.set(base, moved);
         }
@@ -155,13 +174,18 @@ impl Machine<'_> {
             state.set(base, moved);
         }
         Some(match target {
-            Some(target) => goto(target, true, state),
+            Some(target) => jump_to(target, true, state),
             None => Step::Next,
         })
     }
 
-    /// Executes an access to one or two words or a part of a word.
-    fn access(&mut self, place: Place, of: &Instruction, state: &mut State) -> Option<Step> {
+    /// Executes a load or store of one or two words, or of a part of a word.
+    fn access(
+        &mut self,
+        code_address: CodeAddress,
+        of: &Instruction,
+        state: &mut State,
+    ) -> Option<Step> {
         let memory = of
             .operands
             .iter()
@@ -171,7 +195,7 @@ impl Machine<'_> {
         };
         if address.base == PC {
             let number = of.register(0)?;
-            let at = ((place + 4) & !3).checked_add_signed(i64::from(address.offset))?;
+            let at = ((code_address + 4) & !3).checked_add_signed(i64::from(address.offset))?;
             let value = match of.name.as_str() {
                 "ldr" if address.index.is_none() => self.constant(at),
                 _ => UNKNOWN,
@@ -180,7 +204,7 @@ impl Machine<'_> {
         }
         let base = state.register(address.base);
         let moved = displaced(base, address, state);
-        // After the access, `[r0], #4` adds the number.
+        // With `[r0], #4` the number is added to the register after the access.
         let after = match of.operands.get(memory + 1) {
             None => None,
             Some(Operand::Number(number)) => Some(add(base, Value::number(*number), Some(false)).0),
@@ -239,13 +263,13 @@ impl Machine<'_> {
             state.set(address.base, value);
         }
         Some(match target {
-            Some(target) => goto(target, true, state),
+            Some(target) => jump_to(target, true, state),
             None => Step::Next,
         })
     }
 
-    /// Returns a word of data between the instructions.
-    fn constant(&self, at: Place) -> Value {
+    /// Returns a word of data that is stored between the instructions.
+    fn constant(&self, at: CodeAddress) -> Value {
         let Some(line) = self.listing.lines.get(&at) else {
             return UNKNOWN;
         };
@@ -266,16 +290,16 @@ impl Machine<'_> {
 }
 
 /// Returns the address of an instruction as a value.
-fn code(place: Place) -> Value {
-    Value::Address(Base::Code((place >> 32) as u32), place as u32)
+fn code(code_address: CodeAddress) -> Value {
+    Value::Address(Base::Code((code_address >> 32) as u32), code_address as u32)
 }
 
 fn displaced(base: Value, address: &Memory, state: &State) -> Value {
     let moved = add(base, Value::number(address.offset as u32), Some(false)).0;
     match address.index {
         None => moved,
-        Some((number, places)) => {
-            let index = shift(state.register(number), Shift::Left, places, None).0;
+        Some((number, code_addresses)) => {
+            let index = shift(state.register(number), Shift::Left, code_addresses, None).0;
             add(moved, index, Some(false)).0
         }
     }

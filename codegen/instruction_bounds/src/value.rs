@@ -3,20 +3,20 @@
 /// Content of a register or of a word of the stack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Value {
-    /// Number of which the bits in `known` equal those in `bits`.
+    /// Number whose bits in the mask `known` equal those of `bits`.
     Bits {
-        /// Known bits.
+        /// Mask of the known bits.
         known: u32,
-        /// Their values; 0 at unknown bits.
+        /// Values of the known bits; 0 at unknown bits.
         bits: u32,
     },
-    /// Address at a known distance from another one.
+    /// Address at a known offset from a base address.
     Address(Base, u32),
     /// Unknown address within the stack of the function.
     Frame,
 }
 
-/// Reference of an address.
+/// Base of an address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Base {
     /// Value of a core register at the first instruction of the function.
@@ -27,7 +27,7 @@ pub enum Base {
     Symbol(usize),
 }
 
-/// Number of the stack pointer.
+/// Register number of the stack pointer.
 pub const SP: u8 = 13;
 
 /// Unknown number.
@@ -79,7 +79,7 @@ impl Value {
         self == Self::Frame || self.as_stack_offset().is_some()
     }
 
-    /// Returns the bits that both values agree on.
+    /// Returns a value with the bits that are known and equal in both values.
     pub fn join(self, other: Self) -> Self {
         match (self, other) {
             _ if self == other => self,
@@ -102,7 +102,7 @@ impl Value {
         }
     }
 
-    /// Returns negative and zero of a result.
+    /// Returns the flags N and Z of a result.
     pub fn sign_and_zero(self) -> (Option<bool>, Option<bool>) {
         let (known, bits) = self.parts();
         let n = (known >> 31 == 1).then_some(bits >> 31 == 1);
@@ -115,7 +115,8 @@ impl Value {
     }
 }
 
-/// Returns the result of an operation without rule: an address of the stack remains one.
+/// Returns the result of an operation that is not modelled: an unknown stack address if an operand is a stack
+/// address, else an unknown number.
 pub fn opaque(operands: &[Value]) -> Value {
     match operands.iter().any(|value| value.is_of_frame()) {
         true => Value::Frame,
@@ -207,7 +208,7 @@ pub fn add(left: Value, right: Value, carry: Option<bool>) -> (Value, Flags) {
     (value, Flags { n, z, c: into, v })
 }
 
-/// Returns the value of at least two of three bits, if known.
+/// Returns the majority value of three bits, if known.
 fn majority(x: Option<bool>, y: Option<bool>, z: Option<bool>) -> Option<bool> {
     [(x, y), (y, z), (x, z)]
         .into_iter()
@@ -222,7 +223,7 @@ pub fn subtract(left: Value, right: Value, carry: Option<bool>) -> (Value, Flags
     {
         let value = Value::number(x.wrapping_sub(y));
         let (n, z) = value.sign_and_zero();
-        // Carry and overflow depend on the reference.
+        // Carry and overflow depend on the base address, which is unknown.
         let flags = Flags {
             n,
             z,
@@ -249,13 +250,14 @@ pub enum Shift {
     Right,
     /// To the right, with copies of the sign.
     Arithmetic,
-    /// To the right, with the bits that leave.
+    /// Rotation to the right.
     Rotate,
-    /// By one place to the right, with the carry.
+    /// Rotation by one bit to the right through the carry flag.
     Extended,
 }
 
-/// Returns the shifted value and the carry. `places` is 0 to 31, or 32 for a shift to the right.
+/// Returns the shifted value and the carry flag. `places` is the number of bits, 0 to 31, or 32 for a shift to the
+/// right.
 pub fn shift(value: Value, kind: Shift, places: u32, carry: Option<bool>) -> (Value, Option<bool>) {
     let Value::Bits { known, bits } = value else {
         return match places {

@@ -1,4 +1,4 @@
-//! Bounds of the functions of `functions.c`, from their disassembly in `functions.txt`.
+//! Bounds of the functions of `functions.c`, computed from their disassembly in `functions.txt`.
 
 use eomgen_instruction_bounds::{Bound, bound_functions};
 
@@ -68,14 +68,14 @@ fn unknown_instructions_have_no_bound() {
     );
 }
 
-/// Each of three products and quotients may shift two subnormal operands.
+/// Each of the three products and quotients may normalise two subnormal operands.
 #[test]
 fn subnormal_operands_of_libgcc_count_their_shifts() {
     let product = bound(LISTING, "product").expect("a bound");
     let shifts = 3 * 2 * 2 * 51 * 6;
     let difference = product.instructions - product.without_subnormals;
     assert!(difference >= shifts, "{product:?}");
-    // A library with other machine code has no known loops.
+    // If the machine code of the library differs, its loops are not known.
     let changed = LISTING.replace(" 3da:\tfba0 ce02", " 3da:\tfba0 ce12");
     assert_ne!(changed, LISTING);
     let found = bound(&changed, "product").expect_err("no bound");

@@ -1,6 +1,6 @@
-//! Branches in kernels of single numbers. A long arm of a selection without other uses is computed only if it
-//! is taken. Motions change arms rarely, so that the processor predicts the branches. SIMD lanes can need
-//! different arms and compute both.
+//! Branches in scalar kernels. If a long arm of a selection has no other use, it is computed only if it is selected.
+//! During a motion the selected arm changes rarely, so the processor predicts the branch well. SIMD lanes can need
+//! different arms; their kernels compute both.
 
 use cranelift_codegen::ir::condcodes::FloatCC;
 use eomgen_elementary::{Kernel, Operation};
@@ -15,7 +15,7 @@ pub(crate) struct Arm {
     pub(crate) taken: bool,
 }
 
-/// Innermost arm that each operation belongs to, if any.
+/// Innermost arm of each operation, if it belongs to one.
 pub struct Branches {
     pub(crate) owners: Vec<Option<Arm>>,
 }
@@ -57,7 +57,7 @@ impl Branches {
     }
 }
 
-/// Returns the operations with no other use than `root`, an arm of `selection`.
+/// Returns the operations that are used only to compute `root`, an arm of `selection`.
 fn exclusive_operations(
     kernel: &Kernel,
     users: &[Vec<usize>],

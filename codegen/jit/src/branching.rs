@@ -1,4 +1,4 @@
-//! Code of kernels of single numbers with branches: only the arm that is taken is computed.
+//! Code of scalar kernels with branches: only the selected arm is computed.
 
 use cranelift_codegen::ir::{BlockArg, InstBuilder, Value, types};
 use eomgen_elementary::{Kernel, Operation};
@@ -13,13 +13,13 @@ struct WrittenValues<'k> {
     branches: &'k Branches,
     /// Arguments, in both lanes.
     arguments: &'k [Value],
-    /// Computed values; the first argument as a placeholder before.
+    /// Computed values. Before its computation, a value is represented by the first argument as a placeholder.
     values: Vec<Value>,
 }
 
 impl Writer<'_, '_, '_> {
-    /// Writes a kernel of one number, which is in both lanes.
-    pub fn branching_kernel(
+    /// Writes a kernel of one number, which is stored in both lanes.
+    pub fn write_branching_kernel(
         &mut self,
         kernel: &Kernel,
         branches: &Branches,
@@ -35,7 +35,7 @@ impl Writer<'_, '_, '_> {
         self.computed_value(&written, kernel.outputs[0])
     }
 
-    /// Writes the operations of an arm, or those of no arm.
+    /// Writes the operations that belong to an arm, or, if `owner` is `None`, to no arm.
     fn write_operations_of(&mut self, written: &mut WrittenValues<'_>, owner: Option<Arm>) {
         for place in 0..written.kernel.operations.len() {
             let operation = written.kernel.operations[place];
@@ -66,7 +66,8 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// Returns a computed value. Literals are read again: one read in an arm is unknown outside.
+    /// Returns a computed value. A literal is read again, because a literal that was read in an arm is not available
+    /// outside it.
     fn computed_value(&mut self, written: &WrittenValues<'_>, place: usize) -> Value {
         match written.kernel.operations[place] {
             Operation::Constant(number) => self.literal(number, Lanes::Two),

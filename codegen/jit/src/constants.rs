@@ -1,9 +1,9 @@
-//! Literals, each stored twice in a row, so that one lane or both can be read from memory. Loads are part of
-//! the instructions that use them; literals in the code would not be.
+//! Literals, each stored twice in succession, so that one lane or both can be read from memory. A load from memory is
+//! part of the instruction that uses the literal; a literal in the code would need its own instruction.
 
 use std::collections::HashMap;
 
-/// Literals of all stages, in memory after a program's values.
+/// Literals of all stages, stored in memory after the values of the program.
 #[derive(Default)]
 pub struct Constants {
     places: HashMap<u64, usize>,
@@ -11,7 +11,8 @@ pub struct Constants {
 }
 
 impl Constants {
-    /// Returns the index of a literal in [`Constants::numbers`]; the next number is its copy.
+    /// Returns the index of a literal in [`Constants::numbers`]; stores the literal if it is new. The next number is
+    /// its copy.
     pub fn place(&mut self, value: f64) -> usize {
         *self.places.entry(value.to_bits()).or_insert_with(|| {
             self.numbers.extend([value; 2]);
@@ -19,7 +20,7 @@ impl Constants {
         })
     }
 
-    /// Returns all literals, each twice.
+    /// Returns all literals, each stored twice.
     pub fn numbers(&self) -> &[f64] {
         &self.numbers
     }

@@ -10,7 +10,7 @@ use eomgen_elementary::Function as Elementary;
 /// Returns the flags of a memory access; every address is inside the caller's memory.
 fn flags(lanes: Lanes, constant: bool) -> MemFlagsData {
     let flags = MemFlagsData::new().with_notrap();
-    // Two lanes can begin at an address that is no multiple of their size.
+    // A pair of lanes can be unaligned: its address need not be a multiple of its size.
     let flags = match lanes {
         Lanes::One => flags.with_aligned(),
         Lanes::Two => flags,
@@ -76,14 +76,14 @@ impl Writer<'_, '_, '_> {
         numbers[&id]
     }
 
-    /// Binds a number, in one lane and in both.
+    /// Binds a number in one lane, and its copy in both lanes.
     pub fn bind(&mut self, id: ValueId, value: Value) {
         let both = self.instructions().splat(types::F64X2, value);
         self.numbers.insert(id, value);
         self.broadcast.insert(id, both);
     }
 
-    /// Returns an element of a value; a scalar is repeated.
+    /// Returns an element of a value. All elements of a scalar are equal.
     pub fn element(&mut self, id: ValueId, at: ElementRef) -> Value {
         if self.program.value(id).extent == Extent::Scalar {
             return self.number(id, at.lanes);
@@ -97,7 +97,7 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// Computes an element from those of the operands.
+    /// Computes an element from the elements of the operands.
     pub fn compute_element(&mut self, id: ValueId, at: ElementRef) -> Value {
         let lanes = at.lanes;
         let of = |writer: &mut Self, operand: ValueId| writer.element(operand, at);
@@ -144,12 +144,12 @@ impl Writer<'_, '_, '_> {
                 let a = of(self, a);
                 self.function(Elementary::PivotReciprocal, [a], lanes)
             }
-            // Leaves and matrix operations, which `stage` must bind.
+            // `stage` must bind leaves and results of matrix operations.
             other => self.misplaced_value(id, &other, lanes),
         }
     }
 
-    /// Records a value that cannot be computed by elements, so that the compilation fails.
+    /// Records a value that cannot be computed element by element. The compilation then fails.
     fn misplaced_value(&mut self, id: ValueId, op: &Op, lanes: Lanes) -> Value {
         let place = id.index();
         self.defect = Some(format!(
@@ -170,8 +170,8 @@ impl Writer<'_, '_, '_> {
         self.instructions().fmul(a, b)
     }
 
-    /// Orders two operands so that one read from memory is last: it is then read when it is used and occupies
-    /// no register while the other is computed.
+    /// Orders two operands so that an operand in memory is the second one. It is then loaded by the instruction that
+    /// uses it, and needs no register while the other operand is computed.
     fn load_last(&self, a: Value, b: Value) -> (Value, Value) {
         let graph = &self.builder.func.dfg;
         let is_load = |value| {
@@ -192,7 +192,7 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// Computes a vector into memory.
+    /// Computes a vector and stores it in memory.
     pub fn fill(&mut self, id: ValueId, array: Array, length: usize) {
         self.loop_over_elements(length, |writer, at| {
             let value = writer.compute_element(id, at);
@@ -200,7 +200,7 @@ impl Writer<'_, '_, '_> {
         });
     }
 
-    /// Computes a vector of at most [`MAX_REGISTER_VECTOR`] elements into registers.
+    /// Computes a vector of at most [`MAX_REGISTER_VECTOR`] elements and keeps it in registers.
     pub fn keep(&mut self, id: ValueId, length: usize) {
         debug_assert!(length <= MAX_REGISTER_VECTOR);
         let mut registers = Vec::new();
@@ -210,7 +210,7 @@ impl Writer<'_, '_, '_> {
         self.registers.insert(id, registers);
     }
 
-    /// Sums a vector's elements in the order that `Op::Total` defines; neighbouring partial sums share a
+    /// Sums the elements of a vector in the order that `Op::Total` defines. Two adjacent partial sums share a
     /// register.
     pub fn total(&mut self, vector: ValueId) -> Value {
         let length = self.program.value(vector).extent.length();
@@ -239,11 +239,11 @@ impl Writer<'_, '_, '_> {
                 }
             };
         }
-        self.sum_of_pairs(&partial, first)
+        self.sum_pairwise(&partial, first)
     }
 
-    /// Adds neighbours of the first `count` lanes until one number is left.
-    fn sum_of_pairs(&mut self, registers: &[Value], count: usize) -> Value {
+    /// Returns the pairwise sum of the first `count` lanes.
+    fn sum_pairwise(&mut self, registers: &[Value], count: usize) -> Value {
         let mut sums: Vec<Value> = Vec::new();
         for (register, at) in registers.iter().zip(pairs(0, count)) {
             sums.push(match at.lanes {

@@ -1,7 +1,7 @@
-//! Functions of numbers from their kernels, and selections, without branches.
+//! Code of elementary functions, written from their kernels, and of selections, without branches.
 //!
-//! All functions work on two lanes with bit masks as comparisons; a single number is in both. A division by 0
-//! or a NaN in one lane has no effect on the other.
+//! All functions process two lanes and represent comparisons as bit masks; a single number is stored in both lanes. A
+//! division by 0 or a NaN in one lane has no effect on the other lane.
 
 use std::rc::Rc;
 
@@ -18,9 +18,9 @@ use crate::stage::Writer;
 
 const SIGN: u64 = 1 << 63;
 const MANTISSA: u64 = (1 << 52) - 1;
-/// Exponent field, shifted to the right.
+/// Mask of the exponent field after a shift to the right.
 const EXPONENT: u64 = 0x7ff;
-/// 2^52. An integer k below it, written into its mantissa, gives 2^52 + k.
+/// 2^52. If an integer k < 2^52 is written to the mantissa bits, the number is 2^52 + k.
 const ALIGNER: f64 = (1_u64 << 52) as f64;
 
 impl Writer<'_, '_, '_> {
@@ -33,7 +33,7 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// Computes a function with a kernel.
+    /// Computes an elementary function from its kernel.
     pub fn function<const N: usize>(
         &mut self,
         function: Elementary,
@@ -68,7 +68,7 @@ impl Writer<'_, '_, '_> {
         self.instructions().bitselect(mask, value, nan)
     }
 
-    /// Runs `body` on two lanes; a single number is in both.
+    /// Runs `body` on two lanes; a single number is stored in both.
     fn combine_lanes<const N: usize>(
         &mut self,
         arguments: [Value; N],
@@ -103,7 +103,7 @@ impl Writer<'_, '_, '_> {
         self.literal(f64::from_bits(bits), Lanes::Two)
     }
 
-    /// Computes a function operation by operation; `lanes` is the number of different numbers.
+    /// Computes a function operation by operation. `lanes` states whether the two lanes contain different numbers.
     fn operations(&mut self, function: Elementary, arguments: &[Value], lanes: Lanes) -> Value {
         let kernels = &mut self.shared.kernels;
         let entry = kernels.entry(function).or_insert_with(|| {
@@ -114,7 +114,7 @@ impl Writer<'_, '_, '_> {
         let entry = Rc::clone(entry);
         let (kernel, branches) = &*entry;
         match lanes {
-            Lanes::One => self.branching_kernel(kernel, branches, arguments),
+            Lanes::One => self.write_branching_kernel(kernel, branches, arguments),
             Lanes::Two => self.kernel(kernel, arguments),
         }
     }
@@ -128,7 +128,7 @@ impl Writer<'_, '_, '_> {
         values[kernel.outputs[0]]
     }
 
-    /// Writes one operation of a kernel; `value` returns the results of the operations before it.
+    /// Writes one operation of a kernel. `value` returns the results of earlier operations.
     pub fn primitive(
         &mut self,
         kernel: &Kernel,
@@ -201,7 +201,7 @@ impl Writer<'_, '_, '_> {
         self.instructions().band(a, mask)
     }
 
-    /// Converts the exponent field exactly to a number, through the mantissa of 2^52.
+    /// Converts the exponent field exactly to a number: adds it to the mantissa bits of 2^52 and subtracts 2^52.
     fn exponent(&mut self, a: Value) -> Value {
         let bits = self.as_bits(a);
         let field = self.instructions().ushr_imm_u(bits, 52);

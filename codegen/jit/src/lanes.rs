@@ -1,23 +1,23 @@
-//! Elements that an instruction processes: one or two neighbours, in registers or in memory.
+//! Elements that an instruction processes: one element or two adjacent elements, in registers or in memory.
 
 use cranelift_codegen::ir::{Type, Value, types};
 
-/// Largest length of an unrolled vector in registers: it uses four of the sixteen registers.
+/// Largest length of an unrolled vector in registers. A vector of this length needs four of the sixteen registers.
 pub const MAX_REGISTER_VECTOR: usize = 8;
 
-/// Number of neighbouring elements in one register.
+/// Number of adjacent elements in one register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lanes {
     One,
     Two,
 }
 
-/// One element, or two neighbouring ones.
+/// Reference to one element, or to two adjacent elements.
 #[derive(Clone, Copy, Debug)]
 pub struct ElementRef {
-    /// Bytes that a loop adds.
+    /// Byte offset that a loop adds to the address.
     pub moving: Option<Value>,
-    /// Element in the first turn of the loop.
+    /// Index of the element in the first iteration of the loop.
     pub element: usize,
     /// Number of elements.
     pub lanes: Lanes,
@@ -43,7 +43,7 @@ impl ElementRef {
     }
 }
 
-/// Returns the elements `from..to` in pairs, with a single one at the end if the count is odd.
+/// Returns the elements `from..to` in pairs. If their number is odd, the last element is single.
 pub fn pairs(from: usize, to: usize) -> impl Iterator<Item = ElementRef> {
     (from..to).step_by(2).map(move |element| {
         if element + 1 < to {
@@ -55,7 +55,7 @@ pub fn pairs(from: usize, to: usize) -> impl Iterator<Item = ElementRef> {
 }
 
 impl Lanes {
-    /// Returns the type of a register's content.
+    /// Returns the Cranelift type of the content of a register.
     pub fn kind(self) -> Type {
         match self {
             Self::One => types::F64,
@@ -67,10 +67,10 @@ impl Lanes {
 /// Numbers in memory.
 #[derive(Clone, Copy, Debug)]
 pub struct Array {
-    /// Base address.
+    /// Base address of the memory.
     pub base: Value,
-    /// Index of the first number from there.
+    /// Index of the first number, relative to the base address.
     pub start: usize,
-    /// True if nothing in this function writes them.
+    /// True if this function does not write the numbers.
     pub constant: bool,
 }

@@ -1,5 +1,5 @@
-//! Compilation of programs to machine code within the process, without an installed compiler. The results
-//! have the same bits as the interpreter and the emitted Rust.
+//! Compilation of programs to machine code within the process, without an installed compiler. The results are
+//! bit-identical to those of the interpreter and of the emitted Rust.
 //!
 //! ```
 //! use eomgen_codegen::program::evaluator::{Evaluator, Point};
@@ -39,14 +39,13 @@
 //! # }
 //! ```
 //!
-//! `compile` compiles a `Program`. `plan` divides a stage into functions of bounded length. `stage` writes
-//! the values of a function and decides which are in registers and which in memory; `loops` writes loops over
-//! modes, `elements` one or two elements of a vector, `functions` elementary functions from their kernels
-//! (for single numbers `branching`, if `branches` finds long arms), `matrices` matrix operations, and
-//! `constants` collects literals. `machine` compiles with Cranelift and holds the code.
+//! `compile` compiles a `Program`. `plan` divides a stage into functions of bounded length. `stage` writes the values
+//! of a function and decides whether a value is stored in registers or in memory. `loops` writes loops over modes,
+//! `elements` one or two elements of a vector, and `matrices` matrix operations. `functions` writes elementary
+//! functions from their kernels; for scalars `branching` does so if `branches` finds long arms. `constants` collects
+//! literals. `machine` compiles with Cranelift and owns the code.
 //!
-//! No operation is changed and no sum reordered. Each of two lanes computes an element as a single lane
-//! would.
+//! No operation is changed and no sum is reordered. An element has the same result in one lane and in two.
 
 use std::sync::Arc;
 

@@ -6,7 +6,7 @@ use cranelift_codegen::ir::{BlockArg, InstBuilder, Value, types};
 use crate::lanes::{ElementRef, MAX_REGISTER_VECTOR, pairs};
 use crate::stage::Writer;
 
-/// Number of elements in a turn of a loop.
+/// Number of elements in one iteration of a loop.
 const ELEMENTS_PER_TURN: usize = 4;
 
 impl Writer<'_, '_, '_> {
@@ -32,8 +32,8 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// Writes a loop of `turns` turns over `turn` elements each, which carries pairs of numbers. An argument
-    /// of `body` is the number of bytes passed so far.
+    /// Writes a loop of `turns` iterations over `turn` elements each. Pairs of numbers are passed from one iteration
+    /// to the next. An argument of `body` is the byte offset of the iteration.
     pub fn loop_turns(
         &mut self,
         turns: usize,
@@ -66,7 +66,8 @@ impl Writer<'_, '_, '_> {
         carried
     }
 
-    /// Writes a loop over the index range `from..to`, which can be empty; it carries numbers.
+    /// Writes a loop over the index range `from..to`, which can be empty. Numbers are passed from one iteration to
+    /// the next.
     pub fn range(
         &mut self,
         (from, to): (Value, Value),
@@ -96,7 +97,7 @@ impl Writer<'_, '_, '_> {
         carried
     }
 
-    /// Writes a loop over `0..count`, which carries numbers.
+    /// Writes a loop over `0..count`. Numbers are passed from one iteration to the next.
     pub fn count(
         &mut self,
         count: usize,

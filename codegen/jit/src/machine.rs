@@ -1,4 +1,4 @@
-//! Compilation of all stages with Cranelift, and calls of the compiled code. The only file with `unsafe`.
+//! Compilation of all stages with Cranelift, and calls of the compiled code. Only this file contains `unsafe`.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -48,22 +48,22 @@ pub struct Machine {
     prepare: Vec<Function>,
     /// Pieces of each stage, in the order of [`Stage::ALL`].
     stages: [Vec<Function>; Stage::ALL.len()],
-    /// Memory for the inputs, then literals.
+    /// Memory after the values: the inputs, then the literals.
     room: Vec<f64>,
-    /// Count of numbers that the functions access from `memory` on.
+    /// Number of values that the functions access, counted from `memory`.
     reach: usize,
     /// Indices of the inputs in memory.
     inputs: std::ops::Range<usize>,
     states: usize,
-    /// Owner of the code. It is in a lock because it is `Send` but not `Sync`.
+    /// Owner of the code. The lock is needed because the module is `Send` but not `Sync`.
     module: Mutex<Option<JITModule>>,
 }
 
 /// Compiles every stage of a program.
 ///
 /// # Errors
-/// A processor architecture that Cranelift does not support, a program that is too large, and a value that
-/// cannot be computed in its place.
+/// The processor architecture is not supported by Cranelift, the program is too large, or a value cannot be computed
+/// in its stage.
 pub fn compile(program: &Program) -> Result<Machine, CompileError> {
     let places = Places::new(program);
     let mut shared = Shared {
@@ -86,7 +86,7 @@ pub fn compile(program: &Program) -> Result<Machine, CompileError> {
             .collect::<Result<Vec<FuncId>, CompileError>>()
     };
     let prepare = define(&mut module, Task::Prepare)?;
-    // Most programs lack requested outputs: a stage without roots needs no function.
+    // Most programs lack optional outputs. A stage without roots needs no function.
     let mut stages = [const { Vec::new() }; Stage::ALL.len()];
     for (slot, stage) in stages.iter_mut().zip(Stage::ALL) {
         if stage == Stage::Rates || !stage.roots(program).is_empty() {
@@ -191,7 +191,7 @@ fn function(module: &JITModule, id: FuncId) -> Function {
 }
 
 impl Machine {
-    /// Calls the functions in order. `out` may be empty except for the rates.
+    /// Calls the functions in order. `out` is used only for the rates and may be empty otherwise.
     #[allow(unsafe_code)]
     fn run(&self, functions: &[Function], memory: &mut [f64], point: &Point<'_>, out: &mut [f64]) {
         let memory = &mut memory[..self.reach];
@@ -201,10 +201,9 @@ impl Machine {
         }
         let (memory, state) = (memory.as_mut_ptr(), point.state.as_ptr());
         for function in functions {
-            // SAFETY: the code reads and writes `reach` numbers from `memory` on, reads
-            // `states` numbers from `state` on and, for the rates alone, writes as many from
-            // `out` on; loops have bounds known when it was compiled. The callers check these
-            // lengths. It calls nothing and keeps no pointer.
+            // SAFETY: the code reads and writes `reach` numbers at `memory` and reads `states` numbers at `state`.
+            // Only for the rates, it writes `states` numbers at `out`. The bounds of loops are known when the code is
+            // compiled. The callers check these lengths. The code calls no function and keeps no pointer.
             unsafe { function(memory, point.t, state, out.as_mut_ptr()) }
         }
     }
@@ -225,7 +224,7 @@ impl MachineCode for Machine {
     }
 
     fn compute(&self, stage: Stage, memory: &mut [f64], point: &Point<'_>) {
-        // The rates are written to `out`, not to their places in memory.
+        // The rates are written to `out`, not to memory.
         assert_ne!(stage, Stage::Rates);
         let point = Point {
             state: &point.state[..self.states],
@@ -249,7 +248,7 @@ impl Drop for Machine {
     fn drop(&mut self) {
         let module = self.module.get_mut().map(Option::take);
         if let Ok(Some(module)) = module {
-            // SAFETY: the only pointers to the code are in this value, which is going.
+            // SAFETY: only this value contains pointers to the code, and it is being dropped.
             unsafe { module.free_memory() }
         }
     }

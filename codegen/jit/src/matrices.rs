@@ -1,5 +1,5 @@
-//! Matrix operations in memory, with the order of summation that the program defines. A loop carries the sum
-//! of one element or of two neighbouring ones.
+//! Matrix operations in memory, with the order of summation that the program defines. A loop accumulates the sum of
+//! one element or of two adjacent elements.
 
 use cranelift_codegen::ir::{InstBuilder, Value, types};
 use eomgen_codegen::program::cholesky::{self, MatrixLoops, Range};
@@ -9,7 +9,7 @@ use crate::lanes::Array;
 use crate::lanes::{ElementRef, Lanes};
 use crate::stage::Writer;
 
-/// Matrix in memory, row by row; a scalar is repeated.
+/// Matrix in memory, row by row. All elements of a scalar are equal.
 #[derive(Clone, Copy, Debug)]
 pub struct Matrix {
     array: Array,
@@ -18,7 +18,7 @@ pub struct Matrix {
 }
 
 impl Writer<'_, '_, '_> {
-    /// Computes a matrix operation into its place.
+    /// Computes a matrix operation and stores its result in memory.
     pub fn matrix_operation(&mut self, id: ValueId) {
         let out = self.matrix_of_shape(id, self.place(id));
         match &self.program.value(id).op {
@@ -44,7 +44,7 @@ impl Writer<'_, '_, '_> {
             } => self.assemble(out, *diagonal, outer, matrices),
             Op::Cholesky(matrix) => self.cholesky(out, *matrix),
             Op::CholeskySolve(factor, right) => self.cholesky_solve(out, *factor, *right),
-            // All others are computed by elements.
+            // All other operations are computed element by element.
             other => self.defect = Some(format!("{other:?} is not a matrix operation")),
         }
     }
@@ -66,7 +66,7 @@ impl Writer<'_, '_, '_> {
         self.matrix_of_shape(id, array)
     }
 
-    /// Returns element (row, column), in one lane or with its right neighbour.
+    /// Returns element (row, column) in one lane, or this element and its right neighbour in two lanes.
     fn entry(&mut self, matrix: Matrix, row: Value, column: ElementRef) -> Value {
         let array = self.row(matrix, row);
         self.load(array, column)
@@ -91,7 +91,7 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// Returns element `index` of a vector; a scalar is repeated.
+    /// Returns element `index` of a vector. All elements of a scalar are equal.
     fn vector_element(&mut self, id: ValueId, index: Value, lanes: Lanes) -> Value {
         if self.program.value(id).extent == Extent::Scalar {
             return self.number(id, lanes);
@@ -105,7 +105,7 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    /// Sums `count` summands in order, beginning with 0.
+    /// Sums `count` summands in order; the initial value is 0.
     fn sum(
         &mut self,
         count: usize,
@@ -250,7 +250,7 @@ impl Writer<'_, '_, '_> {
     fn cholesky(&mut self, out: Matrix, matrix: ValueId) {
         let n = self.index(out.rows);
         let matrix = Operand::Matrix(self.matrix(matrix));
-        // The upper part of its place is always 0.
+        // The upper triangle in the memory of the factor is always 0.
         cholesky::factorise(self, &n, &matrix, &Operand::Matrix(out));
     }
 
@@ -265,7 +265,7 @@ impl Writer<'_, '_, '_> {
         cholesky::solve(self, size.each_ref(), &factor, both);
     }
 
-    /// Returns the bounds of a loop; those of a reversed one count from its end.
+    /// Returns the bounds of a loop. For a reversed loop the bounds count from its end.
     fn bounds(&mut self, range: &Range<Value>) -> (Value, Value) {
         match *range {
             Range::First(n) | Range::Reversed(n) => (self.index(0), n),
@@ -285,7 +285,7 @@ impl Writer<'_, '_, '_> {
     }
 }
 
-/// Operand of the factorisation or the solution.
+/// Operand of the factorisation or of the solution.
 #[derive(Clone, Copy, Debug)]
 pub enum Operand {
     Matrix(Matrix),

@@ -16,7 +16,7 @@ const MAX_PIECE: usize = 512;
 /// Task of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Task {
-    /// Computation of the prepared values.
+    /// Computation of the coefficients.
     Prepare,
     /// Computation of a stage in each call.
     PerCall(Stage),
@@ -30,7 +30,7 @@ pub struct Plan {
     pub roots: Vec<ValueId>,
     /// Number of uses of each value.
     pub uses: HashMap<ValueId, usize>,
-    /// Values that must be in memory.
+    /// Values that must be stored in memory.
     pub wanted: HashSet<ValueId>,
     /// Values computed by the stage, operands first.
     pub steps: Vec<ValueId>,
@@ -62,7 +62,7 @@ impl Plan {
         plan
     }
 
-    /// Returns the pieces in the order of their calls, as ranges of [`Plan::steps`]; at least one.
+    /// Returns at least one piece, in the order of the calls. Each piece is a range of [`Plan::steps`].
     pub fn pieces(&self) -> Vec<Range<usize>> {
         let starts = (0..self.steps.len().max(1)).step_by(MAX_PIECE);
         starts
@@ -91,7 +91,7 @@ impl Plan {
         }
     }
 
-    /// Marks values that another piece reads. The last piece writes the rates.
+    /// Marks values that another piece reads; the last piece reads the values of the rates.
     fn store_across_pieces(&mut self, program: &Program) {
         let piece = |place: usize| place / MAX_PIECE;
         let places = self.steps.iter().enumerate();

@@ -1,9 +1,8 @@
 //! Function of one piece of a stage, and the storage of its values.
 //!
-//! Numbers are in registers. A vector with one use is computed at that use; a short vector with more uses is
-//! in registers, a long one in memory. Operands and results of matrix operations are in memory, as are values
-//! that the evaluator or a later piece reads.
-//! evaluator or a later piece reads afterwards.
+//! Numbers are in registers. A vector that is used once is computed where it is used. A short vector with several
+//! uses is in registers, a long one in memory. Operands and results of matrix operations are in memory, and so are
+//! values that the evaluator or a later piece reads.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -24,9 +23,9 @@ use crate::plan::{Plan, Task, is_elementwise};
 /// Data shared by the functions of a program.
 pub struct Shared<'a> {
     pub program: &'a Program,
-    /// Places of the values in memory.
+    /// Positions of the values in memory.
     pub places: &'a Places,
-    /// Literals so far.
+    /// Literals of the functions written so far.
     pub constants: Constants,
     /// Recorded kernels with their branches.
     pub kernels: HashMap<Elementary, Rc<(Kernel, Branches)>>,
@@ -38,7 +37,7 @@ impl Shared<'_> {
         self.places.size()
     }
 
-    /// Returns the index of the first literal; it is even, so that a pair is in one cache line.
+    /// Returns the index of the first literal. It is even, so that a literal and its copy are in one cache line.
     pub fn first_constant(&self) -> usize {
         (self.inputs() + self.program.inputs.len()).next_multiple_of(2)
     }
@@ -67,7 +66,8 @@ pub struct Writer<'a, 'p, 'f> {
     pub(crate) numbers: HashMap<ValueId, Value>,
     /// Bound numbers, in both lanes.
     pub(crate) broadcast: HashMap<ValueId, Value>,
-    /// Short vectors in registers: elements in pairs, with a single one last.
+    /// Short vectors in registers, two elements per register. If the length is odd, the last register contains one
+    /// element.
     pub(crate) registers: HashMap<ValueId, Vec<Value>>,
     plan: &'a Plan,
     /// Range of the plan's steps that this function computes.
@@ -136,16 +136,16 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         operands.chain(steps.iter().copied()).collect()
     }
 
-    /// Finds the values that an earlier piece has computed and stored.
+    /// Determines the values that an earlier piece has computed and stored.
     fn find_earlier(&mut self, read: &[ValueId]) {
         let before = &self.plan.steps[..self.piece.start];
-        // Steps are in ascending order, because operands come first.
+        // The steps are sorted by id, because operands have smaller ids.
         let is_earlier = |id: &&ValueId| before.binary_search(id).is_ok();
         self.earlier = read.iter().filter(is_earlier).copied().collect();
         self.stored.extend(&self.earlier);
     }
 
-    /// Binds the numbers that are not computed here, before any loop.
+    /// Binds the numbers that this function does not compute. This happens before any loop.
     fn bind_leaves(&mut self, read: &[ValueId]) {
         for id in read {
             if self.program.value(*id).extent == Extent::Scalar
@@ -156,7 +156,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         }
     }
 
-    /// Loads a number that is not computed here.
+    /// Loads a number that this function does not compute.
     fn leaf(&mut self, id: ValueId) -> Option<Value> {
         let program = self.program;
         let value = program.value(id);
@@ -238,7 +238,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
             | Op::State(_)
             | Op::Input(_)
             | Op::Time => self.store_leaf(id),
-            // The evaluator has stored it.
+            // The evaluator has stored the argument.
             Op::Argument(..) => {}
             Op::ModeCoordinates(_) | Op::ModeRates(_) => self.copy_vector(id, length),
             Op::Total(vector) => {
@@ -313,7 +313,8 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         }
     }
 
-    /// Writes the rates: velocities from the state, then accelerations and first-order rates.
+    /// Writes the rates: first the velocities, copied from the state, then the accelerations and the rates of
+    /// first-order states.
     fn write_rates(&mut self) {
         let degrees = self.program.degrees_of_freedom();
         let velocities = Array {

@@ -8,7 +8,7 @@ use eomgen_codegen::rust::{Packaging, emit};
 use crate::support::{compile, emitted, folder, model, program, shipped};
 
 /// Returns assertions that `From` assigns number k of an array to the field with name k.
-fn assertions(kind: &str, count: &str, names: &[&str]) -> String {
+fn write_assertions(kind: &str, count: &str, names: &[&str]) -> String {
     let numbers: Vec<String> = (1..=names.len()).map(|k| format!("{k}")).collect();
     let mut text = format!(
         "    assert_eq!(emitted::{count}, {});\n\
@@ -24,7 +24,7 @@ fn assertions(kind: &str, count: &str, names: &[&str]) -> String {
 }
 
 /// Returns a program that fails unless arrays are assigned to the fields by their names.
-fn checks(parameters: &[&str], inputs: &[&str]) -> String {
+fn write_checks(parameters: &[&str], inputs: &[&str]) -> String {
     format!(
         "#[allow(dead_code)]\nmod emitted;\n\nfn main() {{\n\
          \x20   let names: [&str; {}] = {parameters:?};\n\
@@ -33,13 +33,13 @@ fn checks(parameters: &[&str], inputs: &[&str]) -> String {
          \x20   assert_eq!(emitted::INPUT_NAMES, names);\n{}{}}}\n",
         parameters.len(),
         inputs.len(),
-        assertions("Parameters", "PARAMETERS", parameters),
-        assertions("Inputs", "INPUTS", inputs),
+        write_assertions("Parameters", "PARAMETERS", parameters),
+        write_assertions("Inputs", "INPUTS", inputs),
     )
 }
 
 /// Compiles the checks with the emitted module and runs them.
-fn run(name: &str, module: &str, checks: &str) {
+fn compile_and_run(name: &str, module: &str, checks: &str) {
     let folder = folder(name);
     std::fs::write(folder.join("emitted.rs"), module).unwrap();
     std::fs::write(folder.join("main.rs"), checks).unwrap();
@@ -69,15 +69,15 @@ fn arrays_are_assigned_to_fields_by_name() {
             .map(|parameter| parameter.quantity.name.as_str())
             .collect();
         let inputs: Vec<&str> = program.inputs.iter().map(|i| i.name.as_str()).collect();
-        run(
+        compile_and_run(
             &format!("arrays_{name}"),
             &module,
-            &checks(&parameters, &inputs),
+            &write_checks(&parameters, &inputs),
         );
     }
 }
 
-// Without names the constants are 0, the arrays are empty, and the file compiles.
+// If there are no names, the counts are 0, the arrays are empty, and the file compiles.
 #[test]
 fn model_without_parameters_and_inputs_has_empty_arrays() {
     let text = "[model]\nname = \"free\"\ntitle = \"Free\"\n\
@@ -86,10 +86,10 @@ fn model_without_parameters_and_inputs_has_empty_arrays() {
     let model = model(text);
     assert!(emitted(&model, 0).contains("pub const PARAMETERS: usize = 0;"));
     let module = emit(&program(&model, 0), Packaging::Module).unwrap();
-    run("arrays_of_nothing", &module, &checks(&[], &[]));
+    compile_and_run("arrays_of_nothing", &module, &write_checks(&[], &[]));
 }
 
-// A field without modes and no coordinate: the state has no numbers.
+// The field has no modes and there is no coordinate: the state is empty.
 #[test]
 fn model_without_state_compiles() {
     let text = "[model]\nname = \"still\"\ntitle = \"Still\"\n\
@@ -118,7 +118,7 @@ fn model_with_unused_parameters_compiles() {
     let module = emit(&program(&model(text), 0), Packaging::Module).unwrap();
     let prepared = "    let coefficients = emitted::Coefficients::prepare(&emitted::Parameters::default());\n\
                     \x20   assert!(coefficients.positive_definite);\n}\n";
-    let checks = checks(&["k"], &[]);
+    let checks = write_checks(&["k"], &[]);
     let checks = format!("{}{prepared}", checks.trim_end_matches("}\n"));
-    run("arrays_of_idle", &module, &checks);
+    compile_and_run("arrays_of_idle", &module, &checks);
 }

@@ -1,4 +1,4 @@
-//! Documentation of emitted code for a mass matrix that can become indefinite.
+//! Emitted documentation of a mass matrix that can become indefinite.
 
 use eomgen_codegen::program::evaluator::Point;
 

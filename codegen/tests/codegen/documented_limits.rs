@@ -1,5 +1,5 @@
-//! Documented limits of a specification: a model at each limit, with counted work, and the rejection beyond
-//! it.
+//! Documented limits of a specification. A model at a limit is accepted with a bounded number of graph nodes, and a
+//! model beyond the limit is rejected.
 
 use std::fmt::Write;
 
@@ -30,14 +30,14 @@ fn string(integrand: &str) -> String {
     )
 }
 
-/// Returns the number of nodes of an examination.
-fn nodes(text: &str) -> usize {
+/// Returns the number of graph nodes in the examination of a model.
+fn count_nodes(text: &str) -> usize {
     let examined = examine(&model(text)).unwrap_or_else(|found| panic!("{}", found.message));
     examined.expect("no field").nodes
 }
 
 /// Returns the error of a text.
-fn refusal(text: &str) -> String {
+fn expect_rejection(text: &str) -> String {
     match check(Source::new("limited.toml", text)) {
         Ok(checked) => {
             let orders = checked.model.orders(None).expect("orders");
@@ -48,12 +48,13 @@ fn refusal(text: &str) -> String {
     }
 }
 
-/// Asserts that the text at a limit needs at most `allowed` nodes, and that the one beyond it is rejected.
-fn hold(said: &str, at: &str, allowed: usize, beyond: &str) {
-    let nodes = nodes(at);
+/// Asserts that the text `at` a limit needs at most `allowed` nodes, and that the text `beyond` it is rejected with
+/// the message `said`.
+fn assert_limit(said: &str, at: &str, allowed: usize, beyond: &str) {
+    let nodes = count_nodes(at);
     assert!(nodes <= allowed, "{said}: {nodes} nodes");
-    let refusal = refusal(beyond);
-    assert!(refusal.contains(said), "{refusal}");
+    let rejection = expect_rejection(beyond);
+    assert!(rejection.contains(said), "{rejection}");
 }
 
 #[test]
@@ -62,7 +63,7 @@ fn names_have_64_characters() {
         let name = "x".repeat(length);
         mass(KINETIC, &format!("[definitions]\n{name} = \"2*x\"\n"))
     };
-    hold("at most 64 characters", &named(64), 20, &named(65));
+    assert_limit("at most 64 characters", &named(64), 20, &named(65));
 }
 
 #[test]
@@ -71,7 +72,7 @@ fn units_have_64_characters() {
         let unit = format!("{:<length$}", "kg");
         mass(KINETIC, "").replace("unit = \"kg\"", &format!("unit = \"{unit}\""))
     };
-    hold(
+    assert_limit(
         "a unit has at most 64 characters",
         &declared(64),
         20,
@@ -88,12 +89,12 @@ fn expressions_are_200_deep() {
             &format!("[observables]\no = {{ value = \"{value}\", unit = \"m\" }}\n"),
         )
     };
-    hold("nested more than 200 deep", &summed(200), 420, &summed(201));
+    assert_limit("nested more than 200 deep", &summed(200), 420, &summed(201));
 }
 
 #[test]
 fn definitions_written_out_are_600_deep() {
-    // Each definition adds a product to the depth, the observable another one.
+    // Each definition adds a product to the depth, and so does the observable.
     let chain = |count: usize| {
         let mut lines = String::from("[definitions]\nd1 = \"2*x\"\n");
         for index in 2..=count {
@@ -106,7 +107,7 @@ fn definitions_written_out_are_600_deep() {
         .find(|count| check(Source::new("deep.toml", chain(*count))).is_ok());
     let last = last.expect("some depth is taken");
     assert!((295..=600).contains(&last), "{last}");
-    hold(
+    assert_limit(
         "the expression is more than 600 deep",
         &chain(last),
         2 * last,
@@ -123,7 +124,7 @@ fn derivatives_by_the_position_are_of_order_4() {
         )
     };
     assert!(equations(&model(&bent(4)), 2).graph.len() < 400);
-    let said = refusal(&bent(5));
+    let said = expect_rejection(&bent(5));
     assert!(
         said.contains("the order of a derivative along a field must be 1, 2, 3 or 4"),
         "{said}"
@@ -140,7 +141,7 @@ fn integrands_have_4096_terms() {
     let at = equations(&model(&product(64, 64)), 2).graph.len();
     // A few nodes for each of the 127 powers.
     assert!(at < 2000, "{at} nodes");
-    let said = refusal(&product(65, 64));
+    let said = expect_rejection(&product(65, 64));
     assert!(
         said.contains("more than 4096 terms when expanded"),
         "{said}"
@@ -151,7 +152,7 @@ fn integrands_have_4096_terms() {
 fn orders_go_to_128() {
     let at = |order: usize| string("1").replace("order = 2", &format!("order = {order}"));
     assert!(equations(&model(&at(128)), 128).graph.len() < 100);
-    let said = refusal(&at(129));
+    let said = expect_rejection(&at(129));
     assert!(said.contains("the order 129 is above the limit"), "{said}");
 }
 
@@ -163,7 +164,7 @@ fn specifications_have_a_mebibyte() {
         text + "#" + &"-".repeat(rest - 1)
     };
     let most = MAX_SIZE as usize;
-    hold(
+    assert_limit(
         "reduce it to 1048576 bytes (1 MiB)",
         &filled(most),
         20,
@@ -188,8 +189,8 @@ fn findings_beyond_20_are_counted() {
 #[test]
 fn literals_are_finite_and_not_lost() {
     let weighed = |number: &str| mass(&format!("{number}*m*dot(x)^2"), "");
-    hold("is too large", &weighed("1e307"), 20, &weighed("1e309"));
-    hold(
+    assert_limit("is too large", &weighed("1e307"), 20, &weighed("1e309"));
+    assert_limit(
         "it would be read as 0",
         &weighed("1e-300"),
         20,

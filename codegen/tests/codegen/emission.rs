@@ -118,7 +118,7 @@ fn printed_basis_matches_golden_file() {
     );
 }
 
-// The function for a regime contains no contact; the rest of the file is ordinary.
+// The function for a regime contains no contact. The rest of the file does not depend on regimes.
 #[test]
 fn regimes_of_the_arm_match_golden_file() {
     let model = shipped("planetary_arm");
@@ -148,7 +148,7 @@ fn names() -> Vec<String> {
     names
 }
 
-// Two derivations from text: hash maps have a new seed in each.
+// The model is derived twice from text. Hash maps have a new seed each time.
 #[test]
 fn emission_is_reproducible() {
     for name in names() {
@@ -215,7 +215,7 @@ fn every_shipped_model_compiles_without_a_warning() {
     }
 }
 
-/// Instances of the rates and of the preparation; generic code is compiled where it is called.
+/// Instances of the rates and of the preparation for `f64`, because generic code is compiled only where it is called.
 const INSTANCE: &str = "
 pub fn rates_of_numbers(state: &[f64; STATES], c: &Coefficients) -> [f64; STATES] {
     rates(0.0, state, &Inputs::default(), c)
@@ -225,7 +225,7 @@ pub fn prepared_numbers(parameters: &Parameters) -> Coefficients {
 }
 ";
 
-// The compiler checks all bounds: no order leaves a call of the panic machinery.
+// The compiler removes all bounds checks: at no order does the machine code call a panic function.
 #[test]
 fn optimised_code_cannot_panic() {
     for (name, order) in [

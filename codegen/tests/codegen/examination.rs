@@ -1,4 +1,4 @@
-//! Rejections of a model without its equations, and the growth of their work.
+//! Examination of a model: rejections that need no derived equations, and the growth of the number of graph nodes.
 
 use eomgen_codegen::examination::{Examination, examine};
 use eomgen_codegen::variant::Variant;
@@ -17,7 +17,7 @@ fn coordinates(count: usize, unit: &str, gravity: &str) -> String {
     head + &names.collect::<String>()
 }
 
-/// Returns `count` lines, the first of them given separately.
+/// Returns `count` lines; the first line is `first`.
 fn lines(count: usize, first: &str, line: &dyn Fn(usize) -> String) -> String {
     let others = (1..count).map(|place| line(place) + "\n");
     format!("{first}\n{}", others.collect::<String>())
@@ -105,7 +105,7 @@ fn turned_points(count: usize) -> String {
         + &lines(count, &energy(0), &energy)
 }
 
-/// Returns masses that each fall on a floor.
+/// Returns masses that fall on a floor.
 fn falling_masses(count: usize) -> String {
     let impact =
         |place: usize| format!("i{place} = {{ when = \"q{place}\", restitution = \"1/2\" }}");
@@ -189,7 +189,7 @@ fn masses_with_states(count: usize) -> String {
 type TextOfSize<'a> = &'a dyn Fn(usize) -> String;
 
 /// Examines a model that needs no equations.
-fn examined(name: &str, text: &str) -> Examination {
+fn examine_text(name: &str, text: &str) -> Examination {
     let examined =
         examine(&model(text)).unwrap_or_else(|found| panic!("{name}: {}", found.message));
     examined.unwrap_or_else(|| panic!("{name} is derived"))
@@ -213,7 +213,7 @@ fn examination_grows_linearly_with_specification() {
         ("states", 500, &masses_with_states),
     ];
     for (name, count, text) in cases {
-        let [single, double] = [count, 2 * count].map(|count| examined(name, &text(count)));
+        let [single, double] = [count, 2 * count].map(|count| examine_text(name, &text(count)));
         assert!(
             2 * double.nodes <= 5 * single.nodes,
             "{name}: {single:?} {double:?}"
@@ -243,17 +243,17 @@ fn section_limits_are_enforced_and_named() {
         ),
         ("the model has too many impacts: 101", 100, &falling_masses),
     ];
-    for (refusal, most, text) in cases {
-        let found = examined(refusal, &text(most));
+    for (rejection, most, text) in cases {
+        let found = examine_text(rejection, &text(most));
         // About a hundred nodes for each frame.
-        assert!(found.nodes <= 300 * most, "{refusal}: {found:?}");
+        assert!(found.nodes <= 300 * most, "{rejection}: {found:?}");
         let beyond = eomgen_model_spec::check(Source::new("grown.toml", text(most + 1)));
-        let said = beyond.expect_err(refusal).render(false);
-        assert!(said.contains(refusal), "{said}");
+        let said = beyond.expect_err(rejection).render(false);
+        assert!(said.contains(rejection), "{said}");
     }
 }
 
-/// Returns a bead with this constraint.
+/// Returns a bead with the constraint `zero`.
 fn constrained(zero: &str) -> String {
     coordinates(2, "m", "")
         + "[kinetic]\nT = \"1/2*m*(dot(q0)^2 + dot(q1)^2)\"\n"

@@ -1,9 +1,9 @@
-//! Random expressions: values, slopes (as forces of a potential) and rates along the motion through the whole
-//! derivation, compared with dual numbers applied to the original tree.
+//! Random expressions: their values, derivatives (as forces of a potential) and rates along the motion after the
+//! whole derivation are compared with dual numbers applied to the original tree.
 //!
-//! Laws of the graph regroup operations, so the results differ by rounding. The tolerance is found by random
-//! disturbances of 1e-10 of every intermediate result of the reference. Rounding disturbs by 1e-16; a
-//! thousandth of the spread therefore has a margin of 1e3.
+//! Simplification of the graph regroups operations, so the results differ by rounding. For the tolerance, every
+//! intermediate result of the reference is perturbed randomly by 1e-10, relative. Rounding perturbs by 1e-16, so a
+//! thousandth of the resulting spread leaves a margin of 1e3.
 
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -12,7 +12,7 @@ use proptest::test_runner::RngSeed;
 use crate::support::{accelerations, evaluator, model, observables};
 use crate::trees::{COORDINATES, PARAMETERS, Tree, trees};
 
-/// Value with its derivatives by x, y, z.
+/// Value with its derivatives with respect to x, y and z.
 #[derive(Clone, Copy, Debug)]
 struct Dual {
     value: f64,
@@ -49,7 +49,7 @@ impl Dual {
     }
 }
 
-/// Evaluator of trees with disturbances of every result up to `size` of itself.
+/// Evaluator of trees that perturbs every result by a relative amount of up to `size`.
 struct Reference {
     state: [f64; 3],
     size: f64,
@@ -65,8 +65,8 @@ impl Reference {
         (self.seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// Disturbs a result. Results above 1e9, for which sine and cosine are undefined, become NaN.
-    fn disturbed(&mut self, dual: Dual) -> Dual {
+    /// Perturbs a result. Results above 1e9, for which sine and cosine are undefined, become NaN.
+    fn perturb(&mut self, dual: Dual) -> Dual {
         let mut disturb = |value: f64| value * (1.0 + self.size * self.random());
         let value = if dual.value.abs() < 1e9 {
             dual.value
@@ -103,7 +103,7 @@ impl Reference {
                 let mut a = self.of(a);
                 if *n < 0 {
                     a = a.chain(2.0 + a.value.cos(), -a.value.sin());
-                    a = self.disturbed(a);
+                    a = self.perturb(a);
                 }
                 let slope = if *n == 0 {
                     0.0
@@ -115,13 +115,13 @@ impl Reference {
             Tree::Power(a, e) => {
                 let (a, e) = (self.of(a), self.of(e));
                 let base = a.chain(1.0 + a.value * a.value, 2.0 * a.value);
-                let base = self.disturbed(base);
+                let base = self.perturb(base);
                 let value = base.value.powf(e.value);
                 let by_base = e.value * base.value.powf(e.value - 1.0);
                 base.with(e, value, [by_base, value * base.value.ln()])
             }
         };
-        self.disturbed(exact)
+        self.perturb(exact)
     }
 
     fn unary(&mut self, function: &str, a: Dual) -> Dual {
@@ -134,7 +134,7 @@ impl Reference {
             "tan" => a.chain(u.tan(), 1.0 + u.tan().powi(2)),
             "asin" | "acos" => {
                 let inner = a.chain(u / (2.0 + u.abs()), 2.0 / (2.0 + u.abs()).powi(2));
-                let inner = self.disturbed(inner);
+                let inner = self.perturb(inner);
                 let (v, slope) = (inner.value, 1.0 / (1.0 - inner.value * inner.value).sqrt());
                 if function == "asin" {
                     inner.chain(v.asin(), slope)
@@ -166,7 +166,7 @@ impl Reference {
             "*" => a.with(b, u * v, [v, u]),
             "/" => {
                 let divisor = b.chain(2.0 + v.sin(), v.cos());
-                let divisor = self.disturbed(divisor);
+                let divisor = self.perturb(divisor);
                 let d = divisor.value;
                 a.with(divisor, u / d, [1.0 / d, -u / (d * d)])
             }
@@ -184,7 +184,7 @@ impl Reference {
                     b
                 }
             }
-            // On the cut the sign of a zero decides, which a law can change.
+            // On the branch cut the result depends on the sign of a zero, which a simplification can change.
             "atan2" if u == 0.0 && v <= 0.0 => Dual::constant(f64::NAN),
             "atan2" => {
                 let radius = u * u + v * v;
@@ -246,13 +246,13 @@ fn expected(tree: &Tree, state: [f64; 3]) -> Option<(Dual, [f64; 4])> {
     let reference = at(0.0, 0);
     let mut spread = [0.0_f64; 4];
     for seed in 0..8_u64 {
-        let disturbed = numbers(at(1e-10, seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 77));
+        let perturb = numbers(at(1e-10, seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 77));
         for (k, value) in numbers(reference).into_iter().enumerate() {
-            spread[k] = spread[k].max((disturbed[k] - value).abs());
+            spread[k] = spread[k].max((perturb[k] - value).abs());
         }
         if !numbers(reference)
             .iter()
-            .chain(&disturbed)
+            .chain(&perturb)
             .all(|value| value.abs() < 1e12)
         {
             return None;
@@ -280,7 +280,7 @@ proptest! {
         tree.write(&mut text);
         let mut evaluator = match eomgen_model_spec::check(eomgen_model_spec::source::Source::new("r", spec(&text))) {
             Ok(checked) => evaluator(&checked.model, 0),
-            // Rejected if constants divide by zero or overflow.
+            // The model is rejected if constants divide by zero or overflow.
             Err(_) => return Ok(()),
         };
         let all: Vec<f64> = state.into_iter().chain(rates).collect();
@@ -297,7 +297,7 @@ proptest! {
     }
 }
 
-// The test is valuable only if most random expressions can be compared.
+// The test is useful only if most random expressions can be compared.
 #[test]
 fn most_random_expressions_are_compared() {
     let mut runner = proptest::test_runner::TestRunner::deterministic();
@@ -321,7 +321,7 @@ fn unused_branch_does_not_affect_the_slope() {
     }
 }
 
-// Laws that regroup exponents leave huge ones unchanged: an overflowing exponent once gave 1.
+// Exponents are not combined if their product is huge. An exponent that overflowed gave 1 in an earlier version.
 #[test]
 fn nested_powers_do_not_overflow() {
     let nested = (0..7).fold("x".to_owned(), |inner, _| format!("({inner})^64"));

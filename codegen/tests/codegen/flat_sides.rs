@@ -1,11 +1,12 @@
-//! Derivatives next to a switch that clips the argument of a root, a power, an inverse sine or a logarithm.
+//! Derivatives next to a switching surface at which the argument of a root, a power, an inverse sine or a logarithm
+//! is clipped.
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::program::evaluator::Point;
 
 use crate::limits::{evaluator, gradient, jacobian, pushed};
 
-/// Force, a position with a constant value, another position and the slope there.
+/// Force, a position at which the force is constant, another position, and the derivative at the latter.
 const CLIPPED: [(&str, f64, f64, f64); 15] = [
     ("sqrt(max(x/l - 0.5, 0))", 0.2, 1.5, 0.5),
     ("sqrt(max(0, x/l - 0.5))", 0.2, 1.5, 0.5),
@@ -29,7 +30,7 @@ const CLIPPED: [(&str, f64, f64, f64); 15] = [
     ("max(sqrt(max(x/l, 0)), 0.1)^0.5", -1.0, 0.0625, 2.0),
 ];
 
-/// Returns the derivatives of the acceleration by x, by forward and by reverse mode.
+/// Returns the derivative of the acceleration with respect to x, computed in forward and in reverse mode.
 fn slopes(text: &str, x: f64) -> [f64; 2] {
     let mut evaluator = evaluator(text, &[Output::Jacobians, Output::Products]);
     let state = [x, 0.0, 0.0, 0.0, 0.0, 0.0];
@@ -81,7 +82,7 @@ fn clipped_functions_have_finite_derivatives_by_parameters() {
         let weights = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0];
         let mut found = [f64::NAN; 5];
         assert!(evaluator.vector_jacobian_product_by_parameters(point, &weights, &mut found));
-        // Derivatives by l and n vanish because the force is constant.
+        // The derivatives with respect to l and n are zero because the force is constant.
         assert_eq!([found[1], found[4]], [0.0; 2], "{force}: {found:?}");
         assert!(
             found.iter().all(|entry| entry.is_finite()),
@@ -104,7 +105,7 @@ fn forces_of_clipped_potentials_have_the_derivative_0_on_the_flat_side() {
     }
 }
 
-/// String with a stop along it.
+/// String with an elastic stop along its length.
 const STOPPED: &str = r#"
 [model]
 name = "stopped_string"

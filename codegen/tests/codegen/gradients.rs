@@ -5,7 +5,7 @@ use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::variant::Variant;
 
-/// Mass pushed by a constant force, or farther out by one with an infinite slope at 0.
+/// Mass with a constant force. At larger x another force acts, whose derivative is infinite at 0.
 const PUSHED: &str = r#"
 [model]
 name  = "pushed_mass"
@@ -27,7 +27,7 @@ mass = "1/2*m*dot(x)^2"
 push = { on = "x", value = "max(F, k*sqrt(x/l) + F*(x/l)^2)" }
 "#;
 
-/// Returns the gradients of 11 times the acceleration by the state and by the parameters.
+/// Returns the gradients of 11 times the acceleration with respect to the state and to the parameters.
 fn gradients(x: f64) -> ([f64; 2], [f64; 4]) {
     let model = crate::support::model(PUSHED);
     let variant = Variant::derive_with(&model, &[], &[Output::Products])
@@ -48,7 +48,7 @@ fn gradients(x: f64) -> ([f64; 2], [f64; 4]) {
 fn infinite_slope_of_unused_branch_has_no_effect() {
     let (state, parameters) = gradients(0.0);
     assert_eq!(state, [0.0, 0.0]);
-    // Derivatives of 11 F/m by m, F, k, l.
+    // Derivatives of 11 F/m with respect to m, F, k and l.
     assert_eq!(parameters, [-11.0 * 3.0 / 4.0, 11.0 / 2.0, 0.0, 0.0]);
 }
 

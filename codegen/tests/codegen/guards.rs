@@ -67,7 +67,7 @@ fn each_function_has_its_surfaces() {
     assert_eq!(guards(&particle("F*b", "F/b*min(x, y)"), 1.0, 2.0), [-1.0]);
 }
 
-// The slope of max(x, y) is 1 or 0; the force no longer contains the function itself.
+// The derivative of max(x, y) is 1 or 0. The force contains only this derivative, not the function.
 #[test]
 fn jumping_slope_has_a_surface() {
     assert_eq!(guards(&particle("F*max(x, y)", "0*F"), 1.0, 2.0), [-1.0]);
@@ -79,8 +79,8 @@ fn jumping_slope_has_a_surface() {
     );
 }
 
-// A function that jumps at a zero interval of another has a surface at either end, and is on neither inside
-// the interval.
+// A function that jumps where another function is zero on an interval has a surface at both ends of the interval.
+// Inside the interval, neither surface is crossed.
 #[test]
 fn jump_at_zero_interval_has_a_surface_at_either_end() {
     let sign = particle("F*b", "F*sign(deadzone(x, b))");

@@ -1,8 +1,8 @@
-//! Dependent constraints, distinguished from singular positions, in every unit.
+//! Dependent constraints are distinguished from singular configurations, independently of the units.
 
 use eomgen_codegen::variant::{Variant, examine};
 
-/// Platform on three parallel rods of one length; the third adds no restriction.
+/// Platform on three parallel rods of equal length. The third rod is redundant.
 const THREE_RODS: &str = r#"
 [model]
 name = "three_rods"
@@ -48,7 +48,7 @@ bead = "1/2*m*(dot(x)^2 + dot(y)^2 + dot(z)^2)"
 const AWAY: &str = "x = { unit = \"m\", initial = 0.6 }\ny = { unit = \"m\", initial = 0.8 }\nz = { unit = \"m\" }";
 
 /// Returns the error of a model that is rejected.
-fn refusal(text: &str) -> Option<String> {
+fn rejection(text: &str) -> Option<String> {
     let model = crate::support::model(text);
     let orders = vec![2; model.fields.len()];
     let found = Variant::derive_for_report(&model, &orders, &[]).err()?;
@@ -58,7 +58,7 @@ fn refusal(text: &str) -> Option<String> {
     Some(said)
 }
 
-/// Returns the groups of constraints that depend on each other, with the ranks.
+/// Returns the groups of dependent constraints, with their ranks.
 fn redundant(text: &str) -> Vec<(Vec<usize>, usize)> {
     let model = crate::support::model(text);
     let variant = Variant::derive_for_report(&model, &[], &[])
@@ -75,7 +75,7 @@ fn redundant(text: &str) -> Vec<(Vec<usize>, usize)> {
 fn third_parallel_rod_is_redundant_for_every_start() {
     let starts = [
         ("l*sin(0.4)", "-l*cos(0.4)"),
-        // Off the constraints, with independent rows.
+        // The initial state violates the constraints, and the rows are independent.
         ("l*sin(0.4) + 0.03*l", "-l*cos(0.4)"),
         ("0*l", "-l"),
     ];
@@ -98,18 +98,18 @@ fn two_rods_are_accepted_also_at_a_singular_start() {
         .lines()
         .filter(|line| !line.starts_with("middle"));
     let two: Vec<&str> = two.collect();
-    assert_eq!(refusal(&two.join("\n")), None);
-    // The rods and the platform in one line.
+    assert_eq!(rejection(&two.join("\n")), None);
+    // The rods and the platform lie on one line.
     let flat = two
         .join("\n")
         .replace("\"l*sin(0.4)\"", "\"l\"")
         .replace("\"-l*cos(0.4)\"", "\"0*l\"");
-    assert_eq!(refusal(&flat), None);
+    assert_eq!(rejection(&flat), None);
     let at_the_centre = bead(
         "x = { unit = \"m\" }\ny = { unit = \"m\" }\nz = { unit = \"m\" }",
         "sphere = { zero = \"x^2 + y^2 + z^2 - l^2\" }",
     );
-    assert_eq!(refusal(&at_the_centre), None);
+    assert_eq!(rejection(&at_the_centre), None);
 }
 
 #[test]
@@ -144,7 +144,7 @@ fn constraints_without_a_solution_or_effect_are_rejected_in_every_unit() {
             text.clone(),
             text.replace("value = 1, unit = \"kg\"", "value = 1e12, unit = \"kg\""),
         ] {
-            let found = refusal(&text).unwrap_or_else(|| panic!("{constraints}: derived"));
+            let found = rejection(&text).unwrap_or_else(|| panic!("{constraints}: derived"));
             assert!(found.contains(said), "{constraints}: {found}");
         }
     }
@@ -171,11 +171,11 @@ fn circles_without_a_common_point_contradict_each_other() {
             let on_the_first =
                 "x = { unit = \"m\", initial = \"l\" }\ny = { unit = \"m\" }\nz = { unit = \"m\" }";
             for start in [AWAY, on_the_first] {
-                let found = refusal(&bead(start, &circles(x, y)));
+                let found = rejection(&bead(start, &circles(x, y)));
                 let found = found.unwrap_or_else(|| panic!("{distance} {angle} {scale}: derived"));
                 assert!(found.contains("`b` contradicts `a`"), "{found}");
                 let part = 1.9 / distance;
-                assert_eq!(refusal(&bead(start, &circles(part * x, part * y))), None);
+                assert_eq!(rejection(&bead(start, &circles(part * x, part * y))), None);
             }
         }
     }
@@ -189,7 +189,7 @@ fn independent_constraints_of_any_scale_are_accepted() {
         "a = { zero = \"x*dot(y) - y*dot(x)\" }\nb = { zero = \"dot(z)\" }",
         "a = { zero = \"x^2 + y^2 - l^2\" }\nb = { zero = \"x*dot(y) - y*dot(x)\" }",
     ] {
-        assert_eq!(refusal(&bead(AWAY, constraints)), None, "{constraints}");
+        assert_eq!(rejection(&bead(AWAY, constraints)), None, "{constraints}");
     }
 }
 

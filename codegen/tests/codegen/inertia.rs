@@ -1,4 +1,4 @@
-//! Inertia at the initial state: coordinates without it are rejected at their declaration, correct models are
+//! Inertia at the initial state: a coordinate without inertia is rejected at its declaration, and correct models are
 //! accepted.
 
 use eomgen_codegen::variant::Variant;

@@ -1,10 +1,10 @@
-//! Derivatives at the zero of a root: their limits, and non-finite values without a limit.
+//! Derivatives at the zero of a root: the limit if it exists, else a value that is not finite.
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::variant::Variant;
 
-/// Returns a mass in space that a force pushes along x.
+/// Returns a mass in space with this force along x.
 pub(crate) fn pushed(force: &str) -> String {
     format!(
         r#"
@@ -40,7 +40,7 @@ pub(crate) fn evaluator(text: &str, outputs: &[Output]) -> Evaluator {
     Evaluator::new(variant.program)
 }
 
-/// Returns the structural nonzeros of the Jacobian of the rates by the state.
+/// Returns the structural nonzeros of the Jacobian of the rates with respect to the state.
 pub(crate) fn jacobian(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
     let jacobians = &evaluator.program().outputs.jacobians;
     let place = jacobians
@@ -57,7 +57,7 @@ pub(crate) fn jacobian(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
     nonzeros
 }
 
-/// Returns the gradient of the acceleration of x by the state, by reverse accumulation.
+/// Returns the gradient of the acceleration of x with respect to the state, computed by reverse accumulation.
 pub(crate) fn gradient(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
     let mut weights = vec![0.0; state.len()];
     weights[state.len() / 2] = 1.0;
@@ -82,7 +82,7 @@ pub(crate) fn acceleration(evaluator: &mut Evaluator, state: &[f64]) -> f64 {
     rates[state.len() / 2]
 }
 
-/// Forces whose derivatives vanish at 0.
+/// Forces whose derivatives are zero at 0.
 const SMOOTH_ENOUGH: [&str; 26] = [
     "-norm(v)*dot(x)/s^2",
     "-norm(plane)*dot(x)/s^2",
@@ -197,7 +197,7 @@ fn derivatives_without_a_limit_are_not_finite() {
     }
 }
 
-/// A factor beside a root decides at each point of the root's zeros.
+/// At each zero of the root, the other factor determines whether the derivative has a limit.
 #[test]
 fn root_times_other_factor_has_a_limit_only_at_zeros_of_that_factor() {
     let at = |z: f64, z_rate: f64| [0.0, 0.0, z, 0.0, 0.0, z_rate];
@@ -226,7 +226,7 @@ fn root_times_other_factor_has_a_limit_only_at_zeros_of_that_factor() {
             found.iter().any(|entry| !entry.is_finite()),
             "{force}: {found:?}"
         );
-        // A little away from the zeros of the root the derivative is that of the formula.
+        // At a small distance from the zeros of the root, the derivative matches the formula.
         let mut near = none;
         let first = 3 * usize::from(force.contains("plane"));
         (near[first], near[first + 1]) = (3e-3, 4e-3);
@@ -245,8 +245,8 @@ fn root_times_other_factor_has_a_limit_only_at_zeros_of_that_factor() {
     }
 }
 
-/// The derivative of a root times a factor that vanishes with it is unbounded near 0. The product has the derivative 0
-/// there: it is smaller than every linear function.
+/// The derivative of a root times a factor that vanishes with it is unbounded near 0. At 0 the product has the
+/// derivative 0: it decreases faster than every linear function.
 #[test]
 fn root_times_smooth_factor_has_derivative_zero_at_zeros_of_both() {
     let at = |z: f64, z_rate: f64| [0.0, 0.0, z, 0.0, 0.0, z_rate];
@@ -316,7 +316,7 @@ fn second_derivatives_have_limits_one_order_later() {
         let found = second_derivatives(flat);
         assert!(found.iter().all(|entry| *entry == 0.0), "{flat}: {found:?}");
     }
-    // The second derivative of |r| x by x depends on the direction.
+    // The second derivative of |r| x with respect to x depends on the direction.
     let edged = second_derivatives("norm(r)*x/l^2");
     assert!(edged.iter().any(|entry| !entry.is_finite()), "{edged:?}");
 }
@@ -336,7 +336,7 @@ fn power_with_zero_base_has_derivative_by_exponent() {
     assert_eq!(found, [0.0; 5]);
 }
 
-/// String with drag that depends on the speed of each of its points in space.
+/// String with drag, which depends on the speed in space of each point of the string.
 const DRAGGED: &str = r#"
 [model]
 name = "dragged_string"

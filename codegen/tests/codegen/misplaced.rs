@@ -1,12 +1,13 @@
-//! Programs with misplaced values are rejected; they must not be emitted as NaN or as a matrix of zeros.
+//! Programs with values in a wrong position are rejected. Such a value must not be emitted as NaN or as a matrix of
+//! zeros.
 
 use eomgen_codegen::program::{Extent, Op, Program, ValueId};
 use eomgen_codegen::rust::{EmitError, Packaging, emit};
 
 use crate::support::{program, shipped};
 
-/// Replaces the operation of the first `wanted` value in the beam's program.
-fn with(wanted: impl Fn(&Op, Extent) -> bool, op: impl Fn(ValueId) -> Op) -> Program {
+/// Returns the program of the beam after the operation of the first `wanted` value was replaced.
+fn replace_operation(wanted: impl Fn(&Op, Extent) -> bool, op: impl Fn(ValueId) -> Op) -> Program {
     let mut program = program(&shipped("hub_beam_tip_mass"), 2);
     let found = program.ids().find(|id| {
         let value = program.value(*id);
@@ -18,7 +19,7 @@ fn with(wanted: impl Fn(&Op, Extent) -> bool, op: impl Fn(ValueId) -> Op) -> Pro
     program
 }
 
-fn refused(program: &Program) -> String {
+fn expect_rejection(program: &Program) -> String {
     match emit(program, Packaging::Crate) {
         Err(EmitError::Value(message)) => message,
         Err(other) => panic!("{other}"),
@@ -29,7 +30,7 @@ fn refused(program: &Program) -> String {
 #[test]
 fn matrix_operation_as_number_is_rejected() {
     let number = |op: &Op, extent| matches!(op, Op::Multiply(..)) && extent == Extent::Scalar;
-    let message = refused(&with(number, Op::Cholesky));
+    let message = expect_rejection(&replace_operation(number, Op::Cholesky));
     assert!(
         message.contains("not an elementwise operation"),
         "{message}"
@@ -40,13 +41,13 @@ fn matrix_operation_as_number_is_rejected() {
 fn factor_as_vector_is_rejected() {
     let vector =
         |op: &Op, extent| matches!(op, Op::Multiply(..)) && matches!(extent, Extent::Vector(_));
-    let message = refused(&with(vector, Op::Cholesky));
+    let message = expect_rejection(&replace_operation(vector, Op::Cholesky));
     assert!(message.contains("not a sum of products"), "{message}");
 }
 
 #[test]
 fn elementwise_operation_as_matrix_is_rejected() {
     let block = |op: &Op, _| matches!(op, Op::Assemble { .. });
-    let message = refused(&with(block, Op::Negate));
+    let message = expect_rejection(&replace_operation(block, Op::Negate));
     assert!(message.contains("not a block of a matrix"), "{message}");
 }

@@ -54,7 +54,7 @@ fn eigenvalues_match_published_table() {
     }
 }
 
-// The printed Eq. (18) is 16 % low at the first root.
+// The first root of the printed Eq. (18) is 16 % too small.
 #[test]
 fn printed_eigenvalues_are_not_the_roots() {
     let (exact, printed) = (
@@ -183,8 +183,8 @@ fn integral(function: impl Fn(f64) -> f64) -> f64 {
         / 3.0
 }
 
-// Every kind of moment, in both bases, with and without a closed form. Simpson's error is (beta h)^4/180 of
-// the integrand, 1e-12; the hyperbolic functions lose cosh(11) = 3e4 units in the last place.
+// Every kind of moment, in both bases, with and without a closed form. The relative error of Simpson's rule is (beta
+// h)^4/180 = 1e-12. The hyperbolic functions have errors of cosh(11) = 3e4 units in the last place.
 #[test]
 fn moments_match_composite_rule() {
     for basis in [&EXACT, &PRINTED] {
@@ -300,7 +300,7 @@ fn only_exact_modes_satisfy_free_end_conditions() {
     }
 }
 
-// Shapes at quadrature nodes, from which all tables without a closed form are computed, satisfy phi'''' =
+// All tables without a closed form are computed from shapes at quadrature nodes. These shapes satisfy phi'''' =
 // beta^4 phi. The test compares the integral of phi''^2 with that of phi^2.
 #[test]
 fn shapes_at_nodes_keep_their_digits_at_high_orders() {

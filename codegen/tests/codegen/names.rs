@@ -1,5 +1,5 @@
-//! Names and prose of a specification that have a meaning in the emitted source, which must compile without a
-//! warning.
+//! Names and prose of a specification that also have a meaning in the emitted source. The source must compile without
+//! a warning.
 
 use crate::support::{compile, emitted, model};
 
@@ -58,7 +58,7 @@ motor = {{ on = "{coordinate}", value = "{input}*contact({coordinate}, 0.2)" }}
     )
 }
 
-fn compiles(folder: &str, text: &str) {
+fn assert_compiles(folder: &str, text: &str) {
     for edition in ["2015", "2024"] {
         compile(
             folder,
@@ -155,7 +155,7 @@ fn names_used_by_emitted_code_compile() {
     ];
     let mut source = String::new();
     for count in 0..names.len() {
-        // Every name has every role once.
+        // Every name is used once in every role.
         let [parameter, coordinate, input, definition, observable] =
             std::array::from_fn(|role| names[(count + role) % names.len()]);
         let model = model(&spec(parameter, coordinate, input, definition, observable));
@@ -186,11 +186,11 @@ fn names_of_terms_with_other_meanings_compile() {
                 "zeta*contact(chi, 0.2)",
                 "zeta*contact(chi, 0.2) - 0.1*zeta",
             );
-        compiles("terms", &text);
+        assert_compiles("terms", &text);
     }
 }
 
-// Names of the tables, as names of quantities.
+// Quantities have the names of tables.
 #[test]
 fn names_of_tables_compile() {
     let first = emitted(&model(&spec("kappa", "chi", "zeta", "eta", "xi")), 2);
@@ -200,13 +200,13 @@ fn names_of_tables_compile() {
         .collect();
     assert!(tables.len() > 3, "{tables:?}");
     for name in tables {
-        compiles("table_names", &spec(name, "chi", "zeta", "eta", "xi"));
-        compiles("table_names", &spec("kappa", name, "zeta", "eta", "xi"));
-        compiles("table_names", &spec("kappa", "chi", "zeta", name, "xi"));
+        assert_compiles("table_names", &spec(name, "chi", "zeta", "eta", "xi"));
+        assert_compiles("table_names", &spec("kappa", name, "zeta", "eta", "xi"));
+        assert_compiles("table_names", &spec("kappa", "chi", "zeta", name, "xi"));
     }
 }
 
-// Tables have the names of fields in capitals, which can be equal for two fields.
+// The name of a table is the name of the field in capitals. It can be equal for two fields.
 #[test]
 fn names_of_fields_that_differ_in_case_compile() {
     let text = spec("kappa", "chi", "zeta", "eta", "xi");
@@ -221,7 +221,7 @@ fn names_of_fields_that_differ_in_case_compile() {
         .replace("\"q\"", "\"Q\"");
     let inertia = "beam_2 = \"1/2*integral(mu*exp(-Y/l)*dot(W)^2, W)\"\n\n[potential]";
     let both = text.replace(field, &format!("{field}{second}"));
-    compiles("fields", &both.replace("[potential]", inertia));
+    assert_compiles("fields", &both.replace("[potential]", inertia));
 }
 
 // Prose can contain characters with a meaning in a comment, a string or a page.
@@ -264,11 +264,11 @@ fn prose_with_special_characters_compiles() {
             assert!(spec.contains(from));
             spec = spec.replace(from, &to);
         }
-        // The checker may also reject the text.
+        // `check` may also reject the text.
         if eomgen_model_spec::check(eomgen_model_spec::source::Source::new("p", spec.clone()))
             .is_ok()
         {
-            compiles("prose", &spec);
+            assert_compiles("prose", &spec);
         }
     }
 }

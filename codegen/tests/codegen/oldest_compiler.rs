@@ -1,4 +1,4 @@
-//! Compilation of emitted code with the oldest supported compiler, stated in `docs/embedding.md`.
+//! Compilation of emitted code with the oldest supported compiler; `docs/embedding.md` states its version.
 
 use std::process::Command;
 
@@ -29,20 +29,21 @@ fn emitted_code_compiles_with_the_oldest_compiler() {
         ));
         return;
     }
-    // All requested outputs, for two of the models: the same code emits them for all.
+    // All optional outputs are compiled for two models only, because the emission of outputs does not depend on the
+    // model.
     std::thread::scope(|scope| {
         scope.spawn(|| {
-            compiles("planetary_arm", "", program);
-            compiles("planetary_arm", "_with_all", program_with_all);
+            assert_compiles("planetary_arm", "", program);
+            assert_compiles("planetary_arm", "_with_all", program_with_all);
         });
         for name in ["pendulum", "hub_beam_tip_mass", "two_link_arm"] {
-            compiles(name, "", program);
+            assert_compiles(name, "", program);
         }
-        compiles("hub_beam_tip_mass", "_with_all", program_with_all);
+        assert_compiles("hub_beam_tip_mass", "_with_all", program_with_all);
     });
 }
 
-fn compiles(name: &str, what: &str, program: fn(&Model, usize) -> Program) {
+fn assert_compiles(name: &str, what: &str, program: fn(&Model, usize) -> Program) {
     let source = emit(&program(&shipped(name), 2), Packaging::Crate).unwrap();
     for edition in ["2015", "2021"] {
         let mut compiler = Command::new("rustup");

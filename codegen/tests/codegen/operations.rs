@@ -1,5 +1,5 @@
-//! Number of operations per call of the accelerations: linear in the order, with the slope that the structure
-//! permits.
+//! Number of operations per call of the accelerations. It is linear in the order, with the smallest slope that the
+//! structure of the equations permits.
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::variant::Variant;
@@ -7,13 +7,14 @@ use eomgen_model_spec::model::Model;
 
 use crate::support::{accelerations, chain_of_pendulums, evaluator, model, program, shipped};
 
-/// Returns the operations of one call.
+/// Returns the number of operations of one call.
 fn operations(name: &str, order: usize) -> usize {
     let program = program(&shipped(name), order);
     program.operations(&program.accelerations.all())
 }
 
-/// Returns the operations for each further mode (of every field), which must be equal between any two orders.
+/// Returns the number of operations per additional mode of every field; asserts that it is equal between any two
+/// orders.
 fn operations_per_mode(name: &str) -> usize {
     let per_mode = operations(name, 5) - operations(name, 4);
     for (low, high) in [(8, 16), (16, 64), (64, 128)] {
@@ -23,7 +24,7 @@ fn operations_per_mode(name: &str) -> usize {
     per_mode
 }
 
-// A product and its sum into the bending moment, and an acceleration of two products.
+// Per mode: a product that is added to the bending moment, and an acceleration from two products.
 #[test]
 fn planetary_arm_takes_five_operations_per_mode() {
     assert_eq!(operations_per_mode("planetary_arm"), 5);
@@ -57,7 +58,7 @@ fn operations_of_rows(model: &Model) -> (usize, usize) {
     )
 }
 
-// Sweeps along the chain need no mass matrix.
+// Recursion along the chain needs no mass matrix.
 #[test]
 fn velocity_terms_and_inverse_dynamics_grow_linearly_with_a_chain() {
     let of = |bobs| operations_of_rows(&model(&chain_of_pendulums(bobs)));

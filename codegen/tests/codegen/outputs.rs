@@ -1,4 +1,4 @@
-//! Requested outputs that a model rejects, and those that it still provides.
+//! Optional outputs that a model rejects, and outputs that it supports.
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
@@ -59,7 +59,7 @@ bending = "1/2*integral(B*diff(w, x, 2)^2, w)"
 spring = "1/2*a*l*z^2 + integral(SPRING, w)"
 "#;
 
-/// Compares the Jacobians by forward and reverse mode at a state with differences.
+/// Compares the Jacobians of forward and reverse mode at a state with difference quotients.
 fn compare_with_differences(inertia: &str, spring: &str) {
     let text = NONLINEAR
         .replace("INERTIA", inertia)
@@ -114,7 +114,7 @@ fn compare_with_differences(inertia: &str, spring: &str) {
     }
 }
 
-/// Returns a column of the Jacobian of the rates by the state.
+/// Returns a column of the Jacobian of the rates with respect to the state.
 fn dense_column(evaluator: &mut Evaluator, point: Point<'_>, column: usize) -> [f64; 6] {
     let jacobian = evaluator.program().outputs.jacobians[0].clone();
     assert_eq!(jacobian.name, "rates_by_state");

@@ -1,4 +1,4 @@
-//! Reports: their length, equal formulas in every notation, and the correctness of the formulas.
+//! Reports: their length, the correctness of their formulas, and equal formulas in all notations.
 
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -125,8 +125,8 @@ fn shared_lines_avoid_names_of_the_specification() {
     assert_eq!(report.shared[0].name.to_string(), "z_1");
 }
 
-// The plain notation is the language of specifications. Definitions of the printed lines must give the mass
-// matrix and the velocity terms of the program.
+// The plain notation is the language of specifications. If the printed lines are used as definitions, they must give
+// the mass matrix and the velocity terms of the program.
 #[test]
 fn printed_equations_read_back_as_the_same_equations() {
     let count = 10;
@@ -209,7 +209,7 @@ fn latex_is_well_formed_for_every_specification() {
     assert!(check_latex("sum_i(a)*b").is_err());
 }
 
-/// Commands of the document and of its formulas, from LaTeX itself or from amsmath.
+/// Commands of the document and of its formulas, which LaTeX or amsmath defines.
 const COMMANDS: &str = "documentclass usepackage setlength parindent parskip emergencystretch raggedright everypar \
     everymath hangindent displaystyle frac tfrac sqrt dot ddot left right bigl bigr big \
     sum int varphi xi beta text mathrm mathsf operatorname cdot dots delta le sin cos tan sinh cosh tanh ln min max \
@@ -223,7 +223,7 @@ fn check_latex(text: &str) -> Result<(), String> {
         Some(found) if found == expected => Ok(()),
         found => Err(format!("{expected} is closed, {found:?} is open")),
     };
-    // True for each base that already has a subscript, or a superscript.
+    // For each nesting level: true if the base already has a subscript, and true if it has a superscript.
     let mut scripts: Vec<(bool, bool)> = vec![(false, false)];
     let mut is_script = false;
     while let Some(c) = rest.chars().next() {
@@ -275,7 +275,7 @@ fn check_latex(text: &str) -> Result<(), String> {
                     return Err(format!("two of {c} before {}", &rest[..rest.len().min(40)]));
                 }
                 is_script = rest.starts_with('{');
-                // A letter in a script cannot have scripts.
+                // A single letter in a subscript or superscript cannot have its own scripts.
                 if let Some(letter) = rest.chars().next().filter(|c| c.is_alphanumeric()) {
                     rest = &rest[letter.len_utf8()..];
                 }

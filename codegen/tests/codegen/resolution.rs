@@ -1,4 +1,4 @@
-//! Integrals over a field: coefficients that the quadrature resolves, and the rejection of all others.
+//! Integrals over a field: coefficients that the quadrature resolves are accepted, all others are rejected.
 
 use eomgen_codegen::mechanics::fields::resolution::{State, worst_at_state};
 use eomgen_codegen::program::evaluator::Point;
@@ -24,7 +24,7 @@ fn weighted(coefficient: &str) -> String {
     format!("1/2*integral(mu*({coefficient})*dot(w)^2, w)")
 }
 
-fn refusal(text: &str) -> Option<String> {
+fn rejection(text: &str) -> Option<String> {
     match eomgen_model_spec::check(Source::new("beam.toml", text)) {
         Ok(checked) => {
             let orders = checked.model.orders(None).unwrap();
@@ -50,7 +50,7 @@ fn coefficients_that_change_between_the_points_are_rejected() {
         "1/(1 - 0.9999*x/l)",
         "-ln(x/l)",
     ] {
-        let found = refusal(&beam(&weighted(coefficient), "")).unwrap_or_default();
+        let found = rejection(&beam(&weighted(coefficient), "")).unwrap_or_default();
         assert!(
             found.contains("quadrature points"),
             "{coefficient}: {found}"
@@ -66,7 +66,7 @@ fn coefficients_that_change_between_the_points_are_rejected() {
         "sqrt(1 + x/l)",
     ] {
         assert_eq!(
-            refusal(&beam(&weighted(coefficient), "")),
+            rejection(&beam(&weighted(coefficient), "")),
             None,
             "{coefficient}"
         );
@@ -92,7 +92,7 @@ fn a_step_at_a_fixed_fraction_of_the_length_has_the_exact_mass() {
         let primitive = |s: f64| 0.5 * s - (2.0 * pi * s).sin() / (4.0 * pi);
         let part = primitive(share[1]) - primitive(share[0]);
         let expected = 3.0 * 2.0 * (0.5 + 9.0 * part);
-        // A hundred rounded addends.
+        // The sum has a hundred rounded summands.
         assert!(
             (mass[0] / expected - 1.0).abs() < 1e-14,
             "{step}: {}",
@@ -121,13 +121,13 @@ fn other_values_of_parameters_are_checked() {
 #[test]
 fn loads_that_move_along_the_field_are_smooth_or_rejected() {
     let jump = "load = \"-integral(EI/l^3*above(v*t - x)*w, w)\"";
-    let found = refusal(&beam(&weighted("1"), jump)).unwrap_or_default();
+    let found = rejection(&beam(&weighted("1"), jump)).unwrap_or_default();
     assert!(found.contains("moves along the field"), "{found}");
     let narrow = "load = \"-integral(EI/l^3*exp(-((x - v*t)/(0.01*l))^2)*w, w)\"";
-    let found = refusal(&beam(&weighted("1"), narrow)).unwrap_or_default();
+    let found = rejection(&beam(&weighted("1"), narrow)).unwrap_or_default();
     assert!(found.contains("at t ="), "{found}");
     let wide = "load = \"-integral(EI/l^3*exp(-((x - v*t)/(0.3*l))^2)*w, w)\"";
-    assert_eq!(refusal(&beam(&weighted("1"), wide)), None);
+    assert_eq!(rejection(&beam(&weighted("1"), wide)), None);
 }
 
 #[test]
@@ -151,7 +151,7 @@ fn polynomials_of_the_field_are_integrated_exactly_up_to_order_32() {
             let mut evaluator = evaluator(model, order as usize);
             let mut observables = vec![0.0; evaluator.program().observables.len()];
             evaluator.observables(point, &mut observables);
-            // The power is the last.
+            // The power is the last observable.
             observables[observables.len() - 2]
         };
         let found = energy(&machine) - energy(&without);
@@ -165,7 +165,7 @@ fn polynomials_of_the_field_are_integrated_exactly_up_to_order_32() {
         let nodes = 4000;
         let values = (0..nodes).map(|k| field(f64::from(k) / f64::from(nodes)).powi(degree));
         let expected = 2.0 * values.sum::<f64>() / f64::from(nodes) / 2.0_f64.powi(degree + 2);
-        // Rounding of the bending energy, which is 1e6 times larger.
+        // The tolerance covers the rounding of the bending energy, which is 1e6 times larger.
         assert!(
             (found / expected - 1.0).abs() < 1e-8,
             "{degree}: {found} {expected}"

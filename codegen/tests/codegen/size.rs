@@ -1,11 +1,10 @@
-//! Growth of the derivation and of the emitted source: independent of the order, and bounded for large
-//! models.
+//! Size of the derivation and of the emitted source: independent of the order, and bounded for large models.
 
 use std::fmt::Write;
 
 use crate::support::{accelerations, emitted, equations, evaluator, model, shipped};
 
-/// Counts the statements outside the tables and the constants that name indices.
+/// Counts the statements, without tables and without the constants for indices.
 fn statements(source: &str) -> usize {
     source
         .lines()
@@ -26,13 +25,13 @@ fn derivation_and_statements_do_not_grow_with_the_order() {
             "{name}"
         );
         let (small, large) = (emitted(&model, 4), emitted(&model, 128));
-        // From nine modes on, sums call another function; with an odd count the last number is copied
-        // separately.
+        // With nine or more modes, sums call another function. If the number of modes is odd, the last number is
+        // copied separately.
         let statements_of_ten = statements(&emitted(&model, 10));
         assert_eq!(statements_of_ten, statements(&large), "{name}");
         assert!(statements(&small).abs_diff(statements_of_ten) < 5, "{name}");
-        // About six tables with 124 more numbers of 20 characters, and names, units, initial values and ranges of 248
-        // states, 60 characters each.
+        // The additional text is about six tables with 124 more numbers of 20 characters each, and names, units,
+        // initial values and ranges of 248 states with 60 characters each.
         assert!(
             large.len() < small.len() + 50_000,
             "{name}: {} and {}",
@@ -119,7 +118,7 @@ fn deep_products_stay_small() {
     let nodes = equations(&model, 0).graph.len();
     assert!(nodes < 20_000, "{nodes}");
     let source = emitted(&model, 0);
-    // Each number is written with the conversion of its type.
+    // Each number is written with a type conversion, which is not counted.
     let length = source.replace("T::number(", "(").len();
     assert!(length < 250_000, "{length}");
     let (x, rate) = (0.3, 0.7);
@@ -132,7 +131,7 @@ fn deep_products_stay_small() {
     );
 }
 
-// High powers of the position are integrated with the weights at the nodes.
+// High powers of the position are integrated by quadrature.
 #[test]
 fn nested_powers_of_the_position_stay_small() {
     let nested = (0..6).fold("x/l".to_owned(), |inner, _| format!("({inner})^8"));

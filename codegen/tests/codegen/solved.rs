@@ -1,5 +1,5 @@
-//! Accelerations for mass matrices whose structure was once solved incorrectly, compared with pivoted
-//! elimination of the dense matrix; named coefficients compared with differences of the accelerations.
+//! Accelerations compared with pivoted elimination of the dense mass matrix, for structures that an earlier version
+//! solved incorrectly. Named coefficients compared with differences of the accelerations.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
@@ -73,7 +73,7 @@ fn residual(evaluator: &mut Evaluator, state: &[f64]) -> f64 {
         )
 }
 
-fn solves(kinetic: &str, basis: &str, orders: &[usize]) {
+fn assert_solved(kinetic: &str, basis: &str, orders: &[usize]) {
     let model = model(&beam(kinetic, basis));
     for &order in orders {
         let mut evaluator = evaluator(&model, order);
@@ -94,8 +94,8 @@ fn solves(kinetic: &str, basis: &str, orders: &[usize]) {
     }
 }
 
-// Two points of the beam move the mass: their weights are not diagonal, and the first minor of I + C G is
-// negative at order 2 although M is positive definite.
+// Two points of the beam move the mass, so the weights are not diagonal. The first minor of I + C G is negative at
+// order 2 although M is positive definite.
 #[test]
 fn mass_on_a_lever_between_two_points_is_solved() {
     for lever in [
@@ -103,7 +103,7 @@ fn mass_on_a_lever_between_two_points_is_solved() {
         "1/2*M*(cos(theta)*at(dot(w), l) + n*sin(theta)*at(dot(w), l/2))^2",
         "1/2*M*at(dot(w), l)^2 + n*M*at(dot(w), l)*at(dot(w), l/2) + 1/2*M*n^2*at(dot(w), l/2)^2",
     ] {
-        solves(
+        assert_solved(
             &format!("{DISTRIBUTED} + {lever}"),
             "clamped_free",
             &[1, 2, 3, 8],
@@ -111,22 +111,22 @@ fn mass_on_a_lever_between_two_points_is_solved() {
     }
 }
 
-// With more interfaces than modes, some are combinations of the others.
+// If there are more interfaces than modes, the interfaces are linearly dependent.
 #[test]
 fn more_interfaces_than_modes_are_solved() {
     let points = "1/2*M*(at(dot(w), l) + n*at(dot(w), l/2) - n*at(dot(w), l/3) + l*at(diff(dot(w), x, 1), l))^2";
-    solves(
+    assert_solved(
         &format!("{DISTRIBUTED} + {points}"),
         "clamped_free",
         &[1, 2, 3, 4, 8],
     );
 }
 
-// The inertia of the mode is only that of the mass.
+// The mode has only the inertia of the tip mass.
 #[test]
 fn massless_beam_with_tip_mass_is_solved() {
     for tip in ["at(dot(w), l)", "sum(i, w, dot(q[i]))"] {
-        solves(
+        assert_solved(
             &format!("1/2*M*(l*dot(theta)/2 + {tip})^2"),
             "clamped_free",
             &[1],
@@ -134,12 +134,12 @@ fn massless_beam_with_tip_mass_is_solved() {
     }
 }
 
-// The momentum of every mode is the same number.
+// The momenta of all modes are equal.
 #[test]
 fn mass_that_moves_with_the_sum_of_the_modes_is_solved() {
     for basis in ["clamped_free", "clamped_free_printed"] {
         let sum = "1/2*M*(l*dot(theta)/9 + sum(i, w, dot(q[i])))^2";
-        solves(&format!("{DISTRIBUTED} + {sum}"), basis, &[1, 2, 3]);
+        assert_solved(&format!("{DISTRIBUTED} + {sum}"), basis, &[1, 2, 3]);
     }
 }
 

@@ -52,7 +52,7 @@ pub fn evaluator(model: &Model, order: usize) -> Evaluator {
     Evaluator::new(program(model, order))
 }
 
-/// Emits the crate of a model with every field at one order.
+/// Emits a model with every field at one order, as a crate.
 pub fn emitted(model: &Model, order: usize) -> String {
     emit(&program(model, order), Packaging::Crate).unwrap()
 }
@@ -99,7 +99,7 @@ pub fn accelerations(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
     rates.split_off(state.len() / 2)
 }
 
-/// Creates a folder below the tests' temporary folder.
+/// Creates a folder in the temporary folder of the tests.
 pub fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     std::fs::create_dir_all(&folder).unwrap();

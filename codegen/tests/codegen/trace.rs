@@ -51,7 +51,7 @@ fn derive(model: &Model, order: usize, outputs: &[Output]) -> Program {
     }
 }
 
-/// Emits Rust, then the source of C.
+/// Emits the Rust source and the C source.
 fn both(program: &Program) -> [String; 2] {
     let rust = emit(program, Packaging::Crate).expect("Rust");
     let files = c::emit(program).expect("C");
@@ -79,7 +79,7 @@ fn all_shipped() -> Vec<(String, Model)> {
     paths.into_iter().map(load).collect()
 }
 
-// The declared units are those of the specification; the inferred ones follow from the operations.
+// Units are inferred from the operations and compared with the units that the specification declares.
 #[test]
 fn inferred_units_match_declared_ones() {
     let second = ValueUnit::Known(Dimension::TIME);
@@ -186,7 +186,7 @@ fn every_definition_of_a_function_is_traced() {
     }
 }
 
-// A value without a term in its trace is computed without the term, too, with the same name.
+// If a term does not occur in the trace of a value, the value and its name do not change when the term is removed.
 #[test]
 fn values_remain_without_a_term_outside_of_their_trace() {
     let without = CRANE.replace("drive = { on = \"x\", value = \"F\" }", "");
@@ -199,7 +199,7 @@ fn values_remain_without_a_term_outside_of_their_trace() {
             .map(|line| (&*line.function, &*line.name))
             .collect();
         let mut count = 0;
-        // Sums of forces are grouped in another way.
+        // Without the term, sums of forces are grouped differently.
         let is_sum =
             |line: &TracedLine| line.terms.iter().any(|term| term.starts_with("potential"));
         let others = whole.iter().filter(|line| !line.terms.contains(&term));
@@ -212,7 +212,7 @@ fn values_remain_without_a_term_outside_of_their_trace() {
     }
 }
 
-/// Returns the number of lines that `diff` prints: those removed and those added.
+/// Returns the number of lines that `diff` prints: removed and added lines.
 fn changed_lines(before: &str, after: &str) -> usize {
     let (before, after): (Vec<&str>, Vec<&str>) =
         (before.lines().collect(), after.lines().collect());
@@ -273,7 +273,7 @@ fn jacobians_by_state_need_fewer_coefficients() {
             .collect()
     };
     assert_eq!(names(&by_state), ["rates_by_state", "observables_by_state"]);
-    // The function itself is the same text in both files.
+    // The text of the function is equal in both files.
     let function = |program: &Program| {
         let text = emit(program, Packaging::Crate).expect("Rust");
         let begin = text.find("pub fn rates_by_state<").expect("begin");

@@ -52,8 +52,8 @@ pub fn trees() -> impl Strategy<Value = Tree> {
 }
 
 impl Tree {
-    /// Writes the tree. Arguments of functions with a domain are transformed into it, for example asin(u/(2 +
-    /// abs(u))).
+    /// Writes the tree. If a function has a limited domain, its argument is mapped to this domain, for example
+    /// asin(u/(2 + abs(u))).
     pub fn write(&self, out: &mut String) {
         let written = |tree: &Self| {
             let mut text = String::new();

@@ -1,5 +1,5 @@
-//! Integrands that need quadrature at run time or during preparation, compared with a composite rule over
-//! shapes evaluated by `at`.
+//! Integrands that need quadrature at run time or during preparation, compared with a composite rule over shapes that
+//! `at` evaluates.
 
 use crate::support::{evaluator, model, observables};
 
@@ -99,7 +99,7 @@ fn integrands_of_every_form_match_composite_rule() {
     check("1/l", |_, _, _| 1.0 / L);
 }
 
-// A power without a table, in closed form.
+// The power is too high for a table of moments; the reference is the closed form.
 #[test]
 fn high_powers_of_the_position_match_closed_form() {
     let model = model(&spec("(x/l)^40/l"));

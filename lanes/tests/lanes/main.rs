@@ -1,4 +1,4 @@
-//! Batches of states against single states: regimes, throughput.
+//! Batches of states compared with single states: regimes and throughput.
 
 mod regimes;
 mod throughput;

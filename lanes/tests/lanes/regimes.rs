@@ -1,4 +1,4 @@
-//! Kernel of a regime on lanes: the bits are those of a scalar evaluation.
+//! SIMD rates in one regime, bit-identical to a scalar evaluation.
 
 use eomgen_lanes::{LANES, Lanes, Registers, Task, Vector};
 
@@ -37,7 +37,7 @@ fn lanes_within_one_regime_match_scalars() {
         std::array::from_fn(|k| 1e-3 * (1.0 + i as f64) / (1.0 + k as f64))
     });
     states[1] = std::array::from_fn(|k| 3e-6 * k as f64);
-    for registers in Registers::ALL.into_iter().filter(|r| r.are_there()) {
+    for registers in Registers::ALL.into_iter().filter(|r| r.are_available()) {
         let task = All {
             states: &states,
             coefficients: &coefficients,

@@ -42,8 +42,8 @@ fn step(quotient: u128, previous: (u128, u128), current: (u128, u128)) -> Option
     (q < 1 << 53).then_some((p, q))
 }
 
-/// Returns doubles in `[1, 4)` whose square root is almost halfway between two doubles: for an odd `s` of 54
-/// bits with `s^2 = offset (mod 2^bits)` and a small `offset`, the double is `s^2 - offset`.
+/// Returns doubles in `[1, 4)` whose square root is almost halfway between two doubles. The doubles are `s^2 -
+/// offset` for an odd `s` of 54 bits with `s^2 = offset (mod 2^bits)` and a small `offset`.
 pub fn roots_near_a_tie() -> Vec<f64> {
     let mut found = Vec::new();
     for bits in [54, 55] {

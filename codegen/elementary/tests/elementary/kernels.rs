@@ -1,4 +1,4 @@
-//! Kernels: comparison with native values bit for bit, structure, and size.
+//! Kernels: values bit-identical to native values, structure, and number of operations.
 
 use crate::hard_cases::near_multiples_of_half_pi;
 use crate::oracle::Random;
@@ -143,7 +143,7 @@ fn tracing_is_reproducible() {
     }
 }
 
-// A change of these numbers changes every program that calls the function: it is intended or a regression.
+// If a number changes, every program that calls the function changes. Such a change must be intended.
 #[test]
 fn operation_counts_are_as_documented() {
     let counted: Vec<(&str, usize)> = Function::ALL

@@ -2,14 +2,14 @@
 
 use dashu_float::{FBig, round::mode::HalfEven};
 
-/// Number of 128 bits.
+/// Floating-point number with 128 bits of significand.
 pub type Exact = FBig<HalfEven, 2>;
 
 const PRECISION: usize = 128;
 
-/// Number of arguments in each group. They are equal in every run, so that an asserted maximum is reproduced
+/// Number of arguments in each group. The arguments are equal in every run, so that an asserted maximum is reproduced
 /// exactly.
-pub const SAMPLES: usize = 1000;
+pub const ARGUMENTS_PER_GROUP: usize = 1000;
 
 /// Converts `x` to 128 bits; `None` for infinities and NaN.
 pub fn exact(x: f64) -> Option<Exact> {
@@ -37,7 +37,7 @@ fn exact_or_overflowed(x: f64) -> Option<Exact> {
     exact(x)
 }
 
-/// Returns the exponent of the leading bit; for zero, that of the smallest subnormal.
+/// Returns the exponent of the leading bit; for zero, the exponent of the smallest subnormal.
 fn leading_exponent(x: &Exact) -> isize {
     let repr = x.repr();
     match repr.digits() {
@@ -120,10 +120,12 @@ impl Random {
     }
 }
 
-/// Draws [`SAMPLES`] arguments.
+/// Draws [`ARGUMENTS_PER_GROUP`] arguments.
 pub fn sample<T>(mut draw: impl FnMut(&mut Random) -> T) -> Vec<T> {
     let mut random = Random(1);
-    (0..SAMPLES).map(|_| draw(&mut random)).collect()
+    (0..ARGUMENTS_PER_GROUP)
+        .map(|_| draw(&mut random))
+        .collect()
 }
 
 /// Draws arguments uniformly from `[low, high)`.

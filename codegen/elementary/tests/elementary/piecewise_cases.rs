@@ -2,7 +2,7 @@
 
 const INF: f64 = f64::INFINITY;
 const NAN: f64 = f64::NAN;
-/// Smallest number of single precision.
+/// Smallest positive number of single precision.
 const TINY: f64 = f32::from_bits(1) as f64;
 
 /// `[p, b, deadzone(p, b), contact(p, b)]`.

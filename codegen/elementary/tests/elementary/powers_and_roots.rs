@@ -4,7 +4,7 @@ use crate::hard_cases::roots_near_a_tie;
 use crate::oracle::{Random, assert_pairs_within, sample};
 use eomgen_elementary::{pow, sqrt};
 
-/// Returns a basis and an exponent whose power is anywhere between underflow and overflow.
+/// Returns a base and an exponent whose power can underflow, be finite, or overflow.
 fn with_any_power(random: &mut Random, basis: f64) -> (f64, f64) {
     let logarithm = random.uniform(-745.1, 709.78);
     (basis, logarithm / basis.ln())

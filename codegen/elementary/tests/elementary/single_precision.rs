@@ -7,7 +7,8 @@ use eomgen_elementary::{
 };
 use std::f64::consts::FRAC_PI_2;
 
-/// Distance of sampled bit patterns: a prime, for about 270 000 arguments of either sign.
+/// Difference of two consecutive sampled bit patterns, a prime. The tests sample about 270 000 arguments, of both
+/// signs.
 const STRIDE: usize = 15_991;
 
 /// Largest argument of sine, cosine and tangent with an error of at most two units.
@@ -238,7 +239,7 @@ fn constants_are_single_precision() {
     }
 }
 
-// A change of these numbers changes every program that calls the function: it is intended or a regression.
+// If a number changes, every program that calls the function changes. Such a change must be intended.
 #[test]
 fn operation_counts_are_as_documented() {
     let counted: Vec<(&str, usize)> = Function::ALL
@@ -280,7 +281,7 @@ fn operation_counts_are_as_documented() {
     assert_eq!(sin_cos_kernel::<Single>().operation_count(), 49);
 }
 
-/// All numbers: `cargo test --release -p eomgen-elementary single -- --ignored`, about twenty minutes.
+/// Tests all numbers: `cargo test --release -p eomgen-elementary single -- --ignored`, about twenty minutes.
 #[test]
 #[ignore = "takes minutes"]
 fn all_numbers_are_accurate() {

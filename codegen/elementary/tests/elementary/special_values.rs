@@ -11,7 +11,7 @@ const HALF_PI: f64 = std::f64::consts::FRAC_PI_2;
 const QUARTER_PI: f64 = std::f64::consts::FRAC_PI_4;
 const SMALLEST: f64 = f64::from_bits(1);
 
-/// Asserts equal bits; any NaN equals any other NaN.
+/// Asserts that the result is bit-identical to the expected value; any NaN equals any other NaN.
 #[track_caller]
 fn assert_value(function: Function, arguments: &[f64], expected: f64) {
     let value = function.apply(arguments);
@@ -268,9 +268,9 @@ fn piecewise_functions_have_one_value_in_both_formats() {
     }
 }
 
-/// Their text in emitted code serves all types of numbers.
+/// Emitted code contains one generic definition of these functions for all number types.
 #[test]
-fn generic_functions_have_the_same_arithmetic_and_selections_in_both_formats() {
+fn kernels_of_generic_functions_are_equal_in_both_formats() {
     for function in Function::ALL.into_iter().filter(|f| f.is_generic()) {
         let kernel = function.kernel();
         assert_eq!(
@@ -309,7 +309,7 @@ fn quantised_numbers_are_nearest_multiples() {
     assert_eq!(found, [-1.0, -0.5, -0.0, 0.0, 0.5, 1.0, 1.5]);
     assert_eq!(quantise(0.7, -0.5), 0.5);
     assert!(quantise(1.0, 0.0).is_nan() && quantise(0.0, 0.0).is_nan());
-    // The standard library rounds halves away from zero too.
+    // The standard library also rounds halves away from zero.
     let below_half = 0.5_f64.next_down();
     let mut numbers = vec![
         below_half,

@@ -38,7 +38,7 @@ fn multiples_of_half_pi_are_reduced_accurately() {
         .iter()
         .map(|&x| sin(x).abs().min(cos(x).abs()))
         .fold(1.0, f64::min);
-    // The doubles near multiples of pi/2 are hard cases only if some are as close as chance allows.
+    // The doubles near multiples of pi/2 are hard cases only if some are as near as is possible for doubles.
     assert!(closest < 2f64.powi(-58), "the closest is {closest:e} away");
     assert_within(0.76, arguments.clone(), sin, Exact::sin);
     assert_within(0.77, arguments.clone(), cos, Exact::cos);
