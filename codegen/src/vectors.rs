@@ -3,7 +3,7 @@
 
 use crate::program::evaluator::{Evaluator, Point};
 use crate::program::{Extent, Program, ValueId};
-use crate::statements::{EmitError, File, coefficient_values};
+use crate::statements::{EmitError, File, collect_coefficients};
 
 /// Time, state and inputs of a call.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,7 +72,7 @@ impl TestVectors {
         };
         let mut evaluator = Evaluator::new(program.clone());
         let double = vectors(&mut evaluator, calls.to_vec());
-        let mut evaluator = evaluator.in_single_precision(&coefficient_values(program));
+        let mut evaluator = evaluator.in_single_precision(&collect_coefficients(program));
         let single = vectors(&mut evaluator, calls.iter().map(Given::rounded).collect());
         Self { double, single }
     }

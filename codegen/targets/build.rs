@@ -1,4 +1,4 @@
-//! Tells the program to embed the library of functional mock-up units if `EOMGEN_UNIT` names it.
+//! If `EOMGEN_UNIT` names the library of functional mock-up units, sets the configuration flag to embed it.
 
 fn main() {
     println!("cargo::rustc-check-cfg=cfg(eomgen_unit)");

@@ -22,7 +22,7 @@ pub struct Order {
     pub span: Span,
 }
 
-/// The two forms of the call, for messages.
+/// The two forms of a macro call, for messages.
 const FORMS: &str = "write model! { spec = \"models/arm.toml\", order = 4 }, \
                      or sections such as model! { model { name: arm } kinetic { ... } }";
 
@@ -147,7 +147,7 @@ fn parse_order(key: &Ident, input: ParseStream<'_>) -> syn::Result<Order> {
     }
 }
 
-/// Returns the token after a key, or the key if there is none.
+/// Returns the span of the token after a key, or the span of the key if no token follows.
 fn value_span(key: &Ident, input: ParseStream<'_>) -> Span {
     if input.is_empty() {
         key.span()

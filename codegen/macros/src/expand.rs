@@ -1,4 +1,4 @@
-//! Expands the macro's arguments to the items of a model, through `model-spec` and `codegen`.
+//! Expands the arguments of the macro to the items of a model, by means of `model-spec` and `codegen`.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use crate::findings::{error_in_file, errors_at_tokens, warnings_at_tokens, warni
 use crate::tables::parse_sections;
 use crate::write::write_specification;
 
-/// File name of an inline specification in findings.
+/// File name of an inline specification in messages.
 const INLINE_SOURCE_NAME: &str = "model!";
 
 /// Returns the items of a model, or `compile_error!` for each error. Paths are relative to

@@ -1,4 +1,4 @@
-//! Reports the findings of `model-spec` as errors and warnings of the compiler.
+//! Reports the errors and warnings of `model-spec` as errors and warnings of the compiler.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, Label};
 use proc_macro2::{Ident, Span, TokenStream};
@@ -7,7 +7,7 @@ use syn::Error;
 
 use crate::places::PlacedText;
 
-/// Converts findings on inline sections to errors at their tokens.
+/// Converts the errors in inline sections to compiler errors at their tokens.
 pub fn errors_at_tokens(found: &Diagnostics, placed: &PlacedText) -> Error {
     let mut errors = found.list().iter().map(|finding| {
         let text = message(finding, placed);
@@ -30,13 +30,13 @@ pub fn errors_at_tokens(found: &Diagnostics, placed: &PlacedText) -> Error {
     error
 }
 
-/// Converts findings on a file to one error at `place`, with the lines of the file.
+/// Converts the errors in a file to one compiler error at `place`. Its message contains the lines of the file.
 pub fn error_in_file(found: &Diagnostics, place: Span) -> Error {
     let text = format!("the specification has errors\n\n{}", found.render(false));
     Error::new(place, text)
 }
 
-/// Returns statements that produce a compiler warning for each finding on inline sections.
+/// Returns statements that produce a compiler warning for each warning on inline sections.
 pub fn warnings_at_tokens(found: &Diagnostics, placed: &PlacedText) -> TokenStream {
     let warnings = found.list().iter().map(|finding| {
         let (place, _) =
@@ -46,14 +46,14 @@ pub fn warnings_at_tokens(found: &Diagnostics, placed: &PlacedText) -> TokenStre
     quote!(#(#warnings)*)
 }
 
-/// Returns statements that produce a compiler warning for the findings on a file.
+/// Returns statements that produce one compiler warning for all warnings on a file.
 pub fn warnings_in_file(found: &Diagnostics, place: Span) -> TokenStream {
     let texts = (!found.is_empty()).then(|| found.render(false));
     let warnings = texts.iter().map(|text| warning(text, place));
     quote!(#(#warnings)*)
 }
 
-/// Returns the use of a deprecated constant: a procedural macro cannot emit a warning itself.
+/// Returns statements that use a deprecated constant. A procedural macro has no other means to emit a warning.
 fn warning(text: &str, place: Span) -> TokenStream {
     let name = Ident::new("WARNING", place.resolved_at(Span::mixed_site()));
     let used = quote_spanned!(place=> #name);
@@ -71,7 +71,7 @@ fn token_range(finding: &Diagnostic, placed: &PlacedText) -> Option<(Span, Span)
     placed.token_range(primary.span)
 }
 
-/// Joins message, labels and help of a finding: the compiler underlines only the primary place.
+/// Joins message, labels and help of a diagnostic, because the compiler underlines only the primary location.
 fn message(finding: &Diagnostic, placed: &PlacedText) -> String {
     let mut text = finding.message.clone();
     let primary = finding.primary.iter().filter(|label| label.text != "here");

@@ -1,11 +1,10 @@
 //! The macro `eomgen::model!`: compiles a specification, in a file or in the macro's braces,
 //! into the items that `eomgen generate` emits.
 //!
-//! Pipeline, one file per step: `arguments` (form of the call), `tables` and `write` (inline
-//! sections to the text of a specification, with the token of every part kept in `places`),
-//! `expand` (through `model-spec` and `codegen` to items), `findings` (errors and warnings at
-//! their tokens). Expressions and sections have no grammar here: `model-spec` reads inline
-//! sections as well.
+//! Pipeline, one file per step: `arguments` (form of the call), `tables` and `write` (inline sections to the text of
+//! a specification, with the token of every part kept in `places`), `expand` (from the text to items, by means of
+//! `model-spec` and `codegen`), `findings` (errors and warnings at their tokens). This crate has no grammar of
+//! expressions and sections: `model-spec` reads inline sections, too.
 
 mod arguments;
 mod expand;

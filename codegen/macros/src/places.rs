@@ -1,4 +1,4 @@
-//! Text built from tokens, with the token of each part.
+//! Text built from tokens, with the source token of each part.
 
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ pub struct PlacedText {
 }
 
 impl PlacedText {
-    /// Appends text that belongs to no token.
+    /// Appends text that has no token.
     pub fn push(&mut self, text: &str) {
         self.text.push_str(text);
     }
@@ -27,8 +27,8 @@ impl PlacedText {
         self.marks.push((start..self.text.len(), span));
     }
 
-    /// Returns the first and the last token of a byte range. Without a token in the range, both are
-    /// the last token before it, else the first token of the text. `None` if the text has no token.
+    /// Returns the first and the last token of a byte range. If the range contains no token, both are the last token
+    /// before it, or the first token of the text if none precedes. Returns `None` if the text has no token.
     pub fn token_range(&self, bytes: Bytes) -> Option<(Span, Span)> {
         let (first, last) = self.mark_range(bytes)?;
         Some((self.marks[first].1, self.marks[last].1))
@@ -42,7 +42,7 @@ impl PlacedText {
     }
 
     fn mark_range(&self, bytes: Bytes) -> Option<(usize, usize)> {
-        // An empty range counts as its next byte.
+        // An empty range is treated as the next byte.
         let (start, end) = (bytes.start, bytes.end.max(bytes.start + 1));
         let first = self.marks.partition_point(|(range, _)| range.end <= start);
         let after = self.marks.partition_point(|(range, _)| range.start < end);

@@ -4,7 +4,7 @@
 use proc_macro2::{Delimiter, Group, Ident, Spacing, Span, TokenStream, TokenTree};
 use syn::{Error, LitStr};
 
-/// Deepest nesting of braces and brackets; the next steps recurse over it.
+/// Deepest nesting of braces and brackets that is accepted; later steps recurse over the nesting.
 pub const MAX_DEPTH: usize = 200;
 
 /// A name and its value.
@@ -56,8 +56,8 @@ pub fn parse_sections(stream: TokenStream) -> syn::Result<Vec<Entry>> {
         };
         match tokens.next() {
             Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Brace => {
-                let value = Value::Table(table(&group, 1)?);
-                add(&mut sections, Entry { key, value })?;
+                let value = Value::Table(parse_table(&group, 1)?);
+                add_entry(&mut sections, Entry { key, value })?;
             }
             other => {
                 let place = other.map_or(key.span(), |token| token.span());
@@ -83,7 +83,7 @@ fn flatten_groups(stream: TokenStream) -> Vec<TokenTree> {
     tokens
 }
 
-fn table(group: &Group, depth: usize) -> syn::Result<Table> {
+fn parse_table(group: &Group, depth: usize) -> syn::Result<Table> {
     if depth > MAX_DEPTH {
         let message = format!("braces are nested more than {MAX_DEPTH} deep");
         return Err(Error::new(group.span_open(), message));
@@ -92,13 +92,13 @@ fn table(group: &Group, depth: usize) -> syn::Result<Table> {
     let mut entries = Vec::new();
     let mut rest: &[TokenTree] = &tokens;
     while !rest.is_empty() {
-        let (key, behind) = key(rest)?;
+        let (key, behind) = parse_key(rest)?;
         let length = behind
             .iter()
             .position(is_punctuation(','))
             .unwrap_or(behind.len());
-        let value = value(&key, &behind[..length], depth)?;
-        add(&mut entries, Entry { key, value })?;
+        let value = parse_value(&key, &behind[..length], depth)?;
+        add_entry(&mut entries, Entry { key, value })?;
         rest = behind.get(length + 1..).unwrap_or_default();
     }
     Ok(Table {
@@ -113,7 +113,7 @@ fn is_punctuation(wanted: char) -> impl Fn(&TokenTree) -> bool {
 }
 
 /// Splits an entry into its key and the tokens after the colon.
-fn key(tokens: &[TokenTree]) -> syn::Result<(Ident, &[TokenTree])> {
+fn parse_key(tokens: &[TokenTree]) -> syn::Result<(Ident, &[TokenTree])> {
     match tokens {
         [TokenTree::Ident(key), colon, rest @ ..]
             if is_punctuation(':')(colon) || is_punctuation('=')(colon) =>
@@ -135,14 +135,14 @@ fn key(tokens: &[TokenTree]) -> syn::Result<(Ident, &[TokenTree])> {
     }
 }
 
-fn value(key: &Ident, tokens: &[TokenTree], depth: usize) -> syn::Result<Value> {
+fn parse_value(key: &Ident, tokens: &[TokenTree], depth: usize) -> syn::Result<Value> {
     match tokens {
         [] => {
             let message = format!("`{key}` has no value");
             Err(Error::new(key.span(), message))
         }
         [TokenTree::Group(group)] if group.delimiter() == Delimiter::Brace => {
-            Ok(Value::Table(table(group, depth + 1)?))
+            Ok(Value::Table(parse_table(group, depth + 1)?))
         }
         [TokenTree::Literal(literal)] => {
             let single = TokenStream::from(TokenTree::from(literal.clone()));
@@ -178,7 +178,7 @@ fn reject_two_entries(tokens: &[TokenTree]) -> syn::Result<()> {
     Ok(())
 }
 
-fn add(entries: &mut Vec<Entry>, entry: Entry) -> syn::Result<()> {
+fn add_entry(entries: &mut Vec<Entry>, entry: Entry) -> syn::Result<()> {
     if entries.iter().any(|known| known.key == entry.key) {
         let message = format!("`{}` is given twice", entry.key);
         return Err(Error::new(entry.key.span(), message));

@@ -1,4 +1,4 @@
-//! Inline specifications against files, and the tokens that findings point at.
+//! Inline specifications compared with files, and the tokens at which errors are reported.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -18,16 +18,16 @@ fn placed(text: &str) -> syn::Result<PlacedText> {
     write_specification(&parse_sections(stream)?)
 }
 
-fn refused(text: &str) -> (Diagnostics, PlacedText) {
+fn expect_rejection(text: &str) -> (Diagnostics, PlacedText) {
     let placed = placed(text).expect("sections");
     let source = Source::new("model!", placed.text.as_str());
     let found = eomgen_model_spec::check(source).expect_err("refused");
     (found, placed)
 }
 
-/// Returns the first message and the text of the tokens it points at.
-fn pointed(text: &str) -> (String, String) {
-    let (found, placed) = refused(text);
+/// Returns the first message and the text of the tokens at which it is reported.
+fn first_error_location(text: &str) -> (String, String) {
+    let (found, placed) = expect_rejection(text);
     let first = &found.list()[0];
     let span = first.primary.as_ref().expect("a place").span;
     let shown = placed.token_text(span).expect("tokens");
@@ -62,14 +62,14 @@ fn range_keeps_its_two_ends() {
     assert_eq!(placed(text).expect("sections").text, expected);
 }
 
-/// Writes a specification of a file in the inline form. Quotes remain for prose, and for the
-/// string `1`, which would become a number.
-fn in_place(table: &dyn TableLike) -> String {
+/// Writes the specification of a file in the inline form. Only prose keeps its quotes, and the string `1`, which
+/// would become a number.
+fn write_inline(table: &dyn TableLike) -> String {
     let mut text = String::new();
     for (key, item) in table.iter() {
         let prose = ["title", "doc", "source"].contains(&key);
         let value = match (item.as_table_like(), item.as_str()) {
-            (Some(table), _) => format!("{{ {} }}", in_place(table)),
+            (Some(table), _) => format!("{{ {} }}", write_inline(table)),
             (None, Some(string)) if !prose && string != "1" => string.to_owned(),
             _ => match item.as_array() {
                 Some(array) => {
@@ -98,8 +98,9 @@ fn shipped() -> Vec<PathBuf> {
     paths
 }
 
-/// Returns the emitted items without the hash of the specification and the identity, which contains that of the source.
-fn emitted(source: Source) -> String {
+/// Returns the emitted items without the hash of the specification and without the identity, which contains the hash
+/// of the source.
+fn emit_items(source: Source) -> String {
     let hash = source.hash();
     let model = eomgen_model_spec::check(source).expect("sound").model;
     let orders = model.orders(None).expect("orders");
@@ -118,13 +119,13 @@ fn shipped_specifications_give_the_same_items_inline() {
         let mut sections = String::new();
         for (section, item) in document.iter() {
             let table = item.as_table_like().expect("a section");
-            writeln!(sections, "{section} {{ {} }}", in_place(table)).expect("written");
+            writeln!(sections, "{section} {{ {} }}", write_inline(table)).expect("written");
         }
         let quoted = sections.contains("\"1/2*") || sections.contains("\"rotation_");
         assert!(!quoted, "quotes are left out\n{sections}");
         let placed = placed(&sections).unwrap_or_else(|error| panic!("{error}\n{sections}"));
-        let here = emitted(Source::new("model!", placed.text.as_str()));
-        let there = emitted(Source::new("file", text));
+        let here = emit_items(Source::new("model!", placed.text.as_str()));
+        let there = emit_items(Source::new("file", text));
         assert!(here == there, "{}\n{}", path.display(), placed.text);
     }
 }
@@ -193,7 +194,7 @@ fn findings_point_at_their_tokens() {
             "t",
         ),
     ] {
-        let found = pointed(&format!("{SOUND}{more}"));
+        let found = first_error_location(&format!("{SOUND}{more}"));
         assert_eq!(found, (message.to_owned(), shown.to_owned()), "{more}");
     }
 }
@@ -235,8 +236,8 @@ fn deep_nesting_is_rejected() {
     assert!(nested("{ a: ", "}").contains("nested more than 200 deep"));
 }
 
-/// Returns the first error message of an expansion, else all its tokens.
-fn expanded(text: &str) -> String {
+/// Returns the first error message of an expansion, or all its tokens if there is no error.
+fn expand(text: &str) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../model-spec");
     let tokens = model(text.parse().expect("tokens"), Some(&root)).to_string();
     match tokens.split_once("compile_error ! { \"") {
@@ -290,19 +291,19 @@ fn wrong_arguments_are_rejected() {
             "the model `pendulum` has no field",
         ),
     ] {
-        let found = expanded(text);
+        let found = expand(text);
         assert!(found.starts_with(message), "{text}: {found}");
     }
 }
 
 #[test]
 fn file_is_a_dependency_and_inline_text_is_a_constant() {
-    let file = expanded("spec = \"models/pendulum.toml\"");
+    let file = expand("spec = \"models/pendulum.toml\"");
     assert!(
         file.contains("include_bytes") && file.contains("models/pendulum.toml"),
         "{file}"
     );
-    let here = expanded(SOUND);
+    let here = expand(SOUND);
     assert!(
         here.contains("pub const SPECIFICATION") && !here.contains("include_bytes"),
         "{here}"
@@ -319,13 +320,13 @@ fn path_without_cargo_is_rejected() {
 #[test]
 fn unused_input_gives_a_warning() {
     let text = format!("{SOUND} inputs {{ u: {{ unit: N }} }}");
-    let tokens = expanded(&text);
+    let tokens = expand(&text);
     assert!(
         tokens.contains("deprecated")
             && tokens.contains("the specification does not use the input `u`"),
         "{tokens}"
     );
-    assert!(!expanded(SOUND).contains("deprecated"));
+    assert!(!expand(SOUND).contains("deprecated"));
 }
 
 const PENDULUM: &str = "model { name : pendulum } parameters { m : { value : 1 , unit : kg } , \
@@ -334,9 +335,9 @@ const PENDULUM: &str = "model { name : pendulum } parameters { m : { value : 1 ,
     definitions { y : - l * cos ( theta ) } kinetic { bob : 1 / 2 * m * ( l * dot ( theta ) ) ^ 2 } \
     potential { gravity : m * g * y } forces { motor : { on : theta , value : \"-0\" } }";
 
-/// Returns every text made from `words` with one word removed, doubled, or replaced by the next
-/// word or by a foreign token.
-fn slips(words: &[&str]) -> Vec<String> {
+/// Returns all mutations of the text `words`: one word is removed, doubled, or replaced by the next word or by a
+/// foreign token.
+fn mutations(words: &[&str]) -> Vec<String> {
     let slip = |index: usize, with: &[&str]| {
         let behind = &words[index + 1..];
         [&words[..index], with, behind].concat().join(" ")
@@ -367,8 +368,8 @@ fn slips(words: &[&str]) -> Vec<String> {
 fn every_mutation_gives_items_or_errors() {
     let words: Vec<&str> = PENDULUM.split_whitespace().collect();
     let (mut errors, mut items) = (0, 0);
-    for text in slips(&words) {
-        // Text that is not Rust never reaches a macro.
+    for text in mutations(&words) {
+        // The compiler passes only valid Rust tokens to a macro.
         let Ok(stream) = text.parse() else { continue };
         let tokens = model(stream, None).to_string();
         let refused = tokens.contains("compile_error !");

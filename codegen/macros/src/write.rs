@@ -1,5 +1,5 @@
-//! Writes the tables of a macro as the text of a specification. The text, and so its hash, does
-//! not depend on the spacing of the tokens.
+//! Writes the tables of a macro as the text of a specification. The text and its hash do not depend on the spacing of
+//! the tokens.
 
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenTree};
 use syn::Error;
@@ -15,31 +15,31 @@ pub fn write_specification(sections: &[Entry]) -> syn::Result<PlacedText> {
     let mut placed = PlacedText::default();
     for (index, section) in sections.iter().enumerate() {
         placed.push(if index == 0 { "[" } else { "\n[" });
-        key(&mut placed, &section.key);
+        write_key(&mut placed, &section.key);
         placed.push("]\n");
         let Value::Table(table) = &section.value else {
             continue;
         };
         for entry in &table.entries {
-            self::entry(&mut placed, entry)?;
+            self::write_entry(&mut placed, entry)?;
             placed.push("\n");
         }
     }
     Ok(placed)
 }
 
-fn entry(placed: &mut PlacedText, entry: &Entry) -> syn::Result<()> {
-    key(placed, &entry.key);
+fn write_entry(placed: &mut PlacedText, entry: &Entry) -> syn::Result<()> {
+    write_key(placed, &entry.key);
     placed.push(" = ");
     match &entry.value {
-        Value::Table(inline) => table(placed, inline),
+        Value::Table(inline) => write_table(placed, inline),
         Value::Text(text) => {
             placed.push_token(&format!("\"{}\"", escape(&text.value())), text.span());
             Ok(())
         }
         Value::Tokens(tokens) => match tokens.as_slice() {
-            [TokenTree::Group(group)] if is_array(group) => array(placed, group),
-            tokens => expression(placed, tokens),
+            [TokenTree::Group(group)] if is_array(group) => write_array(placed, group),
+            tokens => write_expression(placed, tokens),
         },
     }
 }
@@ -56,7 +56,7 @@ fn is_array(group: &Group) -> bool {
 }
 
 /// Writes values between brackets, for example the ends of a range.
-fn array(placed: &mut PlacedText, group: &Group) -> syn::Result<()> {
+fn write_array(placed: &mut PlacedText, group: &Group) -> syn::Result<()> {
     placed.push_token("[", group.span_open());
     let tokens: Vec<TokenTree> = group.stream().into_iter().collect();
     let mut elements: Vec<&[TokenTree]> = tokens.split(is_comma).collect();
@@ -66,17 +66,17 @@ fn array(placed: &mut PlacedText, group: &Group) -> syn::Result<()> {
     }
     for (index, element) in elements.into_iter().enumerate() {
         placed.push(if index == 0 { "" } else { ", " });
-        expression(placed, element)?;
+        write_expression(placed, element)?;
     }
     placed.push_token("]", group.span_close());
     Ok(())
 }
 
-fn table(placed: &mut PlacedText, table: &Table) -> syn::Result<()> {
+fn write_table(placed: &mut PlacedText, table: &Table) -> syn::Result<()> {
     placed.push_token("{", table.open);
     for (index, entry) in table.entries.iter().enumerate() {
         placed.push(if index == 0 { " " } else { ", " });
-        self::entry(placed, entry)?;
+        self::write_entry(placed, entry)?;
     }
     placed.push(" ");
     placed.push_token("}", table.close);
@@ -84,7 +84,7 @@ fn table(placed: &mut PlacedText, table: &Table) -> syn::Result<()> {
 }
 
 /// Writes a name, quoted if TOML does not allow its letters in a bare key.
-fn key(placed: &mut PlacedText, key: &Ident) {
+fn write_key(placed: &mut PlacedText, key: &Ident) {
     let name = key.to_string();
     let bare = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
     if name.bytes().all(bare) {
@@ -94,8 +94,8 @@ fn key(placed: &mut PlacedText, key: &Ident) {
     }
 }
 
-/// Writes a number as it is, any other expression in quotes.
-fn expression(placed: &mut PlacedText, tokens: &[TokenTree]) -> syn::Result<()> {
+/// Writes a number unchanged, and any other expression in quotes.
+fn write_expression(placed: &mut PlacedText, tokens: &[TokenTree]) -> syn::Result<()> {
     let mut pieces = Vec::new();
     for token in tokens {
         split_token(token, 1, &mut pieces)?;
@@ -106,7 +106,7 @@ fn expression(placed: &mut PlacedText, tokens: &[TokenTree]) -> syn::Result<()> 
         let apart = index > 0 && pieces[index - 1].is_word && (piece.is_word || piece.text == ".");
         placed.push(if apart { " " } else { "" });
         placed.push_token(&escape(&piece.text), piece.span);
-        // A trailing comma of the user gets no space.
+        // No space is added after a trailing comma.
         let goes_on = index + 1 < pieces.len();
         placed.push(if goes_on && piece.text == "," {
             " "
@@ -114,15 +114,15 @@ fn expression(placed: &mut PlacedText, tokens: &[TokenTree]) -> syn::Result<()> 
             ""
         });
     }
-    // The quote has no token: a finding at the end of the expression points at the last token.
+    // The quote has no token: an error at the end of the expression is reported at the last token.
     placed.push(quote);
     Ok(())
 }
 
-/// Token of Rust, with each bracket as a token.
+/// Rust token; each bracket is a separate piece.
 struct Piece {
     text: String,
-    /// True for a name or a literal, which needs a space before the next one.
+    /// True for a name or a literal. A space is needed between two of these.
     is_word: bool,
     span: Span,
 }
@@ -168,8 +168,8 @@ fn split_token(token: &TokenTree, depth: usize, pieces: &mut Vec<Piece>) -> syn:
     Ok(())
 }
 
-/// Returns true if the pieces are a number of TOML: a sign, digits, an optional fraction and an
-/// optional exponent. TOML has no `2.` and no `.5`; expressions do.
+/// Returns true if the pieces form a TOML number: a sign, digits, an optional fraction and an optional exponent. `2.`
+/// and `.5` are not valid in TOML, but valid in expressions.
 fn is_number(pieces: &[Piece]) -> bool {
     let literal = match pieces {
         [literal] => literal,

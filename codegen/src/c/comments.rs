@@ -17,7 +17,7 @@ pub(super) fn comment(lines: &[String]) -> String {
     }
 }
 
-/// Splits the generator's documentation into lines; links in brackets become C names.
+/// Splits documentation written by the generator into lines, and replaces links in brackets by C names.
 pub(super) fn resolve_links(program: &Program, lines: &str) -> Vec<String> {
     let mut text = String::with_capacity(lines.len());
     let mut rest = lines;
@@ -34,8 +34,7 @@ pub(super) fn resolve_links(program: &Program, lines: &str) -> Vec<String> {
     text.split('\n').map(str::to_owned).collect()
 }
 
-/// Removes beginnings and ends of comments, control characters, characters that change the direction of text,
-/// and trigraphs.
+/// Removes comment delimiters, control characters, bidirectional control characters and trigraphs.
 pub(super) fn clean(text: &str) -> String {
     let mut clean = String::with_capacity(text.len());
     for c in text.chars() {

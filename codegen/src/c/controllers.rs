@@ -3,38 +3,38 @@
 use std::collections::BTreeMap;
 
 use super::comments::comment;
-use super::expression::{Writer, assignment};
+use super::expression::{Writer, write_assignment};
 use super::names::fill_template;
-use super::stages::{head, nest_lines};
+use super::stages::{nest_lines, write_head};
 use crate::program::{Program, ProgramController, Quantity};
 use crate::statements::layout::block;
 use crate::statements::{
-    ControllerStage, ControllerStages, EmitError, EmitResult, TIMES, quantity_line,
+    ControllerStage, ControllerStages, EmitError, EmitResult, TIME_FIELDS, describe_quantity,
 };
 
-/// Types and names of the arguments of `start` and `update`; NAME_controller_ is followed by the controller's name.
-const START: [(&str, &str); 2] = [
+/// Types and names of the arguments of `start` and `update`; OWN stands for the name of the controller.
+const START_ARGUMENTS: [(&str, &str); 2] = [
     ("const NAME_parameters *", "parameters"),
     ("NAME_controller_OWN *", "memory"),
 ];
-const UPDATE: [(&str, &str); 4] = [
+const UPDATE_ARGUMENTS: [(&str, &str); 4] = [
     ("NAME_controller_OWN *", "memory"),
     ("const NAME_controller_OWN_measured *", "measured"),
     ("const NAME_parameters *", "parameters"),
     ("NAME_controller_OWN_outputs *", "outputs"),
 ];
 
-/// Ends of the names of the types and functions of a controller, after NAME_controller_OWN.
-const NAME_ENDS: [&str; 5] = ["", "_measured", "_outputs", "_start", "_update"];
+/// Suffixes of the names of the types and functions of a controller, after NAME_controller_OWN.
+const NAME_SUFFIXES: [&str; 5] = ["", "_measured", "_outputs", "_start", "_update"];
 
 /// Checks that no two controllers have a type or function of the same name.
 ///
 /// # Errors
-/// The first name that two controllers have.
-pub(super) fn check_names(program: &Program) -> EmitResult<()> {
+/// Two controllers give the same name; the error contains the first such name.
+pub(super) fn check_name_collisions(program: &Program) -> EmitResult<()> {
     let mut owners: BTreeMap<String, &str> = BTreeMap::new();
     for controller in &program.controllers {
-        for end in NAME_ENDS {
+        for end in NAME_SUFFIXES {
             let name = format!("{}_controller_{}{end}", program.name, controller.name);
             if let Some(other) = owners.insert(name.clone(), &controller.name) {
                 return Err(EmitError::Collision {
@@ -48,20 +48,20 @@ pub(super) fn check_names(program: &Program) -> EmitResult<()> {
 }
 
 /// Returns the declarations for the header.
-pub(super) fn declarations(program: &Program) -> String {
+pub(super) fn write_declarations(program: &Program) -> String {
     let all = program.controllers.iter();
-    all.map(|controller| declaration(program, controller))
+    all.map(|controller| write_declaration(program, controller))
         .collect()
 }
 
-fn declaration(program: &Program, controller: &ProgramController) -> String {
+fn write_declaration(program: &Program, controller: &ProgramController) -> String {
     let quantity = |quantity: &Quantity| {
-        comment(&[quantity_line(&quantity.doc, &quantity.unit, "")])
+        comment(&[describe_quantity(&quantity.doc, &quantity.unit, "")])
             + &fill_template(program, &format!("NAME_real {};\n", quantity.name))
     };
     let quantities = |all: &[Quantity]| -> String { all.iter().map(quantity).collect() };
-    let times = TIMES.map(|(name, doc)| {
-        comment(&[quantity_line(doc, "s", "")])
+    let times = TIME_FIELDS.map(|(name, doc)| {
+        comment(&[describe_quantity(doc, "s", "")])
             + &fill_template(program, &format!("NAME_real {name};\n"))
     });
     let own = &controller.name;
@@ -75,13 +75,13 @@ fn declaration(program: &Program, controller: &ProgramController) -> String {
     };
     let measured = quantities(&controller.measured);
     let outputs = quantities(&controller.outputs);
-    let mut text = structure(program, &described, own, memory);
+    let mut text = write_structure(program, &described, own, memory);
     let doc = format!("Quantities that `{own}` measures at a sample, before it changes an input.");
-    text += &structure(program, &doc, &format!("{own}_measured"), measured);
+    text += &write_structure(program, &doc, &format!("{own}_measured"), measured);
     let doc = format!(
         "Inputs that `{own}` drives: they act after its delay, and are held until the next ones act."
     );
-    text += &structure(program, &doc, &format!("{own}_outputs"), outputs);
+    text += &write_structure(program, &doc, &format!("{own}_outputs"), outputs);
     for (function, doc) in [
         ("start", "Sets the times and the initial states."),
         (
@@ -90,12 +90,12 @@ fn declaration(program: &Program, controller: &ProgramController) -> String {
         ),
     ] {
         text += &comment(&[doc.to_owned()]);
-        text += &format!("{};\n", function_head(program, own, function, false));
+        text += &format!("{};\n", write_function_head(program, own, function, false));
     }
     text
 }
 
-fn structure(program: &Program, doc: &str, name: &str, fields: String) -> String {
+fn write_structure(program: &Program, doc: &str, name: &str, fields: String) -> String {
     let fields = match fields.is_empty() {
         true => comment(&["Placeholder: C has no empty structures.".to_owned()]) + "char none;\n",
         false => fields,
@@ -104,10 +104,15 @@ fn structure(program: &Program, doc: &str, name: &str, fields: String) -> String
     comment(&[doc.to_owned()]) + &nest_lines("typedef struct {", &fields, &closing)
 }
 
-fn function_head(program: &Program, own: &str, function: &str, is_definition: bool) -> String {
+fn write_function_head(
+    program: &Program,
+    own: &str,
+    function: &str,
+    is_definition: bool,
+) -> String {
     let arguments: &[(&str, &str)] = match function {
-        "start" => &START,
-        _ => &UPDATE,
+        "start" => &START_ARGUMENTS,
+        _ => &UPDATE_ARGUMENTS,
     };
     let typed = arguments
         .iter()
@@ -115,11 +120,11 @@ fn function_head(program: &Program, own: &str, function: &str, is_definition: bo
     let typed: Vec<(String, &str)> = typed.collect();
     let typed: Vec<(&str, &str)> = typed.iter().map(|(of, name)| (&**of, *name)).collect();
     let name = format!("controller_{own}_{function}");
-    head(program, ("void ", &name), &typed, is_definition)
+    write_head(program, ("void ", &name), &typed, is_definition)
 }
 
 /// Returns the definitions of the functions of a controller.
-pub(super) fn definitions(
+pub(super) fn write_definitions(
     program: &Program,
     controller: &ProgramController,
     stages: &ControllerStages,
@@ -130,13 +135,13 @@ pub(super) fn definitions(
         for (structure, fields) in [("outputs", &stage.outputs), ("memory", &stage.memory)] {
             for (field, value) in fields {
                 let target = format!("{structure}->{field}");
-                lines += &assignment(&target, &writer.expression(value));
+                lines += &write_assignment(&target, &writer.expression(value));
             }
         }
         let is_unused = |name: &&&str| !lines.contains(&format!("{name}->"));
         let unused = unused.iter().filter(is_unused);
         let unused: String = unused.map(|name| format!("(void){name};\n")).collect();
-        let head = function_head(program, &controller.name, name, true);
+        let head = write_function_head(program, &controller.name, name, true);
         block(&format!("{head} {{"), &(unused + &lines), "}")
     };
     let given = ["memory", "measured", "parameters", "outputs"];

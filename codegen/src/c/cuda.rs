@@ -1,22 +1,20 @@
 //! Header of a program for CUDA C++: the functions of the emitted C as device functions.
 //!
-//! [`emit`](super::emit::emit) starts every declaration and definition in the first column. This module adds the
-//! qualifiers of CUDA to these lines, and leaves out the lists of names, units and ranges, which only the host can read.
+//! [`emit`](super::emit::emit) starts every declaration and definition in the first column. This module adds the CUDA
+//! qualifiers to these lines. It omits the arrays of names, units and ranges, which only the host can read.
 
 use super::comments::comment;
 use super::emit::emit;
-use super::header::documentation;
+use super::header::describe_file;
 use super::names::fill_template;
 use crate::program::Program;
 use crate::statements::EmitError;
 
-/// Qualifier of functions.
-const FUNCTION: &str = "inline __device__ ";
+const FUNCTION_QUALIFIER: &str = "inline __device__ ";
 
-/// Qualifier of tables.
-const TABLE: &str = "static __device__ ";
+const TABLE_QUALIFIER: &str = "static __device__ ";
 
-/// Lines of the header that declare the functions for C, which device functions do not need.
+/// Lines of the C header that declare C linkage. Device functions do not need them.
 const LINKAGE: [&str; 2] = [
     "#ifdef __cplusplus\nextern \"C\" {\n#endif\n",
     "#ifdef __cplusplus\n}\n#endif\n",
@@ -29,7 +27,7 @@ const LINKAGE: [&str; 2] = [
 pub fn emit_cuda(program: &Program) -> Result<String, EmitError> {
     let files = emit(program)?;
     let name = &program.name;
-    let mut text = comment(&notes(program));
+    let mut text = comment(&write_notes(program));
     text += &fill_template(program, OPENING);
     let header = LINKAGE
         .iter()
@@ -37,22 +35,22 @@ pub fn emit_cuda(program: &Program) -> Result<String, EmitError> {
     for part in [&header, &files.source] {
         let is_for_hosts = |line: &&str| line.starts_with("#include") || line.contains("_macro(\"");
         let lines = part.lines().filter(|line| !is_for_hosts(line));
-        text += &convert(lines, name);
+        text += &convert_to_cuda(lines, name);
     }
     text += &fill_template(program, CLOSING);
     Ok(text)
 }
 
-fn notes(program: &Program) -> Vec<String> {
+fn write_notes(program: &Program) -> Vec<String> {
     let name = &program.name;
     let text = format!(
         "\nDevice functions in double precision, or in single precision with -D{name}_REAL=float. They do\n\
          not allocate or call a library. `{name}_prepare` needs one call for each set of parameters.\n\
          \n\
-         Compile with -fmad=false. The results then have the same bits as those of the emitted C and Rust.\n\
+         Compile with -fmad=false. The results are then bit-identical to those of the emitted C and Rust.\n\
          `{name}_is_unfused` tests this on the device."
     );
-    let mut lines = documentation(program);
+    let mut lines = describe_file(program);
     lines.extend(text.split('\n').map(str::to_owned));
     lines
 }
@@ -69,7 +67,8 @@ typedef unsigned long long uint64_t;
 #endif
 ";
 
-/// Lines after the definitions. The square of 1 + 2^-n has the last bit 2^-2n, which a rounded product does not keep.
+/// Lines after the definitions. The square of 1 + 2^-n contains the term 2^-2n, which is lost if the product is
+/// rounded.
 const CLOSING: &str = "
 /**
  * Returns 1 if the compiler rounds each product before it is added, as -fmad=false prescribes. `one` is 1, and unknown to the
@@ -84,8 +83,9 @@ inline __device__ int NAME_is_unfused(NAME_real one) {
 #endif
 ";
 
-/// Adds the qualifiers to the lines of C. Removes the first comment, and the lists for callers with their documentation.
-fn convert<'l>(mut lines: impl Iterator<Item = &'l str>, name: &str) -> String {
+/// Adds the CUDA qualifiers to the lines of C. Removes the file comment, and the arrays of names, units and ranges
+/// with their documentation.
+fn convert_to_cuda<'l>(mut lines: impl Iterator<Item = &'l str>, name: &str) -> String {
     let mut text = String::new();
     let mut documentation = String::new();
     let mut is_first_comment = true;
@@ -98,7 +98,7 @@ fn convert<'l>(mut lines: impl Iterator<Item = &'l str>, name: &str) -> String {
             continue;
         }
         let documentation = std::mem::take(&mut documentation);
-        if is_list_for_callers(line, name) {
+        if is_data_array(line, name) {
             take_until(line, &mut lines, ";");
         } else {
             text += &documentation;
@@ -121,13 +121,13 @@ fn take_until<'l>(first: &str, lines: &mut impl Iterator<Item = &'l str>, end: &
     text
 }
 
-/// Returns the head of the line that defines the identity.
+/// Returns the start of the line that defines the identity.
 fn identity_head(name: &str) -> String {
     format!("const char {name}_identity[] = ")
 }
 
-/// Returns true for the first line of a list for callers, and for declarations of lists.
-fn is_list_for_callers(line: &str, name: &str) -> bool {
+/// Returns true for the first line of an array of names, units or ranges, and for the declaration of such an array.
+fn is_data_array(line: &str, name: &str) -> bool {
     let is_list = ["const ", "extern const "];
     is_list.iter().any(|head| line.starts_with(head)) && !line.starts_with(&identity_head(name))
 }
@@ -142,15 +142,15 @@ fn qualify(line: &str, name: &str) -> String {
         return line.to_owned();
     }
     if line.starts_with("static const ") {
-        return format!("{TABLE}{}", &line["static ".len()..]);
+        return format!("{TABLE_QUALIFIER}{}", &line["static ".len()..]);
     }
     if line.starts_with(&identity_head(name)) {
-        return format!("{TABLE}{line}");
+        return format!("{TABLE_QUALIFIER}{line}");
     }
     let head = line.strip_prefix("static ").unwrap_or(line);
     let head = head.strip_prefix("inline ").unwrap_or(head);
     match line.contains(&format!("{name}_")) && line.contains('(') {
-        true => format!("{FUNCTION}{head}"),
+        true => format!("{FUNCTION_QUALIFIER}{head}"),
         false => line.to_owned(),
     }
 }

@@ -2,25 +2,25 @@ use std::collections::BTreeSet;
 
 use super::comments::comment;
 use super::controllers;
-use super::expression::{initialiser, number};
+use super::expression::{number, write_initialiser};
 use super::file_names::check_header;
-use super::functions::functions;
-use super::header::{self, UNBOUNDED, documentation, lists};
+use super::functions::write_functions;
+use super::header::{self, UNBOUNDED, describe_file, lists};
 use super::jacobians;
 use super::names::{WORDS, fill_template};
 use super::real::Real;
-use super::regimes::regime;
-use super::stages::definition;
+use super::regimes::write_regime;
+use super::stages::write_definition;
 use super::standard_macros::{find_macros, hide_macros};
 use super::step;
-use super::types::fill_functions;
+use super::types::write_fill_functions;
 use crate::identity::{seal, unsealed};
 use crate::program::{Extent, Op, Program};
 use crate::statements::layout;
 use crate::statements::{
-    EmitError, EmitResult, File, RequiredFunctions, Stage, controller_stages, guards,
-    jacobian_stage, mass_matrix, observables, preparation, rates, rates_in_regime,
-    requested_stages, stage_roots,
+    EmitError, EmitResult, File, RequiredFunctions, Stage, build_controller_stages, build_guards,
+    build_jacobian_stage, build_mass_matrix, build_observables, build_preparation, build_rates,
+    build_rates_in_regime, build_requested_stages, collect_stage_roots,
 };
 
 /// C files of a program.
@@ -35,7 +35,7 @@ pub struct Files {
 /// Writes a program as C99 that is also valid C++, in double precision.
 ///
 /// # Errors
-/// A name of the program that is a word of C or C++, or the name of a system header.
+/// A name of the program is a reserved word of C or C++, or the header would have the name of a system header.
 pub fn emit(program: &Program) -> Result<Files, EmitError> {
     emit_with(program, Real::Double)
 }
@@ -47,9 +47,9 @@ pub fn emit(program: &Program) -> Result<Files, EmitError> {
 pub fn emit_with(program: &Program, real: Real) -> Result<Files, EmitError> {
     check_header(&program.name)?;
     let parts = Parts::new(program, real)?;
-    let notes = header::notes(program, real, header::TWO_FILES);
+    let notes = header::write_notes(program, real, header::TWO_FILES);
     let include = format!("#include \"{}.h\"\n", program.name);
-    let source = comment(&documentation(program)) + &include + &parts.definitions;
+    let source = comment(&describe_file(program)) + &include + &parts.definitions;
     Ok(Files {
         header: layout::source(&(notes + &parts.declarations)),
         source: seal(&layout::source(&source)),
@@ -68,7 +68,7 @@ pub fn emit_header_only(program: &Program, real: Real) -> Result<String, EmitErr
         definitions,
     } = Parts::new(program, real)?;
     let [hide, restore] = hide_macros(["R"]);
-    let notes = header::notes(program, real, header::HEADER_ONLY);
+    let notes = header::write_notes(program, real, header::HEADER_ONLY);
     let opening = "#if defined(NAME_IMPLEMENTATION) && !defined(NAME_IMPLEMENTED)\n#define NAME_IMPLEMENTED\n";
     let closing = format!(
         "#if defined(__clang__)\n#pragma STDC FP_CONTRACT DEFAULT\n\
@@ -88,7 +88,7 @@ pub fn emit_header_only(program: &Program, real: Real) -> Result<String, EmitErr
     Ok(seal(&layout::source(&text.concat())))
 }
 
-/// Emitted C without the comment at its top, with marks of the layout.
+/// Emitted C with layout marks, without the comment at its top.
 struct Parts {
     declarations: String,
     definitions: String,
@@ -97,28 +97,28 @@ struct Parts {
 impl Parts {
     fn new(program: &Program, real: Real) -> Result<Self, EmitError> {
         let file = File::new(program, &WORDS)?;
-        controllers::check_names(program)?;
+        controllers::check_name_collisions(program)?;
         let mut needed = RequiredFunctions::default();
-        let prepared = preparation(&file, &mut needed)?;
-        let stages = stages(&file, &mut needed)?;
-        let declarations = header::header(&file, &prepared, &stages, real)?;
-        let mut defined = fill_functions(&file, prepared)?;
+        let prepared = build_preparation(&file, &mut needed)?;
+        let stages = build_stages(&file, &mut needed)?;
+        let declarations = header::write_header(&file, &prepared, &stages, real)?;
+        let mut defined = write_fill_functions(&file, prepared)?;
         for stage in stages {
-            defined += &definition(program, stage);
+            defined += &write_definition(program, stage);
         }
-        defined += &regime(&file);
-        defined += &step::definition(program);
-        defined += &jacobians::definitions(program);
+        defined += &write_regime(&file);
+        defined += &step::write_definition(program);
+        defined += &jacobians::write_definitions(program);
         for controller in &program.controllers {
-            let stages = controller_stages(&file, controller, &mut needed)?;
-            defined += &controllers::definitions(program, controller, &stages);
+            let stages = build_controller_stages(&file, controller, &mut needed)?;
+            defined += &controllers::write_definitions(program, controller, &stages);
         }
-        let mut text = opening(program);
+        let mut text = write_opening(program);
         text += &fill_template(program, UNBOUNDED);
-        text += &tables(&file)?;
-        text += &functions(program, &needed, &defined);
+        text += &write_tables(&file)?;
+        text += &write_functions(program, &needed, &defined);
         for (head, elements, _) in lists(program) {
-            text += &format!("{head} = {};\n", initialiser(&elements));
+            text += &format!("{head} = {};\n", write_initialiser(&elements));
         }
         text += &comment(&["Identity, for `eomgen identify`.".to_owned()]);
         text += &format!(
@@ -126,7 +126,7 @@ impl Parts {
             program.name,
             unsealed(program)
         );
-        // The header of mathematics, which these names can hide, is included before.
+        // `<math.h>` is included above these lines, because they can hide its macros.
         let [hide, restore] = hide_macros(find_macros(&defined));
         text += &[&*hide, &defined, &restore, "#undef R\n"].concat();
         Ok(Self {
@@ -136,25 +136,27 @@ impl Parts {
     }
 }
 
-fn stages(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Vec<Stage>> {
-    let mut stages = vec![rates(file, needed)?];
-    stages.extend(observables(file, needed)?);
-    stages.push(guards(file, needed)?);
-    stages.push(mass_matrix(file, needed)?);
-    stages.extend(rates_in_regime(file, needed)?);
-    stages.extend(requested_stages(file, needed)?);
+fn build_stages(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Vec<Stage>> {
+    let mut stages = vec![build_rates(file, needed)?];
+    stages.extend(build_observables(file, needed)?);
+    stages.push(build_guards(file, needed)?);
+    stages.push(build_mass_matrix(file, needed)?);
+    stages.extend(build_rates_in_regime(file, needed)?);
+    stages.extend(build_requested_stages(file, needed)?);
     for jacobian in &file.program.outputs.jacobians {
-        stages.push(jacobian_stage(file, jacobian, needed)?);
+        stages.push(build_jacobian_stage(file, jacobian, needed)?);
     }
     Ok(stages)
 }
 
-/// Condition that gcc contracts products and sums: as C++, or with a dialect of GNU C. It ignores the pragma of C99.
+/// Condition under which gcc ignores the C99 pragma against contraction of products and sums: C++, or a GNU dialect
+/// of C.
 const GCC_CONTRACTS: &str = "#elif defined(__GNUC__) && !defined(__CUDACC__) && \
     (defined(__cplusplus) || !defined(__STRICT_ANSI__))";
 
-/// Writes the first lines of the source: products and sums stay separate, and sums in their order.
-fn opening(program: &Program) -> String {
+/// Writes the first lines of the source, which forbid the contraction of products and sums and the reordering of
+/// sums.
+fn write_opening(program: &Program) -> String {
     let settings = format!(
         "#if defined(__FAST_MATH__) && !defined(NAME_ALLOW_REASSOCIATION)\n\
          #error \"-ffast-math changes bits: remove it, or define NAME_ALLOW_REASSOCIATION\"\n#endif\n\
@@ -173,9 +175,9 @@ fn opening(program: &Program) -> String {
         )
 }
 
-fn tables(file: &File<'_>) -> EmitResult<String> {
+fn write_tables(file: &File<'_>) -> EmitResult<String> {
     let program = file.program;
-    let mut roots = stage_roots(program);
+    let mut roots = collect_stage_roots(program);
     roots.extend(&program.pivots);
     let reached = program.reachable(&roots);
     let used: BTreeSet<usize> = reached
@@ -196,11 +198,11 @@ fn tables(file: &File<'_>) -> EmitResult<String> {
             .collect();
         let (extents, content) = match table.extent {
             Extent::Matrix(rows, columns) => {
-                let lines = values.chunks(columns.max(1)).map(initialiser);
+                let lines = values.chunks(columns.max(1)).map(write_initialiser);
                 let lines: Vec<String> = lines.collect();
-                (format!("[{rows}][{columns}]"), initialiser(&lines))
+                (format!("[{rows}][{columns}]"), write_initialiser(&lines))
             }
-            other => (format!("[{}]", other.length()), initialiser(&values)),
+            other => (format!("[{}]", other.length()), write_initialiser(&values)),
         };
         text += &comment(std::slice::from_ref(&table.doc));
         let head = fill_template(

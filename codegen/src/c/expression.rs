@@ -12,7 +12,7 @@ use crate::statements::layout::{
     BLOCK, CLOSE, COMMA_OUT, DEEPER, FLOW, FLOW_OUT, SHALLOWER, SPACE, ZERO, block,
 };
 use crate::statements::{
-    Array, Expression, Index, Notes, Operator, Place, Span, Statement, Structure,
+    ArgumentStruct, Array, Expression, Index, Notes, Operator, Place, Span, Statement,
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -28,13 +28,13 @@ enum Level {
 pub(super) struct Writer {
     /// Prefix of functions, types and tables.
     prefix: String,
-    /// Type of numbers.
+    /// Number type.
     pub(super) real: String,
-    /// True if that type can be narrower than literals, which are then converted.
-    narrow: bool,
-    /// Number by which kernels round.
+    /// True if the number type can be narrower than `double`. Literals are then converted.
+    is_narrow: bool,
+    /// Number c by which kernels round: x + c - c.
     rounding_aligner: f64,
-    /// Origin of the values of the function.
+    /// Units and terms of the named values, written as comments.
     pub(super) notes: Notes,
 }
 
@@ -43,17 +43,17 @@ impl Writer {
         Self {
             prefix: format!("{}_", program.name),
             real: format!("{}_real", program.name),
-            narrow: true,
+            is_narrow: true,
             rounding_aligner: Double::ROUNDING_ALIGNER,
             notes: Notes::new(),
         }
     }
 
-    /// Creates the writer of kernels in a format.
+    /// Creates a writer of kernels in a number format.
     pub(super) fn in_format<P: CFormat>(program: &Program) -> Self {
         Self {
             real: P::NUMBER.to_owned(),
-            narrow: P::NUMBER == "float",
+            is_narrow: P::NUMBER == "float",
             rounding_aligner: P::ROUNDING_ALIGNER,
             ..Self::new(program)
         }
@@ -78,7 +78,7 @@ impl Writer {
         text
     }
 
-    /// Writes the origin of the value that a statement defines.
+    /// Writes a comment with unit and terms of the value that a statement defines.
     fn note(&self, statement: &Statement) -> String {
         let note = statement.defined().and_then(|name| self.notes.get(name));
         note.map_or_else(String::new, |note| format!("/* {} */\n", clean(note)))
@@ -105,7 +105,7 @@ impl Writer {
                 self.set_flag(&place.name, value)
             }
             Statement::Assign(place, value) => {
-                assignment(&place_text(place), &self.expression(value))
+                write_assignment(&write_target(place), &self.expression(value))
             }
             Statement::Loop { index, span, lines } => {
                 write_loop_over(index, span, &self.statements(lines))
@@ -117,9 +117,9 @@ impl Writer {
                 span,
                 product,
             } => {
-                let defined = assignment(&format!("{real} {name}"), &self.expression(first));
+                let defined = write_assignment(&format!("{real} {name}"), &self.expression(first));
                 let rest = Expression::subtract(&Expression::name(*name), product);
-                let line = assignment(name, &self.expression(&rest));
+                let line = write_assignment(name, &self.expression(&rest));
                 defined + &write_loop_over(index, span, &line)
             }
             Statement::Sum {
@@ -146,7 +146,7 @@ impl Writer {
 
     pub(super) fn write_definition(&self, name: &str, value: &Expression) -> String {
         let value = self.expression(value);
-        assignment(&format!("const {} {name}", self.real), &value)
+        write_assignment(&format!("const {} {name}", self.real), &value)
     }
 
     fn zeros(&self, name: &str, lengths: &[usize]) -> String {
@@ -155,8 +155,8 @@ impl Writer {
         format!("{} {name}{extents} = {open}0{close};\n", self.real)
     }
 
-    /// Writes a sum: each of the first elements begins a partial sum, every eighth element after it is added
-    /// in order, then neighbours are added in pairs.
+    /// Writes a sum in eight partial sums: sum k contains the elements k, k + 8, k + 16, ... in this order. The
+    /// partial sums are then added pairwise.
     fn sum(&self, name: &str, length: usize, element: &Expression) -> String {
         let real = &self.real;
         if length == 0 {
@@ -165,19 +165,19 @@ impl Writer {
         let parts = format!("{name}_parts");
         let count = length.min(PARTIAL_SUMS);
         let mut text = format!("{real} {parts}[{count}];\n");
-        let first = assignment(&format!("{parts}[i]"), &self.expression(element));
+        let first = write_assignment(&format!("{parts}[i]"), &self.expression(element));
         text += &write_loop("i", count, &first);
         // C adds from left to right, so a sum needs parentheses.
         let element = self.write_at_level(element, Level::Product);
         let blocks = length / PARTIAL_SUMS;
         let added = |first: &str, part: &str| {
             let at = format!("const int i = {first};\n");
-            at + &assignment(
+            at + &write_assignment(
                 &format!("{parts}[{part}]"),
                 &format!("{parts}[{part}] + {element}"),
             )
         };
-        // One block is written without a loop over blocks: gcc then vectorises the partial sums.
+        // A single block after the first is written without a loop over blocks: gcc then vectorises the partial sums.
         if blocks == 2 {
             let first = format!("{PARTIAL_SUMS} + k");
             text += &write_loop("k", PARTIAL_SUMS, &added(&first, "k"));
@@ -195,7 +195,10 @@ impl Writer {
             text += &write_loop("k", rest, &added(&first, "k"));
         }
         let terms = (0..count).map(|place| format!("{parts}[{place}]"));
-        text + &assignment(&format!("const {real} {name}"), &in_pairs(terms.collect()))
+        text + &write_assignment(
+            &format!("const {real} {name}"),
+            &write_pairwise_sum(terms.collect()),
+        )
     }
 
     fn solution(
@@ -217,7 +220,7 @@ impl Writer {
         };
         let (filled, right) = match (right, columns) {
             (Array::Filled(value, length), _) => {
-                let line = assignment(&format!("{name}[i]"), &self.expression(value));
+                let line = write_assignment(&format!("{name}[i]"), &self.expression(value));
                 (write_loop("i", *length, &line), name.to_owned())
             }
             (matrix, Some(_)) => (String::new(), self.matrix(matrix)),
@@ -254,8 +257,8 @@ impl Writer {
             Expression::Number(value) => return self.number(*value),
             Expression::Name(name) | Expression::Flag(name) => name.clone(),
             Expression::Element(Array::Filled(value, _), _) => return self.write_with_level(value),
-            Expression::Element(array, indices) => self.array(array) + &brackets(indices),
-            Expression::Field(structure, name) => field(*structure, name),
+            Expression::Element(array, indices) => self.array(array) + &write_brackets(indices),
+            Expression::Field(structure, name) => write_field(*structure, name),
             Expression::Shared(coefficient) => return self.write_with_level(coefficient),
             Expression::Binary(operator, a, b) => return self.binary(*operator, a, b),
             Expression::Negate(a) => {
@@ -272,7 +275,7 @@ impl Writer {
             Expression::Positive(place) => format!("((regime >> {place}) & 1U)"),
             Expression::Greater(parts) => {
                 let [a, b] = &**parts;
-                let text = infix(
+                let text = write_infix(
                     ">",
                     self.write_at_level(a, Level::Sum),
                     self.write_at_level(b, Level::Sum),
@@ -281,7 +284,7 @@ impl Writer {
             }
             Expression::And(parts) => {
                 let [a, b] = &**parts;
-                let text = infix("&&", self.operand_of_and(a), self.operand_of_and(b));
+                let text = write_infix("&&", self.operand_of_and(a), self.operand_of_and(b));
                 return (text, Level::And);
             }
             Expression::True => "1".to_owned(),
@@ -315,7 +318,7 @@ impl Writer {
             Operator::Divide => ("/", Level::Product, Level::Negation),
         };
         (
-            infix(
+            write_infix(
                 sign,
                 self.write_at_level(a, level),
                 self.write_at_level(b, right),
@@ -328,12 +331,12 @@ impl Writer {
     fn choice(&self, comparison: &str, parts: &[Expression]) -> String {
         match parts {
             [a, b, then, otherwise] => {
-                let condition = infix(
+                let condition = write_infix(
                     comparison,
                     self.write_at_level(a, Level::Sum),
                     self.write_at_level(b, Level::Sum),
                 );
-                ternary(
+                write_ternary(
                     &condition,
                     &self.expression(then),
                     &self.expression(otherwise),
@@ -343,13 +346,15 @@ impl Writer {
         }
     }
 
-    /// Writes a condition, which has the type of a comparison: flags are `int`, sides of a regime are `uint32_t`.
+    /// Writes a condition as a comparison, because flags are `int` and sides of a regime are `uint32_t`.
     fn condition(&self, condition: &Expression) -> (String, Level) {
         let (text, level) = self.write_with_level(condition);
         match condition {
             Expression::Greater(_) | Expression::And(_) => (text, level),
-            Expression::Flag(_) | Expression::True => (infix("!=", text, "0"), Level::Comparison),
-            _ => (infix("!=", text, "0U"), Level::Comparison),
+            Expression::Flag(_) | Expression::True => {
+                (write_infix("!=", text, "0"), Level::Comparison)
+            }
+            _ => (write_infix("!=", text, "0U"), Level::Comparison),
         }
     }
 
@@ -364,11 +369,11 @@ impl Writer {
     pub(super) fn set_flag(&self, target: &str, condition: &Expression) -> String {
         match condition {
             Expression::Flag(_) | Expression::True => {
-                assignment(target, &self.expression(condition))
+                write_assignment(target, &self.expression(condition))
             }
             _ => {
                 let head = format!("if ({}) {{", self.condition(condition).0);
-                let set = |value: &str| assignment(target, value);
+                let set = |value: &str| write_assignment(target, value);
                 let otherwise = block("} else {", &set("0"), "}");
                 format!("{head}\n{DEEPER}{}{SHALLOWER}{otherwise}", set("1"))
             }
@@ -378,7 +383,7 @@ impl Writer {
     /// Writes `[condition, then, otherwise]`.
     fn conditional(&self, parts: &[Expression]) -> String {
         match parts {
-            [first, then, otherwise] => ternary(
+            [first, then, otherwise] => write_ternary(
                 &self.condition(first).0,
                 &self.expression(then),
                 &self.expression(otherwise),
@@ -396,7 +401,7 @@ impl Writer {
         } else {
             number(value)
         };
-        if self.narrow {
+        if self.is_narrow {
             (format!("R({literal})"), Level::Atom)
         } else if value.is_sign_negative() {
             (literal, Level::Negation)
@@ -408,7 +413,7 @@ impl Writer {
     pub(super) fn array(&self, array: &Array) -> String {
         match array {
             Array::Local(name) => name.clone(),
-            Array::Coefficient(name, _) => field(Structure::Coefficients, name),
+            Array::Coefficient(name, _) => write_field(ArgumentStruct::Coefficients, name),
             Array::Table(name, _) => format!("{}{name}", self.prefix),
             Array::Filled(value, _) => self.expression(value),
         }
@@ -434,15 +439,16 @@ pub(super) fn number(value: f64) -> String {
     }
 }
 
-/// Adds neighbours in pairs until one is left; an odd last number moves on to the next round.
-fn in_pairs(mut terms: Vec<String>) -> String {
+/// Writes the pairwise sum of terms. In each round adjacent terms are added, and an odd last term is kept for the
+/// next round.
+fn write_pairwise_sum(mut terms: Vec<String>) -> String {
     while terms.len() > 1 {
         let last = terms.len() <= 2;
         terms = terms
             .chunks(2)
             .map(|pair| match pair {
-                [a, b] if last => infix("+", a, b),
-                [a, b] => format!("({})", infix("+", a, b)),
+                [a, b] if last => write_infix("+", a, b),
+                [a, b] => format!("({})", write_infix("+", a, b)),
                 rest => rest.concat(),
             })
             .collect();
@@ -450,44 +456,44 @@ fn in_pairs(mut terms: Vec<String>) -> String {
     terms.concat()
 }
 
-fn ternary(condition: &str, then: &str, otherwise: &str) -> String {
+fn write_ternary(condition: &str, then: &str, otherwise: &str) -> String {
     format!("({FLOW}{condition}{SPACE}? {then}{SPACE}: {otherwise}{CLOSE})")
 }
 
-fn field(structure: Structure, name: &str) -> String {
+fn write_field(structure: ArgumentStruct, name: &str) -> String {
     let of = match structure {
-        Structure::Coefficients => "coefficients",
-        Structure::Parameters => "parameters",
-        Structure::Inputs => "inputs",
-        Structure::InputDirection => "input_direction",
-        Structure::Measured => "measured",
-        Structure::Memory => "memory",
+        ArgumentStruct::Coefficients => "coefficients",
+        ArgumentStruct::Parameters => "parameters",
+        ArgumentStruct::Inputs => "inputs",
+        ArgumentStruct::InputDirection => "input_direction",
+        ArgumentStruct::Measured => "measured",
+        ArgumentStruct::Memory => "memory",
     };
     format!("{of}->{name}")
 }
 
-pub(super) fn place_text(place: &Place) -> String {
-    place.name.clone() + &brackets(&place.indices)
+pub(super) fn write_target(place: &Place) -> String {
+    place.name.clone() + &write_brackets(&place.indices)
 }
 
-fn brackets(indices: &[Index]) -> String {
+fn write_brackets(indices: &[Index]) -> String {
     let brackets = indices
         .iter()
-        .map(|index| format!("[{}]", index_text(index)));
+        .map(|index| format!("[{}]", write_index(index)));
     brackets.collect()
 }
 
-fn index_text(index: &Index) -> String {
+fn write_index(index: &Index) -> String {
     match index {
         Index::Number(number) => number.to_string(),
         Index::Variable(name) => (*name).to_owned(),
-        Index::Sum(a, b) => format!("{} + {}", index_text(a), index_text(b)),
-        Index::Product(a, b) => format!("{} * {}", index_text(a), index_text(b)),
+        Index::Sum(a, b) => format!("{} + {}", write_index(a), write_index(b)),
+        Index::Product(a, b) => format!("{} * {}", write_index(a), write_index(b)),
     }
 }
 
-/// Returns x and c if the difference is x + c - c. A rounding is written as a call, because compilers that may
-/// reorder sums remove both operations.
+/// Returns x and c if the difference is the rounding x + c - c. A rounding is written as a function call, because
+/// compilers that may reorder sums would remove both operations.
 fn rounding_operand<'e>(
     operator: Operator,
     a: &'e Expression,
@@ -514,7 +520,7 @@ pub(super) fn write_loop(index: &str, length: usize, lines: &str) -> String {
 }
 
 fn write_loop_over(index: &str, span: &Span, lines: &str) -> String {
-    let (from, to) = (index_text(&span.from), index_text(&span.to));
+    let (from, to) = (write_index(&span.from), write_index(&span.to));
     let head = if span.reversed {
         format!("for (int {index} = {to} - 1; {index} >= {from}; --{index}) {{")
     } else {
@@ -524,17 +530,17 @@ fn write_loop_over(index: &str, span: &Span, lines: &str) -> String {
 }
 
 /// Writes an assignment; `target` can contain a declaration.
-pub(super) fn assignment(target: &str, value: &str) -> String {
+pub(super) fn write_assignment(target: &str, value: &str) -> String {
     format!("{target} = {value};\n")
 }
 
 /// Writes a binary operation that can be broken before the operator.
-fn infix(operator: &str, a: impl std::fmt::Display, b: impl std::fmt::Display) -> String {
+fn write_infix(operator: &str, a: impl std::fmt::Display, b: impl std::fmt::Display) -> String {
     format!("{FLOW}{FLOW_OUT}{a}{CLOSE}{SPACE}{operator} {b}{CLOSE}")
 }
 
-/// Writes an initialiser; elements that do not fit on one line have one line each.
-pub(super) fn initialiser(items: &[String]) -> String {
+/// Writes an initialiser. If the elements do not fit on one line, each has its own line.
+pub(super) fn write_initialiser(items: &[String]) -> String {
     let separator = format!(",{SPACE}");
     format!(
         "{{{BLOCK}{ZERO}{}{COMMA_OUT}{CLOSE}}}",

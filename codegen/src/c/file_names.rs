@@ -1,5 +1,5 @@
-//! Names of emitted headers. A header with the name of a system header replaces that one for every file that
-//! searches the folder.
+//! Check of the names of emitted headers. A header with the name of a system header would replace the system header
+//! for every file compiled with its folder in the include path.
 
 use crate::statements::EmitError;
 

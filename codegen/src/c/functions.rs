@@ -1,4 +1,4 @@
-//! Functions that emitted stages call: from their kernels, and helpers as text.
+//! Functions that emitted stages call: elementary functions, written from their kernels, and helpers, stored as text.
 
 use super::comments::comment;
 use super::expression::Writer;
@@ -12,13 +12,17 @@ use crate::statements::{
 };
 use eomgen_elementary::{Double, Function as Elementary, Single};
 
-/// Writes the functions that stages call. Elementary functions are written in both formats, of which the
+/// Writes the functions that stages call. Elementary functions are written in single and in double precision; the
 /// preprocessor selects one.
-pub(super) fn functions(program: &Program, needed: &RequiredFunctions, stages: &str) -> String {
+pub(super) fn write_functions(
+    program: &Program,
+    needed: &RequiredFunctions,
+    stages: &str,
+) -> String {
     let kernels = needed.kernels.iter();
     let mut helpers: String = kernels
         .filter(|function| function.is_generic())
-        .map(|function| generic_function(program, *function))
+        .map(|function| write_generic_function(program, *function))
         .collect();
     for (helper, item) in [
         (Helper::DeadzoneOnSide, DEADZONE_ON_SIDE),
@@ -30,14 +34,14 @@ pub(super) fn functions(program: &Program, needed: &RequiredFunctions, stages: &
         }
     }
     if needed.has_any(&[Helper::Cholesky]) {
-        helpers += &cholesky(program);
+        helpers += &write_cholesky(program);
     }
     let called = helpers.clone() + stages;
-    let double = elementary_functions::<Double>(program, needed, &called);
+    let double = write_elementary_functions::<Double>(program, needed, &called);
     if double.is_empty() {
         return helpers;
     }
-    let single = elementary_functions::<Single>(program, needed, &called);
+    let single = write_elementary_functions::<Single>(program, needed, &called);
     fill_template(program, "#if NAME_IS_SINGLE(NAME_REAL)\n")
         + &single
         + "#else\n"
@@ -46,8 +50,9 @@ pub(super) fn functions(program: &Program, needed: &RequiredFunctions, stages: &
         + &helpers
 }
 
-/// Writes the elementary functions in a format, with the primitives that they and `called` call.
-fn elementary_functions<P: CFormat>(
+/// Writes the elementary functions in one precision, with the primitives that these functions or the text `called`
+/// call.
+fn write_elementary_functions<P: CFormat>(
     program: &Program,
     needed: &RequiredFunctions,
     called: &str,
@@ -55,14 +60,14 @@ fn elementary_functions<P: CFormat>(
     let mut text = String::new();
     for &function in needed.kernels.iter().filter(|f| !f.is_generic()) {
         let call = fill_template(program, &format!("NAME_{}(", function.name()));
-        // A sine or cosine that all stages compute as a pair needs no separate function.
+        // If all stages compute sine and cosine together, the separate functions are not needed.
         let paired = matches!(function, Elementary::Sin | Elementary::Cos);
         if !paired || called.contains(&call) {
-            text += &elementary_function::<P>(program, function);
+            text += &write_elementary_function::<P>(program, function);
         }
     }
     if called.contains(&fill_template(program, "NAME_sin_cos(")) {
-        text += &sine_and_cosine::<P>(program);
+        text += &write_sine_and_cosine::<P>(program);
     }
     let mut operations = String::new();
     for (name, item) in primitives::<P>() {
@@ -77,27 +82,27 @@ fn elementary_functions<P: CFormat>(
     fill_template(program, &bits::<P>()) + &operations + &text
 }
 
-/// Writes a function of numbers of any type.
-fn generic_function(program: &Program, function: Elementary) -> String {
+/// Writes a function that is independent of the precision.
+fn write_generic_function(program: &Program, function: Elementary) -> String {
     let head = format!(
         "static NAME_real NAME_{}({}) {{",
         function.name(),
-        parameters(function, "NAME_real")
+        write_parameters(function, "NAME_real")
     );
-    let lines = lines::<Double>(function, &Writer::new(program));
+    let lines = write_lines::<Double>(function, &Writer::new(program));
     comment(&[function.description().to_owned()])
         + &block(&fill_template(program, &head), &lines, "}")
 }
 
-/// Writes the parameters of a function of numbers of one type.
-fn parameters(function: Elementary, number: &str) -> String {
+/// Writes the parameters of a function for one number type.
+fn write_parameters(function: Elementary, number: &str) -> String {
     let names = function.arguments().iter();
     let typed: Vec<String> = names.map(|name| format!("{number} {name}")).collect();
     typed.join(", ")
 }
 
-/// Writes the operations of a function and the return of its value.
-fn lines<P: CFormat>(function: Elementary, writer: &Writer) -> String {
+/// Writes the operations of a function and its return statement.
+fn write_lines<P: CFormat>(function: Elementary, writer: &Writer) -> String {
     let kernel = KernelStatements::new::<P>(function);
     let mut lines = writer.statements(&kernel.computed);
     if let Some(value) = kernel.value() {
@@ -106,15 +111,15 @@ fn lines<P: CFormat>(function: Elementary, writer: &Writer) -> String {
     lines
 }
 
-/// Writes an elementary function. That of double precision is rounded to the type of numbers.
-fn elementary_function<P: CFormat>(program: &Program, function: Elementary) -> String {
+/// Writes an elementary function. In double precision, the value is rounded to the number type.
+fn write_elementary_function<P: CFormat>(program: &Program, function: Elementary) -> String {
     let name = function.name();
-    let lines = lines::<P>(function, &Writer::in_format::<P>(program));
+    let lines = write_lines::<P>(function, &Writer::in_format::<P>(program));
     let description = comment(&[function.description().to_owned()]);
-    let inline = inline::<P>(matches!(function, Elementary::Sin | Elementary::Cos));
+    let inline = inline_keyword::<P>(matches!(function, Elementary::Sin | Elementary::Cos));
     let outer = format!(
         "static {inline}NAME_real NAME_{name}({}) {{",
-        parameters(function, "NAME_real")
+        write_parameters(function, "NAME_real")
     );
     let outer = fill_template(program, &outer);
     if P::NUMBER == "float" {
@@ -122,7 +127,7 @@ fn elementary_function<P: CFormat>(program: &Program, function: Elementary) -> S
     }
     let head = format!(
         "static double NAME_{name}_in_double({}) {{",
-        parameters(function, "double")
+        write_parameters(function, "double")
     );
     let passed: Vec<String> = function
         .arguments()
@@ -138,9 +143,9 @@ fn elementary_function<P: CFormat>(program: &Program, function: Elementary) -> S
         + &block(&outer, &fill_template(program, &rounded), "}")
 }
 
-/// Returns the keyword of functions that are shorter than their constants and calls: sine and cosine in single
+/// Returns `inline ` for functions whose body is shorter than their constants and calls: sine and cosine in single
 /// precision.
-fn inline<P: CFormat>(of_angle: bool) -> &'static str {
+fn inline_keyword<P: CFormat>(of_angle: bool) -> &'static str {
     if of_angle && P::NUMBER == "float" {
         "inline "
     } else {
@@ -148,8 +153,8 @@ fn inline<P: CFormat>(of_angle: bool) -> &'static str {
     }
 }
 
-/// Writes the joint function of sine and cosine, with the same bits as the separate functions.
-fn sine_and_cosine<P: CFormat>(program: &Program) -> String {
+/// Writes the joint function of sine and cosine, bit-identical to the separate functions.
+fn write_sine_and_cosine<P: CFormat>(program: &Program) -> String {
     let kernel = KernelStatements::sine_and_cosine::<P>("x");
     let writer = Writer::in_format::<P>(program);
     let mut lines = writer.statements(&kernel.computed);
@@ -160,7 +165,7 @@ fn sine_and_cosine<P: CFormat>(program: &Program) -> String {
     }
     let head = format!(
         "static {}void NAME_sin_cos({} x, NAME_real *NAME_RESTRICT sine, NAME_real *NAME_RESTRICT cosine) {{",
-        inline::<P>(true),
+        inline_keyword::<P>(true),
         P::NUMBER
     );
     let description = Elementary::Sin
@@ -169,17 +174,17 @@ fn sine_and_cosine<P: CFormat>(program: &Program) -> String {
     comment(&[description]) + &block(&fill_template(program, &head), &lines, "}")
 }
 
-/// f_k on a given side of its dead zone.
+/// Dead-zone function f_k of Eq. (7) on a given side of the play.
 const DEADZONE_ON_SIDE: &str = "\
-/** Deflection beyond the backlash on a given side of it: f_k of Eq. (7). */
+/** Deflection beyond the play on a given side: f_k of Eq. (7). */
 static NAME_real NAME_deadzone_on_side(uint32_t above, uint32_t beyond, NAME_real p, NAME_real b) {
     return (above != 0U) ? (p - b) : ((beyond != 0U) ? R(0.0) : (p + b));
 }
 ";
 
-/// Contact on a given side of its dead zone.
+/// Contact on a given side of the play.
 const TOUCHING: &str = "\
-/** 1 if there is contact on a given side of the backlash, else 0. */
+/** 1 if there is contact on a given side of the play, else 0. */
 static uint32_t NAME_touching(uint32_t above, uint32_t beyond) {
     return above | (beyond ^ 1U);
 }
@@ -201,8 +206,9 @@ static void NAME_cholesky_solve(
     int n, int m, const NAME_real *factor, const NAME_real *right, NAME_real *x
 ) {";
 
-/// Writes the Cholesky factorisation and the solution with the factor, for matrices as pointers to their first entries.
-fn cholesky(program: &Program) -> String {
+/// Writes the Cholesky factorisation and the solution with the factor, whose matrices are passed as pointers to their
+/// first entries.
+fn write_cholesky(program: &Program) -> String {
     let writer = Writer::new(program);
     let function = |description: &str, head: &str, lines: &[Statement]| {
         comment(&[description.to_owned()])

@@ -6,19 +6,19 @@ use super::expression::number;
 use super::jacobians;
 use super::names::fill_template;
 use super::real::Real;
-use super::regimes::{REGIME, regime_head};
-use super::stages::{declaration, nest_lines};
+use super::regimes::{REGIME, write_regime_head};
+use super::stages::{nest_lines, write_declaration};
 use super::standard_macros::{find_macros, hide_macros};
 use super::step;
 use super::types;
-use super::types::structures;
+use super::types::write_structures;
 use crate::program::Program;
 use crate::statements::{
-    DataElements, EmitResult, File, Indices, Preparation, Stage, data_arrays, indices,
+    DataElements, EmitResult, File, Indices, Preparation, Stage, list_data_arrays, list_indices,
 };
 
-/// Returns title and origin of a file, by lines.
-pub(super) fn documentation(program: &Program) -> Vec<String> {
+/// Returns title and origin of a file, one string per line.
+pub(super) fn describe_file(program: &Program) -> Vec<String> {
     let orders: Vec<String> = program.fields.iter().map(|f| f.order.to_string()).collect();
     let order = if orders.is_empty() {
         "rigid".to_owned()
@@ -41,16 +41,16 @@ pub(super) fn documentation(program: &Program) -> Vec<String> {
     ]
 }
 
-/// Use of the source file with its header.
+/// Instructions for a source file with a header.
 pub(super) const TWO_FILES: &str = "Compile NAME.c as C99 or C++.";
 
-/// Use of the header with the functions.
+/// Instructions for a single header that contains the functions.
 pub(super) const HEADER_ONLY: &str = "Define NAME_IMPLEMENTATION in one C99 or C++ file of the program before it includes this header: that file\n\
      then contains the functions, and the files that include the header without it call them.";
 
 /// Returns the comment at the top of the header, with the notes for callers.
-pub(super) fn notes(program: &Program, real: Real, usage: &str) -> String {
-    let mut lines = documentation(program);
+pub(super) fn write_notes(program: &Program, real: Real, usage: &str) -> String {
+    let mut lines = describe_file(program);
     let (other, precision) = match real {
         Real::Double => ("float", "single"),
         Real::Single => ("double", "double"),
@@ -63,8 +63,8 @@ pub(super) fn notes(program: &Program, real: Real, usage: &str) -> String {
          reentrant. Their output arguments must not overlap their input arguments.\n\
          \n\
          {}\n\
-         The results have the same bits with every compiler that keeps products and sums apart, as gcc,\n\
-         Clang and MSVC do in the source; others need -std=c99. For {precision} precision, use -D{name}_REAL={other} for\n\
+         The results are bit-identical with every compiler that does not contract products and sums. For gcc,\n\
+         Clang and MSVC the source ensures this; other compilers need -std=c99. For {precision} precision, use -D{name}_REAL={other} for\n\
          every file that includes this one.",
         usage.replace("NAME", name)
     );
@@ -72,7 +72,7 @@ pub(super) fn notes(program: &Program, real: Real, usage: &str) -> String {
     comment(&lines)
 }
 
-pub(super) fn header(
+pub(super) fn write_header(
     file: &File<'_>,
     prepared: &Preparation,
     stages: &[Stage],
@@ -97,26 +97,26 @@ pub(super) fn header(
          #define NAME_IS_SINGLE(type) NAME_IS_TYPE(type)\n"
             .replace("NUMBER", number),
     );
-    let mut declared = sizes(file);
-    declared += &jacobians::sizes(program);
-    declared += &step::sizes(program);
-    declared += &structures(file, prepared)?;
-    declared += &types::declarations(program);
+    let mut declared = write_sizes(file);
+    declared += &jacobians::write_sizes(program);
+    declared += &step::write_sizes(program);
+    declared += &write_structures(file, prepared)?;
+    declared += &types::write_declarations(program);
     for stage in stages {
-        declared += &declaration(program, stage);
+        declared += &write_declaration(program, stage);
     }
     if program.outputs.regimes.is_some() {
         declared += &comment(&resolve_links(program, REGIME));
-        declared += &format!("{};\n", regime_head(program, false));
+        declared += &format!("{};\n", write_regime_head(program, false));
     }
-    declared += &step::declaration(program);
-    declared += &jacobians::declarations(program);
-    declared += &controllers::declarations(program);
+    declared += &step::write_declaration(program);
+    declared += &jacobians::write_declarations(program);
+    declared += &controllers::write_declarations(program);
     let [hide, restore] = hide_macros(find_macros(&declared));
     Ok(text + &hide + &declared + &restore + "#ifdef __cplusplus\n}\n#endif\n#endif\n")
 }
 
-fn sizes(file: &File<'_>) -> String {
+fn write_sizes(file: &File<'_>) -> String {
     let program = file.program;
     let mut text = String::new();
     for (name, count, doc) in [
@@ -175,13 +175,13 @@ fn sizes(file: &File<'_>) -> String {
             .to_owned(),
     ]);
     text += &fill_template(program, "extern const char NAME_identity[];\n");
-    text + &index_constants(program)
+    text + &write_index_constants(program)
 }
 
 /// Writes one enumeration for each kind of index, `NAME_STATE_X` and so on.
-fn index_constants(program: &Program) -> String {
+fn write_index_constants(program: &Program) -> String {
     let mut text = String::new();
-    for Indices { kind, doc, entries } in indices(program) {
+    for Indices { kind, doc, entries } in list_indices(program) {
         let stem = format!("{}_{}", program.name, kind.to_uppercase());
         let last = entries.len() - 1;
         let constant = |(place, (_, constant)): (usize, &(String, String))| {
@@ -249,11 +249,13 @@ pub(super) fn lists(program: &Program) -> Vec<(String, Vec<String>, &'static str
     let head = format!("const int NAME_orders[{}]", orders.len());
     let doc = "Modal truncation order of each field.";
     lists.push((fill_template(program, &head), orders, doc));
-    for of in data_arrays(program) {
+    for of in list_data_arrays(program) {
         let (item, mut elements) = match of.elements {
             DataElements::Texts(texts) => ("char *const", quoted(texts)),
             DataElements::Numbers(numbers) => {
-                let numbers = numbers.into_iter().map(|value| data_number(program, value));
+                let numbers = numbers
+                    .into_iter()
+                    .map(|value| write_data_number(program, value));
                 ("NAME_real", numbers.collect())
             }
         };
@@ -267,7 +269,7 @@ pub(super) fn lists(program: &Program) -> Vec<(String, Vec<String>, &'static str
 }
 
 /// Writes a number of a constant array; see [`UNBOUNDED`].
-fn data_number(program: &Program, value: f64) -> String {
+fn write_data_number(program: &Program, value: f64) -> String {
     match value.is_infinite() {
         true if value > 0.0 => fill_template(program, "R(NAME_UNBOUNDED)"),
         true => fill_template(program, "R(-NAME_UNBOUNDED)"),
@@ -275,8 +277,8 @@ fn data_number(program: &Program, value: f64) -> String {
     }
 }
 
-/// Infinity as a constant. Compilers without a header of mathematics, such as those for microcontrollers, have a word for
-/// it.
+/// Constant for infinity. GNU compilers have a builtin function, which needs no `<math.h>`; toolchains for
+/// microcontrollers can lack this header.
 pub(super) const UNBOUNDED: &str = "\
 /** Infinity: end of a range that the specification does not give. */
 #if defined(__GNUC__)

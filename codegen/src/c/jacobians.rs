@@ -1,13 +1,13 @@
-//! Positions of the Jacobians' structural nonzeros, and the linearisation into dense matrices.
+//! Positions of the structural nonzeros of Jacobians, and the linearisation in dense matrices.
 
 use super::comments::comment;
-use super::expression::initialiser;
+use super::expression::write_initialiser;
 use super::names::fill_template;
-use super::stages::{GIVEN, call_stage, head, nest_lines};
+use super::stages::{GIVEN, call_stage, nest_lines, write_head};
 use crate::program::{Jacobian, Output, Program, ValueId};
 use crate::statements::layout::block;
 
-pub(super) fn declarations(program: &Program) -> String {
+pub(super) fn write_declarations(program: &Program) -> String {
     let mut text = String::new();
     for jacobian in &program.outputs.jacobians {
         let lines = [format!(
@@ -19,7 +19,11 @@ pub(super) fn declarations(program: &Program) -> String {
             jacobian.columns,
             jacobian.nonzeros()
         )];
-        text += &format!("{}{};\n", comment(&lines), places_head(program, jacobian));
+        text += &format!(
+            "{}{};\n",
+            comment(&lines),
+            write_places_head(program, jacobian)
+        );
     }
     if has_linearisation(program) {
         // C has no empty arrays.
@@ -29,12 +33,12 @@ pub(super) fn declarations(program: &Program) -> String {
         };
         text += &fill_template(program, &LINEARISATION.replace("COLUMNS", columns));
         text += &comment(&["Linearisation about a point.".to_owned()]);
-        text += &format!("{};\n", linearise_head(program, false));
+        text += &format!("{};\n", write_linearise_head(program, false));
     }
     text
 }
 
-pub(super) fn sizes(program: &Program) -> String {
+pub(super) fn write_sizes(program: &Program) -> String {
     let size = |jacobian: &Jacobian<ValueId>| {
         let line = format!(
             "Number of structural nonzeros of `{}_{}`.",
@@ -51,7 +55,7 @@ fn has_linearisation(program: &Program) -> bool {
     program.outputs.kinds.contains(&Output::Linearisation)
 }
 
-fn places_head(program: &Program, jacobian: &Jacobian<ValueId>) -> String {
+fn write_places_head(program: &Program, jacobian: &Jacobian<ValueId>) -> String {
     fill_template(
         program,
         &format!(
@@ -61,37 +65,37 @@ fn places_head(program: &Program, jacobian: &Jacobian<ValueId>) -> String {
     )
 }
 
-fn linearise_head(program: &Program, definition: bool) -> String {
+fn write_linearise_head(program: &Program, definition: bool) -> String {
     let mut arguments = GIVEN.to_vec();
     arguments.push(("NAME_linearisation *", "about"));
-    head(program, ("void ", "linearise"), &arguments, definition)
+    write_head(program, ("void ", "linearise"), &arguments, definition)
 }
 
-pub(super) fn definitions(program: &Program) -> String {
+pub(super) fn write_definitions(program: &Program) -> String {
     if program.outputs.jacobians.is_empty() {
         return String::new();
     }
     let mut text = fill_template(program, PLACES);
     for jacobian in &program.outputs.jacobians {
-        text += &blocks(program, jacobian);
+        text += &write_blocks(program, jacobian);
         let call = format!(
             "NAME_places(NAME_{0}_blocks, {1}, rows, columns);\n",
             jacobian.name,
             jacobian.entries.len()
         );
-        let head = places_head(program, jacobian);
+        let head = write_places_head(program, jacobian);
         text += &block(&format!("{head} {{"), &fill_template(program, &call), "}");
     }
     if has_linearisation(program) {
         text += &fill_template(program, DENSE);
-        let head = linearise_head(program, true);
-        text += &block(&format!("{head} {{"), &linearise(program), "}");
+        let head = write_linearise_head(program, true);
+        text += &block(&format!("{head} {{"), &write_linearisation(program), "}");
     }
     text
 }
 
-/// Writes the blocks of nonzeros; an empty list has one empty block, because C has no empty arrays.
-fn blocks(program: &Program, jacobian: &Jacobian<ValueId>) -> String {
+/// Writes the blocks of nonzeros. An empty list is written as one empty block, because C has no empty arrays.
+fn write_blocks(program: &Program, jacobian: &Jacobian<ValueId>) -> String {
     let mut blocks: Vec<String> = Vec::new();
     for e in &jacobian.entries {
         let diagonal = usize::from(e.diagonal);
@@ -111,11 +115,11 @@ fn blocks(program: &Program, jacobian: &Jacobian<ValueId>) -> String {
     format!(
         "{} = {};\n",
         fill_template(program, &head),
-        initialiser(&blocks)
+        write_initialiser(&blocks)
     )
 }
 
-fn linearise(program: &Program) -> String {
+fn write_linearisation(program: &Program) -> String {
     let mut lines = call_stage(program, "rates_into", "about->rates");
     lines += &call_stage(program, "observables", "about->observables");
     for (matrix, name) in [

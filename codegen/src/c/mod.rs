@@ -1,5 +1,5 @@
-//! C backend: a header and one source file for each variant, in C99 that is also valid C++, without
-//! allocation or library calls. Its results have the same bits as the emitted Rust.
+//! C backend: a header and one source file for each variant, in C99 that is also valid C++, without allocation or
+//! library calls. Its results are bit-identical to those of the emitted Rust.
 //!
 //! `emit` arranges both files: `file_names` checks the name of the header, `header` declares, `types` prepares the
 //! coefficients, `stages`, `regimes`, `jacobians` and `controllers` write functions, `functions` their helpers,
@@ -37,7 +37,7 @@ pub use emit::{Files, emit, emit_header_only, emit_with};
 pub use real::Real;
 pub use vectors::{baked, vectors};
 
-/// Returns true if a name is no word of C or C++.
+/// Returns true if a name is a valid identifier and not a reserved word of C or C++.
 pub fn is_identifier(name: &str) -> bool {
     names::WORDS.identifier(name).is_ok()
 }

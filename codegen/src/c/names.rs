@@ -3,8 +3,8 @@
 use crate::program::Program;
 use crate::statements::Words;
 
-/// Rules for names in C. Keywords are words of C, C++ or a preprocessor; taken names are variables and macros
-/// of emitted functions.
+/// Rules for names in C. Keywords are those of C, C++ and the preprocessor; taken names are variables and macros of
+/// emitted functions.
 pub(super) const WORDS: Words = Words {
     language: "C or C++",
     keywords: "_ alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t \

@@ -2,17 +2,17 @@
 
 use eomgen_elementary::{Double, Precision, Single};
 
-/// Number format with the words that fill the templates of the primitives.
+/// Number format with the text for each placeholder in the templates of the primitives.
 pub(super) trait CFormat: Precision {
-    /// Type of numbers.
+    /// Name of the C type.
     const NUMBER: &'static str;
-    /// Words of the templates and their replacements.
-    const WORDS: [(&'static str, &'static str); 15];
+    /// Placeholders of the templates and their replacements.
+    const PLACEHOLDERS: [(&'static str, &'static str); 15];
 }
 
 impl CFormat for Double {
     const NUMBER: &'static str = "double";
-    const WORDS: [(&'static str, &'static str); 15] = [
+    const PLACEHOLDERS: [(&'static str, &'static str); 15] = [
         (
             "MAGNITUDE",
             "    const double negated = 0.0 - x;\n    return x > negated ? x : negated;",
@@ -34,10 +34,10 @@ impl CFormat for Double {
     ];
 }
 
-/// The magnitude clears a bit, because a comparison needs more instructions.
+/// The magnitude is computed by clearing the sign bit, because a comparison needs more instructions.
 impl CFormat for Single {
     const NUMBER: &'static str = "float";
-    const WORDS: [(&'static str, &'static str); 15] = [
+    const PLACEHOLDERS: [(&'static str, &'static str); 15] = [
         (
             "MAGNITUDE",
             "    NAME_bits value;\n    value.number = x;\n    value.bits &= 0x7fffffffU;\n    return value.number;",
@@ -62,7 +62,7 @@ impl CFormat for Single {
 /// Fills a template for a format.
 fn fill_format<P: CFormat>(template: &str) -> String {
     let mut text = template.to_owned();
-    for (word, replacement) in P::WORDS {
+    for (word, replacement) in P::PLACEHOLDERS {
         text = text.replace(word, replacement);
     }
     text
@@ -86,7 +86,7 @@ typedef union {
 } NAME_bits;
 ";
 
-/// Functions that kernels call and constants without a literal, by name.
+/// Functions that kernels call, and constants without a literal (NaN, infinity), by name.
 const PRIMITIVES: [(&str, &str); 9] = [
     (
         "nan",

@@ -1,10 +1,10 @@
-//! Reactions of frictions and contacts in a step of fixed length, in C; the evaluator has the same method with the same
-//! order of operations, `program::evaluator::fixed_step`.
+//! Reactions of frictions and contacts in a step of fixed length, in C. `program::evaluator::fixed_step` contains the
+//! same method with the same order of operations.
 
 use super::comments::comment;
-use super::expression::{initialiser, write_loop};
+use super::expression::{write_initialiser, write_loop};
 use super::names::fill_template;
-use super::stages::head;
+use super::stages::write_head;
 use crate::program::evaluator::{
     MAX_LAST_CHANGE, MAX_SETTLED_ROUNDINGS, MAX_SWEEPS, SWEEPS_BETWEEN_CONTACTS,
 };
@@ -13,14 +13,14 @@ use crate::statements::layout::{DEEPER, SHALLOWER, block};
 use crate::statements::{APPLY_REACTIONS, CLOSE_CONTACTS, FIND_REACTIONS, SEPARATE_CONTACTS};
 
 /// Writes the functions that the step calls.
-pub(super) fn functions(program: &Program, known: &ProgramReactions) -> String {
+pub(super) fn write_functions(program: &Program, known: &ProgramReactions) -> String {
     let mut functions = Vec::new();
     if !known.distances.is_empty() {
-        functions.push((CLOSE_CONTACTS, close_contacts(program, known)));
-        functions.push((SEPARATE_CONTACTS, separate_contacts(program, known)));
+        functions.push((CLOSE_CONTACTS, write_close_contacts(program, known)));
+        functions.push((SEPARATE_CONTACTS, write_separate_contacts(program, known)));
     }
-    functions.push((FIND_REACTIONS, find_reactions(program, known)));
-    functions.push((APPLY_REACTIONS, apply_reactions(program, known)));
+    functions.push((FIND_REACTIONS, write_find_reactions(program, known)));
+    functions.push((APPLY_REACTIONS, write_apply_reactions(program, known)));
     let functions = functions.into_iter();
     functions
         .map(|(doc, text)| {
@@ -30,8 +30,9 @@ pub(super) fn functions(program: &Program, known: &ProgramReactions) -> String {
         .collect()
 }
 
-/// Writes the statements of the step around those of the Runge-Kutta method, which has these declarations.
-pub(super) fn step(
+/// Writes the statements of a step with reactions. `declarations` and `runge_kutta` are those of the Runge-Kutta step
+/// that it contains.
+pub(super) fn write_step(
     program: &Program,
     known: &ProgramReactions,
     [declarations, runge_kutta]: [&str; 2],
@@ -63,7 +64,7 @@ pub(super) fn step(
     let start_effects = given("reaction_effects", "t", "state", "effects");
     let close =
         "NAME_close_contacts(h, before, functions, effects, reactions, applied, targets, delays)";
-    let open = loop_between(
+    let open = write_loop_between(
         (sizes.sides, sizes.sides + sizes.contacts),
         "targets[r] = R(-NAME_UNBOUNDED);\n",
     );
@@ -103,7 +104,7 @@ pub(super) fn step(
         }
         lines += &format!("(void){};\n", find(MAX_SWEEPS));
         lines += &set_sides;
-        lines += &loop_between((sizes.sides, count), "reactions[r] = R(0.0);\n");
+        lines += &write_loop_between((sizes.sides, count), "reactions[r] = R(0.0);\n");
         lines += &open;
     }
     lines += runge_kutta;
@@ -122,7 +123,7 @@ pub(super) fn step(
     }
     lines += &copy;
     if sizes.contacts > 0 {
-        // Impulses can close further contacts.
+        // An impulse can close another contact.
         let end = block("if (!(closes > R(0.5))) {", "break;\n", "}");
         let sweep = format!("(void){};\n", find(SWEEPS_BETWEEN_CONTACTS));
         let pass = format!("const NAME_real closes = {close};\n{end}{sweep}");
@@ -144,8 +145,8 @@ pub(super) fn step(
         )
 }
 
-/// Writes a loop over the reactions between two indices; nothing if there are none.
-fn loop_between((first, end): (usize, usize), lines: &str) -> String {
+/// Writes a loop over the reactions `first..end`; writes nothing if this range is empty.
+fn write_loop_between((first, end): (usize, usize), lines: &str) -> String {
     match first < end {
         true => block(
             &format!("for (int r = {first}; r < {end}; ++r) {{"),
@@ -156,7 +157,7 @@ fn loop_between((first, end): (usize, usize), lines: &str) -> String {
     }
 }
 
-fn contacts_of_frictions(known: &ProgramReactions) -> String {
+fn write_contacts_of_frictions(known: &ProgramReactions) -> String {
     let contacts = known
         .coefficients
         .iter()
@@ -165,12 +166,13 @@ fn contacts_of_frictions(known: &ProgramReactions) -> String {
     format!(
         "static const int contacts[{}] = {};\n",
         contacts.len(),
-        initialiser(&contacts)
+        write_initialiser(&contacts)
     )
 }
 
-/// Writes the function that closes open contacts whose distance is not positive. It returns 1 if one closes, else 0.
-fn close_contacts(program: &Program, known: &ProgramReactions) -> String {
+/// Writes the function that closes open contacts whose distance is not positive. The emitted function returns 1 if a
+/// contact closes, else 0.
+fn write_close_contacts(program: &Program, known: &ProgramReactions) -> String {
     let ReactionCounts {
         sides,
         contacts,
@@ -205,7 +207,7 @@ fn close_contacts(program: &Program, known: &ProgramReactions) -> String {
     );
     let mut lines = "NAME_real closes = R(0.0);\n".to_owned();
     if !known.coefficients.is_empty() {
-        lines += &contacts_of_frictions(known);
+        lines += &write_contacts_of_frictions(known);
     }
     lines += &write_loop("i", contacts, &each);
     if !known.coefficients.is_empty() {
@@ -227,12 +229,13 @@ fn close_contacts(program: &Program, known: &ProgramReactions) -> String {
     ];
     lines += "return closes;\n";
     let result = ("static NAME_real ", "close_contacts");
-    let head = head(program, result, &arguments, true);
+    let head = write_head(program, result, &arguments, true);
     block(&format!("{head} {{"), &lines, "}")
 }
 
-/// Writes the function that corrects the reactions. It returns 0 if they are found, else 1.
-fn find_reactions(program: &Program, known: &ProgramReactions) -> String {
+/// Writes the function that corrects the reactions. The emitted function returns 0 if the iteration converged, else
+/// 1.
+fn write_find_reactions(program: &Program, known: &ProgramReactions) -> String {
     let sizes = known.counts();
     let ReactionCounts {
         sides,
@@ -307,9 +310,9 @@ fn find_reactions(program: &Program, known: &ProgramReactions) -> String {
     );
     let mut lines = String::new();
     if count > first_friction {
-        lines += &contacts_of_frictions(known);
+        lines += &write_contacts_of_frictions(known);
     }
-    // The rounding of the number type.
+    // `negative` is 3 times (4/3 - 1) less 1: the unit roundoff of the number type, apart from the sign.
     lines += &format!(
         "const NAME_real third = R(4.0) / R(3.0) - R(1.0);\n\
          const NAME_real negative = R(3.0) * third - R(1.0);\n\
@@ -346,12 +349,12 @@ fn find_reactions(program: &Program, known: &ProgramReactions) -> String {
         ("NAME_real *", "reactions"),
     ];
     let result = ("static NAME_real ", "find_reactions");
-    let head = head(program, result, &arguments, true);
+    let head = write_head(program, result, &arguments, true);
     block(&format!("{head} {{"), &lines, "}")
 }
 
 /// Writes the function that moves the positions so that closed contacts do not overlap.
-fn separate_contacts(program: &Program, known: &ProgramReactions) -> String {
+fn write_separate_contacts(program: &Program, known: &ProgramReactions) -> String {
     let ReactionCounts {
         sides,
         contacts,
@@ -383,7 +386,7 @@ fn separate_contacts(program: &Program, known: &ProgramReactions) -> String {
         ("NAME_real *", "state"),
     ];
     let result = ("static void ", "separate_contacts");
-    let head = head(program, result, &arguments, true);
+    let head = write_head(program, result, &arguments, true);
     block(
         &format!("{head} {{"),
         &write_loop("i", contacts, &each),
@@ -392,7 +395,7 @@ fn separate_contacts(program: &Program, known: &ProgramReactions) -> String {
 }
 
 /// Writes the function that adds the changes of the reactions to the state.
-fn apply_reactions(program: &Program, known: &ProgramReactions) -> String {
+fn write_apply_reactions(program: &Program, known: &ProgramReactions) -> String {
     let degrees = program.degrees_of_freedom();
     let length = program.states() - degrees;
     let first = known.first_column();
@@ -414,7 +417,7 @@ fn apply_reactions(program: &Program, known: &ProgramReactions) -> String {
         ("const NAME_real *", "delays"),
         ("NAME_real *", "state"),
     ];
-    let head = head(
+    let head = write_head(
         program,
         ("static void ", "apply_reactions"),
         &arguments,

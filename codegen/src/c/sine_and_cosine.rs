@@ -1,4 +1,4 @@
-//! Pairs of statements that name the sine and the cosine of one argument, for a joint call.
+//! Pairs of statements that define the sine and the cosine of one argument; both are computed by one call.
 
 use crate::statements::{Expression, Statement};
 
@@ -9,7 +9,8 @@ pub(super) struct SineAndCosine<'s> {
     pub(super) argument: &'s Expression,
 }
 
-/// Returns the distance to the partner of the first statement, if that names a sine or a cosine.
+/// If the first statement defines a sine or a cosine, returns the distance to the statement that defines the other
+/// function of the same argument.
 pub(super) fn find_pair(statements: &[Statement]) -> Option<(usize, SineAndCosine<'_>)> {
     let (first, rest) = statements.split_first()?;
     let (function, name, argument) = sine_or_cosine(first)?;
@@ -32,7 +33,7 @@ pub(super) fn find_pair(statements: &[Statement]) -> Option<(usize, SineAndCosin
     })
 }
 
-/// Returns function, name and argument of a named sine or cosine.
+/// Returns function, variable and argument of a statement that defines a sine or a cosine.
 fn sine_or_cosine(statement: &Statement) -> Option<(&'static str, &str, &Expression)> {
     match statement {
         Statement::Let(name, Expression::Call(function @ ("sin" | "cos"), arguments)) => {

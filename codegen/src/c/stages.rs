@@ -1,13 +1,13 @@
 //! Stages as functions: declarations for the header, definitions for the source.
 
 use super::comments::{comment, resolve_links};
-use super::expression::{Writer, assignment, call, place_text, write_loop};
+use super::expression::{Writer, call, write_assignment, write_loop, write_target};
 use super::names::{fill_template, item_name};
 use crate::program::Program;
 use crate::statements::layout::{BLOCK, CLOSE, DEEPER, SHALLOWER, SPACE, ZERO, ZERO_OUT, block};
 use crate::statements::{Argument, Expression, Index, Outcome, Place, Size, Stage, UsedNames};
 
-/// Returns type and name of each argument of a stage; arrays by their first element.
+/// Returns type and name of each argument of a stage. Arrays are passed as pointers to their first element.
 fn arguments(stage: &Stage) -> Vec<(&'static str, &'static str)> {
     let mut all = GIVEN.to_vec();
     all.extend(stage.arguments.iter().map(|argument| match argument {
@@ -44,8 +44,8 @@ pub(super) const GIVEN: [(&str, &str); 4] = [
 
 const MATRIX: (&str, &str) = ("NAME_real (*", "values)[NAME_DEGREES_OF_FREEDOM]");
 
-/// Writes the head of a function; pointers of a definition are declared not to overlap.
-pub(super) fn head(
+/// Writes the head of a function. In a definition, pointers are declared not to overlap.
+pub(super) fn write_head(
     program: &Program,
     (result, name): (&str, &str),
     arguments: &[(&str, &str)],
@@ -75,16 +75,16 @@ fn result(stage: &Stage) -> &'static str {
     }
 }
 
-pub(super) fn declaration(program: &Program, stage: &Stage) -> String {
+pub(super) fn write_declaration(program: &Program, stage: &Stage) -> String {
     let mut lines = resolve_links(program, &stage.doc);
     lines.extend(stage.list.iter().cloned());
     let result = (result(stage), stage.name);
-    comment(&lines) + &head(program, result, &arguments(stage), false) + ";\n"
+    comment(&lines) + &write_head(program, result, &arguments(stage), false) + ";\n"
 }
 
-pub(super) fn definition(program: &Program, stage: Stage) -> String {
+pub(super) fn write_definition(program: &Program, stage: Stage) -> String {
     let arguments = arguments(&stage);
-    let head = head(program, (result(&stage), stage.name), &arguments, true);
+    let head = write_head(program, (result(&stage), stage.name), &arguments, true);
     let mut writer = Writer::new(program);
     writer.notes.clone_from(&stage.notes);
     let mut used = UsedNames::from_outcome(&stage.outcome);
@@ -106,34 +106,39 @@ pub(super) fn definition(program: &Program, stage: Stage) -> String {
         Outcome::Observables(values) => {
             let places = values.iter().enumerate();
             let put = |(place, value): (usize, &Expression)| {
-                assignment(&format!("observables[{place}]"), &writer.expression(value))
+                write_assignment(&format!("observables[{place}]"), &writer.expression(value))
             };
             places.map(put).collect()
         }
-        Outcome::Array(name, size) => zero_array(program, name, size),
+        Outcome::Array(name, size) => write_zero_array(program, name, size),
         Outcome::MassMatrix => {
             let degrees = program.degrees_of_freedom();
             let entry = Place::new("values", ["i", "j"].map(Index::Variable));
-            let zero = assignment(&place_text(&entry), "R(0.0)");
+            let zero = write_assignment(&write_target(&entry), "R(0.0)");
             write_loop("i", degrees, &write_loop("j", degrees, &zero))
         }
-        Outcome::ArrayAndInputs(_) => zero_array(program, "product", &Size::States),
+        Outcome::ArrayAndInputs(_) => write_zero_array(program, "product", &Size::States),
     };
     lines += &writer.statements(&written);
     if let Outcome::ArrayAndInputs(values) = &stage.outcome {
         for (name, value) in values {
-            lines += &assignment(&format!("input_product->{name}"), &writer.expression(value));
+            lines +=
+                &write_assignment(&format!("input_product->{name}"), &writer.expression(value));
         }
     }
     block(&format!("{head} {{"), &lines, "}")
 }
 
-fn zero_array(program: &Program, name: &str, size: &Size) -> String {
+fn write_zero_array(program: &Program, name: &str, size: &Size) -> String {
     let length = length(program, size);
     if length == 0 {
         return format!("(void){name};\n");
     }
-    write_loop("i", length, &assignment(&format!("{name}[i]"), "R(0.0)"))
+    write_loop(
+        "i",
+        length,
+        &write_assignment(&format!("{name}[i]"), "R(0.0)"),
+    )
 }
 
 fn length(program: &Program, size: &Size) -> usize {

@@ -1,12 +1,13 @@
 //! Macros of the standard headers of C99 that expand without arguments, and lines that hide them.
 //!
-//! A caller can include such a header before the emitted code, whose names can be those of macros: a spring rate `I`, a
-//! coordinate `M_E`. Macros with arguments do no harm, because no name of a model precedes a parenthesis.
+//! A caller can include a standard header before the emitted code. Names in the code can then be macros, for example
+//! a spring rate `I` or a coordinate `M_E`. Macros with arguments do no harm, because no name of a model is followed
+//! by a parenthesis.
 
 use std::collections::BTreeSet;
 
-/// Macros by header, as gcc on Linux defines them in `-std=gnu99`, with those of other C libraries in `<math.h>`.
-/// Macros that are rejected as names are not listed.
+/// Macros by header: those that gcc on Linux defines with `-std=gnu99`, and those that other C libraries define in
+/// `<math.h>`. Macros that are rejected as names are not listed.
 const STANDARD_MACROS: [(&str, &str); 14] = [
     ("complex.h", "I complex"),
     (
@@ -129,7 +130,7 @@ pub(super) fn find_macros(text: &str) -> BTreeSet<&'static str> {
     all.filter(|name| words.contains(name)).collect()
 }
 
-/// Returns the lines that hide macros of the caller, and those that restore them.
+/// Returns the lines that hide macros of the caller, and the lines that restore the macros.
 pub(super) fn hide_macros(names: impl IntoIterator<Item = &'static str>) -> [String; 2] {
     let [mut hide, mut restore] = [String::new(), String::new()];
     for name in names {
@@ -165,7 +166,7 @@ fn words_of_code(text: &str) -> BTreeSet<&str> {
     words
 }
 
-/// Returns the length of a string with its quotes, at the start of a text.
+/// Returns the length of the string literal at the start of a text, with its quotes.
 fn string_length(text: &str) -> usize {
     let mut is_escaped = false;
     let end = text.char_indices().skip(1).find(|(_, c)| {

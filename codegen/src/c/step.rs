@@ -1,11 +1,11 @@
-//! Step of fixed length in C: the classical Runge-Kutta method, with reactions of frictions and contacts in
-//! `reactions`.
+//! Fixed-length step in C: the classical Runge-Kutta method. The module `reactions` adds the reactions of frictions
+//! and contacts.
 
 use super::comments::comment;
 use super::expression::write_loop;
 use super::names::fill_template;
 use super::reactions;
-use super::stages::head;
+use super::stages::write_head;
 use crate::program::{Output, Program, Reactions};
 use crate::statements::layout::block;
 use crate::statements::{describe_step, reaction_constants};
@@ -19,7 +19,7 @@ const ARGUMENTS: [(&str, &str); 5] = [
 ];
 
 /// Returns the sizes of the arrays of reactions.
-pub(super) fn sizes(program: &Program) -> String {
+pub(super) fn write_sizes(program: &Program) -> String {
     let constants = reaction_constants(program);
     let constants = constants.iter().map(|(name, count, doc)| {
         let line = fill_template(program, &format!("#define NAME_{name} {count}\n"));
@@ -29,34 +29,34 @@ pub(super) fn sizes(program: &Program) -> String {
 }
 
 /// Returns the declaration if the step is requested.
-pub(super) fn declaration(program: &Program) -> String {
+pub(super) fn write_declaration(program: &Program) -> String {
     if !program.outputs.kinds.contains(&Output::Step) {
         return String::new();
     }
     let doc = describe_step(program);
     let lines: Vec<String> = doc.split('\n').map(str::to_owned).collect();
-    comment(&lines) + &head(program, ("void ", "step"), &ARGUMENTS, false) + ";\n"
+    comment(&lines) + &write_head(program, ("void ", "step"), &ARGUMENTS, false) + ";\n"
 }
 
 /// Returns the definition, with the functions that it calls, if the step is requested.
-pub(super) fn definition(program: &Program) -> String {
+pub(super) fn write_definition(program: &Program) -> String {
     if !program.outputs.kinds.contains(&Output::Step) {
         return String::new();
     }
-    let head = head(program, ("void ", "step"), &ARGUMENTS, true);
+    let head = write_head(program, ("void ", "step"), &ARGUMENTS, true);
     let whole = |lines: &str| block(&format!("{head} {{"), &fill_template(program, lines), "}");
     match &program.outputs.reactions {
         None => {
             let sum = "state[i] = state[i] + sixth * (k1[i] + k4[i] + R(2.0) * inner);\n";
-            whole(&(RATES_OF_STAGES.to_owned() + &runge_kutta(program, sum)))
+            whole(&(RATES_OF_STAGES.to_owned() + &write_runge_kutta(program, sum)))
         }
         Some(known) => {
             let sum = "next[i] = state[i] + sixth * (k1[i] + k4[i] + R(2.0) * inner);\n";
-            reactions::functions(program, known)
-                + &whole(&reactions::step(
+            reactions::write_functions(program, known)
+                + &whole(&reactions::write_step(
                     program,
                     known,
-                    [RATES_OF_STAGES, &runge_kutta(program, sum)],
+                    [RATES_OF_STAGES, &write_runge_kutta(program, sum)],
                 ))
         }
     }
@@ -71,8 +71,8 @@ const RATES_OF_STAGES: &str = "\
     const NAME_real half = R(0.5) * h;\n\
     const NAME_real sixth = h / R(6.0);\n";
 
-/// Writes a step of the Runge-Kutta method; `sum` writes an element of the new state.
-fn runge_kutta(program: &Program, sum: &str) -> String {
+/// Writes a step of the Runge-Kutta method; `sum` is the statement that computes one element of the new state.
+fn write_runge_kutta(program: &Program, sum: &str) -> String {
     let states = program.states();
     let held = program
         .outputs

@@ -1,27 +1,28 @@
 //! Structures of the emitted C, with units, and the functions that fill them.
 
 use super::comments::comment;
-use super::expression::{Writer, assignment, number, write_loop};
+use super::expression::{Writer, number, write_assignment, write_loop};
 use super::names::fill_template;
-use super::stages::{head, nest_lines};
+use super::stages::{nest_lines, write_head};
 use crate::program::{Extent, Program, Quantity};
 use crate::statements::layout::block;
 use crate::statements::{
-    EmitResult, File, Preparation, PreparedValue, UsedNames, describe_coefficient, quantity_line,
+    EmitResult, File, Preparation, PreparedValue, UsedNames, describe_coefficient,
+    describe_quantity,
 };
 
-pub(super) fn structures(file: &File<'_>, prepared: &Preparation) -> EmitResult<String> {
+pub(super) fn write_structures(file: &File<'_>, prepared: &Preparation) -> EmitResult<String> {
     let program = file.program;
     let mut fields = String::new();
     for parameter in &program.parameters {
-        fields += &field(file, &parameter.quantity, &parameter.origin)?;
+        fields += &write_field(file, &parameter.quantity, &parameter.origin)?;
     }
-    let mut text = structure(file, "Parameters of the model.", "parameters", fields);
+    let mut text = write_structure(file, "Parameters of the model.", "parameters", fields);
     let mut fields = String::new();
     for input in &program.inputs {
-        fields += &field(file, input, "")?;
+        fields += &write_field(file, input, "")?;
     }
-    text += &structure(file, "Inputs at run time.", "inputs", fields);
+    text += &write_structure(file, "Inputs at run time.", "inputs", fields);
     let mut fields = String::new();
     for id in &file.fields {
         let extents = match program.value(*id).extent {
@@ -48,10 +49,10 @@ pub(super) fn structures(file: &File<'_>, prepared: &Preparation) -> EmitResult<
     fields += &comment(&lines);
     fields += "int positive_definite;\n";
     let doc = "Values that depend only on the parameters: prepare once, use in every call.";
-    Ok(text + &structure(file, doc, "coefficients", fields))
+    Ok(text + &write_structure(file, doc, "coefficients", fields))
 }
 
-fn structure(file: &File<'_>, doc: &str, name: &str, fields: String) -> String {
+fn write_structure(file: &File<'_>, doc: &str, name: &str, fields: String) -> String {
     let fields = if fields.is_empty() {
         comment(&["Placeholder: C has no empty structures.".to_owned()]) + "char none;\n"
     } else {
@@ -61,9 +62,9 @@ fn structure(file: &File<'_>, doc: &str, name: &str, fields: String) -> String {
     comment(&[doc.to_owned()]) + &nest_lines("typedef struct {", &fields, &closing)
 }
 
-fn field(file: &File<'_>, quantity: &Quantity, origin: &str) -> EmitResult<String> {
+fn write_field(file: &File<'_>, quantity: &Quantity, origin: &str) -> EmitResult<String> {
     let name = file.words.identifier(&quantity.name)?;
-    let doc = comment(&[quantity_line(&quantity.doc, &quantity.unit, origin)]);
+    let doc = comment(&[describe_quantity(&quantity.doc, &quantity.unit, origin)]);
     Ok(doc + &fill_template(file.program, &format!("NAME_real {name};\n")))
 }
 
@@ -106,35 +107,38 @@ const FILLING: [Filling; 4] = [
     ),
 ];
 
-pub(super) fn declarations(program: &Program) -> String {
+pub(super) fn write_declarations(program: &Program) -> String {
     let declared = FILLING.map(|(name, arguments, doc)| {
-        let head = head(program, ("void ", name), arguments, false);
+        let head = write_head(program, ("void ", name), arguments, false);
         comment(&[fill_template(program, doc)]) + &format!("{head};\n")
     });
     declared.concat()
 }
 
-pub(super) fn fill_functions(file: &File<'_>, preparation: Preparation) -> EmitResult<String> {
+pub(super) fn write_fill_functions(
+    file: &File<'_>,
+    preparation: Preparation,
+) -> EmitResult<String> {
     let program = file.program;
     let [defaults, parameters, inputs, prepare] =
-        FILLING.map(|(name, arguments, _)| head(program, ("void ", name), arguments, true));
+        FILLING.map(|(name, arguments, _)| write_head(program, ("void ", name), arguments, true));
     let mut lines = String::new();
     for parameter in &program.parameters {
         let target = format!("parameters->{}", parameter.quantity.name);
-        lines += &assignment(&target, &format!("R({})", number(parameter.value)));
+        lines += &write_assignment(&target, &format!("R({})", number(parameter.value)));
     }
     let mut text = write_function(&defaults, "parameters->none = '\\0';\n", lines);
     let names = program.parameters.iter().map(|p| p.quantity.name.as_str());
-    text += &from_array(&parameters, "parameters", names);
+    text += &write_from_array(&parameters, "parameters", names);
     let names = program.inputs.iter().map(|input| input.name.as_str());
-    text += &from_array(&inputs, "inputs", names);
-    Ok(text + &prepared(file, &prepare, preparation))
+    text += &write_from_array(&inputs, "inputs", names);
+    Ok(text + &write_prepare(file, &prepare, preparation))
 }
 
-fn from_array<'n>(head: &str, of: &str, names: impl Iterator<Item = &'n str>) -> String {
-    let lines = names
-        .enumerate()
-        .map(|(place, name)| assignment(&format!("{of}->{name}"), &format!("numbers[{place}]")));
+fn write_from_array<'n>(head: &str, of: &str, names: impl Iterator<Item = &'n str>) -> String {
+    let lines = names.enumerate().map(|(place, name)| {
+        write_assignment(&format!("{of}->{name}"), &format!("numbers[{place}]"))
+    });
     let none = format!("(void)numbers;\n{of}->none = '\\0';\n");
     write_function(head, &none, lines.collect())
 }
@@ -148,13 +152,13 @@ fn write_function(head: &str, none: &str, lines: String) -> String {
     block(&format!("{head} {{"), &lines, "}")
 }
 
-fn prepared(file: &File<'_>, head: &str, prepared: Preparation) -> String {
+fn write_prepare(file: &File<'_>, head: &str, prepared: Preparation) -> String {
     let program = file.program;
     let mut used = UsedNames::from_preparation(&prepared);
     let mut writer = Writer::new(program);
     writer.notes.clone_from(&prepared.notes);
     let computed = used.retain(prepared.computed);
-    // The reference keeps the identity in programs from which the linker removes unused items.
+    // This reference keeps the identity in the image if the linker removes unused items.
     let kept = "const char *volatile identity = NAME_identity;\n(void)identity;\n";
     let mut lines = fill_template(program, kept);
     if !used.contains("parameters") {
@@ -164,15 +168,17 @@ fn prepared(file: &File<'_>, head: &str, prepared: Preparation) -> String {
     for (id, coefficient) in file.fields.iter().zip(&prepared.coefficients) {
         let target = format!("coefficients->{}", file.field_names[id]);
         lines += &match (coefficient, program.value(*id).extent) {
-            (PreparedValue::Number(value), _) => assignment(&target, &writer.expression(value)),
+            (PreparedValue::Number(value), _) => {
+                write_assignment(&target, &writer.expression(value))
+            }
             (PreparedValue::Numbers(array), Extent::Matrix(rows, columns)) => {
                 let from = writer.array(array);
-                let copy = assignment(&format!("{target}[i][j]"), &format!("{from}[i][j]"));
+                let copy = write_assignment(&format!("{target}[i][j]"), &format!("{from}[i][j]"));
                 write_loop("i", rows, &write_loop("j", columns, &copy))
             }
             (PreparedValue::Numbers(array), extent) => {
                 let from = writer.array(array);
-                let copy = assignment(&format!("{target}[i]"), &format!("{from}[i]"));
+                let copy = write_assignment(&format!("{target}[i]"), &format!("{from}[i]"));
                 write_loop("i", extent.length(), &copy)
             }
         };

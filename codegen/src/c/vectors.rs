@@ -2,7 +2,7 @@
 //! headers next to the emitted C.
 
 use super::comments::comment;
-use super::expression::{initialiser, number};
+use super::expression::{number, write_initialiser};
 use super::names::{WORDS, fill_template};
 use crate::program::Program;
 use crate::statements::layout;
@@ -16,7 +16,7 @@ use crate::vectors::{TestVector, TestVectors, default_coefficients};
 /// As for [`emit`](super::emit()), and coefficients that are not finite.
 pub fn baked(program: &Program) -> Result<String, EmitError> {
     let file = File::new(program, &WORDS)?;
-    let found = default_coefficients(&file, literal, initialiser)?;
+    let found = default_coefficients(&file, literal, write_initialiser)?;
     let mut fields: Vec<String> = found.fields.into_iter().map(|(_, text)| text).collect();
     fields.push(i32::from(found.is_definite).to_string());
     let text = comment(&[
@@ -30,29 +30,31 @@ pub fn baked(program: &Program) -> Result<String, EmitError> {
             &format!(
                 "#ifndef NAME_BAKED_H\n#define NAME_BAKED_H\n#include \"HEADER\"\n\
                  static const struct {{\nNAME_coefficients coefficients;\nconst char *identity;\n}} NAME_baked = {{{}, NAME_identity}};\n#endif\n",
-                initialiser(&fields)
+                write_initialiser(&fields)
             )
             .replace("HEADER", &format!("{}.h", program.name)),
         );
     Ok(layout::source(&text))
 }
 
-/// Writes the header `vectors.h`: the test vectors in both precisions and `NAME_self_test`, which computes the outputs
-/// with the coefficients of `NAME_baked.h` and returns 0 or the place of the first number with other bits.
+/// Writes the header `vectors.h`: the test vectors in both precisions and `NAME_self_test`, which computes the
+/// outputs with the coefficients of `NAME_baked.h` and returns 0, or the position of the first number that is not
+/// bit-identical.
 pub fn vectors(program: &Program, vectors: &TestVectors) -> Result<String, EmitError> {
     let outputs = Outputs::new(program)?;
     let text = SELF_TEST
         .replace("DOUBLE_COUNT", &vectors.double.len().to_string())
         .replace("SINGLE_COUNT", &vectors.single.len().to_string())
-        .replace("DOUBLE_VECTORS", &rows(&vectors.double))
-        .replace("SINGLE_VECTORS", &rows(&vectors.single))
+        .replace("DOUBLE_VECTORS", &write_rows(&vectors.double))
+        .replace("SINGLE_VECTORS", &write_rows(&vectors.single))
         .replace("OUTPUT_FIELDS", &outputs.fields)
         .replace("OUTPUT_CALLS", &outputs.calls)
         .replace("OUTPUTS", &outputs.numbers.to_string());
     Ok(layout::source(&fill_template(program, &text)))
 }
 
-/// Outputs that the self-test compares: fields of a structure, calls that fill them, and their numbers.
+/// Outputs that the self-test compares: fields of a structure, the calls that fill these fields, and the count of the
+/// numbers.
 struct Outputs {
     fields: String,
     calls: String,
@@ -60,7 +62,7 @@ struct Outputs {
 }
 
 impl Outputs {
-    /// Lists the outputs that have numbers, because C has no empty arrays.
+    /// Lists the outputs that are not empty, because C has no empty arrays.
     fn new(program: &Program) -> Result<Self, EmitError> {
         let degrees = program.degrees_of_freedom();
         let guards = File::new(program, &WORDS)?.guard_count();
@@ -100,17 +102,17 @@ impl Outputs {
     }
 }
 
-fn rows(vectors: &[TestVector]) -> String {
+fn write_rows(vectors: &[TestVector]) -> String {
     let rows = vectors.iter().map(|vector| {
         let literals: Vec<String> = vector
             .numbers()
             .iter()
             .map(|value| literal(*value))
             .collect();
-        initialiser(&literals)
+        write_initialiser(&literals)
     });
     let rows: Vec<String> = rows.collect();
-    initialiser(&rows)
+    write_initialiser(&rows)
 }
 
 fn literal(value: f64) -> String {

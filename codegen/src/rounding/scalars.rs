@@ -11,7 +11,7 @@ use eomgen_model_spec::function::Function;
 use super::format::Format;
 use crate::program::evaluator::{NO_POINT, Number, Places, step};
 use crate::program::{Extent, Op, Program, ValueId, Variable};
-use crate::statements::coefficient_values;
+use crate::statements::collect_coefficients;
 
 /// Operation on numbers; operands are indices in [`Scalars::list`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,7 +111,7 @@ impl Scalars {
             record_value(program, &places, *id, &mut elements);
         }
         if format == Format::Single {
-            let coefficients = coefficient_values(program);
+            let coefficients = collect_coefficients(program);
             for id in reachable.iter().filter(is_prepared) {
                 convert(program, &places, *id, &mut elements);
             }

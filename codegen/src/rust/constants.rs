@@ -4,9 +4,11 @@ use super::expression::array;
 use super::literals::number;
 use crate::identity::unsealed;
 use crate::statements::layout::block;
-use crate::statements::{DataElements, File, Indices, data_arrays, indices, reaction_constants};
+use crate::statements::{
+    DataElements, File, Indices, list_data_arrays, list_indices, reaction_constants,
+};
 
-pub(super) fn constants(file: &File<'_>) -> String {
+pub(super) fn write_constants(file: &File<'_>) -> String {
     let program = file.program;
     let orders: Vec<String> = program.fields.iter().map(|f| f.order.to_string()).collect();
     let states = program.state_names();
@@ -40,17 +42,17 @@ pub(super) fn constants(file: &File<'_>) -> String {
         file.guard_count(),
         program.spec_hash,
         env!("CARGO_PKG_VERSION"),
-    ) + &reactions(file)
-        + &names(file)
-        + &data(file)
-        + &index_modules(file)
-        + &identity(file)
+    ) + &write_reactions(file)
+        + &write_names(file)
+        + &write_data(file)
+        + &write_index_modules(file)
+        + &write_identity(file)
 }
 
 /// Writes one module of constants for each kind of index: names of parameters and of states may be equal.
-fn index_modules(file: &File<'_>) -> String {
+fn write_index_modules(file: &File<'_>) -> String {
     let mut text = String::new();
-    for Indices { kind, doc, entries } in indices(file.program) {
+    for Indices { kind, doc, entries } in list_indices(file.program) {
         let constant = |(place, (name, constant)): (usize, &(String, String))| {
             format!("/// `{name}`\npub const {constant}: usize = {place};\n")
         };
@@ -61,7 +63,7 @@ fn index_modules(file: &File<'_>) -> String {
     text
 }
 
-fn identity(file: &File<'_>) -> String {
+fn write_identity(file: &File<'_>) -> String {
     let text = unsealed(file.program);
     format!(
         "/// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.\n\
@@ -70,7 +72,7 @@ fn identity(file: &File<'_>) -> String {
     )
 }
 
-fn reactions(file: &File<'_>) -> String {
+fn write_reactions(file: &File<'_>) -> String {
     let constants = reaction_constants(file.program);
     let constants = constants.iter();
     constants
@@ -78,7 +80,7 @@ fn reactions(file: &File<'_>) -> String {
         .collect()
 }
 
-fn names(file: &File<'_>) -> String {
+fn write_names(file: &File<'_>) -> String {
     let program = file.program;
     let parameters = program.parameters.iter().map(|p| p.quantity.name.as_str());
     format!(
@@ -98,9 +100,9 @@ fn names(file: &File<'_>) -> String {
 }
 
 /// Writes units, initial state and ranges.
-fn data(file: &File<'_>) -> String {
+fn write_data(file: &File<'_>) -> String {
     let mut text = String::new();
-    for of in data_arrays(file.program) {
+    for of in list_data_arrays(file.program) {
         let (item, elements) = match &of.elements {
             DataElements::Texts(texts) => {
                 ("&'static str", quoted(texts.iter().map(String::as_str)))

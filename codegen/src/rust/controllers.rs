@@ -2,28 +2,29 @@
 
 use super::expression::Writer;
 use super::generics::type_with_generics;
-use super::literals::{doc, linked_doc};
-use super::types::literal;
+use super::literals::{write_doc, write_linked_doc};
+use super::types::write_literal;
 use crate::program::{ProgramController, Quantity};
 use crate::statements::layout::{DEEPER, SHALLOWER, block};
 use crate::statements::{
-    ControllerStage, EmitResult, File, RequiredFunctions, TIMES, controller_stages, quantity_line,
+    ControllerStage, EmitResult, File, RequiredFunctions, TIME_FIELDS, build_controller_stages,
+    describe_quantity,
 };
 
 /// Writes the modules of all controllers.
-pub(super) fn controllers(
+pub(super) fn write_controllers(
     file: &File<'_>,
     needed: &mut RequiredFunctions,
     writer: &mut Writer,
 ) -> EmitResult<String> {
     let mut text = String::new();
     for controller in &file.program.controllers {
-        let stages = controller_stages(file, controller, needed)?;
+        let stages = build_controller_stages(file, controller, needed)?;
         let mut items = "#[allow(unused_imports)]\nuse super::*;\n".to_owned();
-        items += &types(controller);
+        items += &write_types(controller);
         let parameters = type_with_generics(file, "Parameters");
         let mut start = writer.statements(&stages.start.computed);
-        start += &literal("Self", &fields(&stages.start.memory, writer));
+        start += &write_literal("Self", &write_fields(&stages.start.memory, writer));
         let head = "/// Returns the times and the initial states.\n\
                     #[allow(unused_variables)]\n";
         let start = block(
@@ -32,50 +33,53 @@ pub(super) fn controllers(
             "}",
         );
         items += &block("impl<T: Scalar> Memory<T> {", &start, "}");
-        items += &update(controller, &stages.update, &parameters, writer);
+        items += &write_update(controller, &stages.update, &parameters, writer);
         let described = match controller.doc.is_empty() {
             true => format!("Controller `{}`.", controller.name),
             false => format!("Controller `{}`: {}.", controller.name, controller.doc),
         };
-        let head = doc(&[described]);
+        let head = write_doc(&[described]);
         let head = format!("{head}pub mod controller_{} {{", controller.name);
         text += &block(&head, &items, "}");
     }
     Ok(text)
 }
 
-fn fields(values: &[(String, crate::statements::Expression)], writer: &mut Writer) -> Vec<String> {
+fn write_fields(
+    values: &[(String, crate::statements::Expression)],
+    writer: &mut Writer,
+) -> Vec<String> {
     let field = |(name, value): &(String, _)| format!("{name}: {}", writer.expression(value));
     values.iter().map(field).collect()
 }
 
-fn types(controller: &ProgramController) -> String {
+fn write_types(controller: &ProgramController) -> String {
     let field = |quantity: &Quantity| {
-        let lines = doc(&[quantity_line(&quantity.doc, &quantity.unit, "")]);
+        let lines = write_doc(&[describe_quantity(&quantity.doc, &quantity.unit, "")]);
         format!("{lines}pub {}: T,\n", quantity.name)
     };
     let quantities = |all: &[Quantity]| -> String { all.iter().map(field).collect() };
-    let times = TIMES.map(|(name, meaning)| {
+    let times = TIME_FIELDS.map(|(name, meaning)| {
         format!(
             "{}pub {name}: T,\n",
-            doc(&[quantity_line(meaning, "s", "")])
+            write_doc(&[describe_quantity(meaning, "s", "")])
         )
     });
     let memory = times.concat() + &quantities(&controller.states);
-    let mut text = structure("Memory", "Times and states.", &memory);
-    text += &structure(
+    let mut text = write_structure("Memory", "Times and states.", &memory);
+    text += &write_structure(
         "Measured",
         "Quantities that the controller measures at a sample, before it changes an input.",
         &quantities(&controller.measured),
     );
-    text + &structure(
+    text + &write_structure(
         "Outputs",
         "Driven inputs: they act after the delay, and are held until the next ones act.",
         &quantities(&controller.outputs),
     )
 }
 
-fn structure(name: &str, meaning: &str, fields: &str) -> String {
+fn write_structure(name: &str, meaning: &str, fields: &str) -> String {
     let generics = if fields.is_empty() { "" } else { "<T = f64>" };
     let head = format!(
         "/// {meaning}\n#[derive(Clone, Copy, Debug, PartialEq)]\npub struct {name}{generics} {{"
@@ -83,7 +87,7 @@ fn structure(name: &str, meaning: &str, fields: &str) -> String {
     block(&head, fields, "}")
 }
 
-fn update(
+fn write_update(
     controller: &ProgramController,
     stage: &ControllerStage,
     parameters: &str,
@@ -97,8 +101,8 @@ fn update(
     for (name, value) in &stage.memory {
         lines += &format!("memory.{name} = {};\n", writer.expression(value));
     }
-    lines += &literal("Outputs", &fields(&stage.outputs, writer));
-    let head = linked_doc("Computes the outputs and the next states of a sample.");
+    lines += &write_literal("Outputs", &write_fields(&stage.outputs, writer));
+    let head = write_linked_doc("Computes the outputs and the next states of a sample.");
     let measured = of("Measured", &controller.measured);
     let outputs = of("Outputs", &controller.outputs);
     let head = format!(

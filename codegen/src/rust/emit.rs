@@ -6,10 +6,10 @@ use std::collections::BTreeSet;
 use super::constants;
 use super::controllers;
 use super::expression::{Writer, array};
-use super::functions::items;
+use super::functions::write_functions;
 use super::generics::for_lanes;
 use super::jacobians;
-use super::literals::{doc, file_doc, number};
+use super::literals::{number, write_doc, write_file_doc};
 use super::regimes;
 use super::scalar::{COEFFICIENT, SCALAR};
 use super::stages;
@@ -21,8 +21,8 @@ use crate::program::{Extent, Op, Program};
 use crate::statements::layout;
 use crate::statements::layout::block;
 use crate::statements::{
-    EmitError, EmitResult, File, RequiredFunctions, Stage, guards, mass_matrix, observables, rates,
-    requested_stages, stage_roots,
+    EmitError, EmitResult, File, RequiredFunctions, Stage, build_guards, build_mass_matrix,
+    build_observables, build_rates, build_requested_stages, collect_stage_roots,
 };
 
 /// Form of the emitted file.
@@ -32,8 +32,8 @@ pub enum Packaging {
     Crate,
     /// Module of a `no_std` crate.
     Module,
-    /// Content of a module for `include!` or a macro, without attributes of a file. The items are re-exported
-    /// from an inner module, [`ITEMS_MODULE`], which hides its helpers.
+    /// Content of a module for `include!` or a macro, without file-level attributes. The items are re-exported from
+    /// an inner module, [`ITEMS_MODULE`], which hides its helpers.
     Items,
 }
 
@@ -43,8 +43,7 @@ pub const ITEMS_MODULE: &str = "eomgen_emitted";
 /// Writes a program as Rust.
 ///
 /// # Errors
-/// A name of the program that is not a Rust identifier, and a program with Hessians, which are available only
-/// in C.
+/// A name of the program is not a Rust identifier, or the program has Hessians, which are available only in C.
 pub fn emit(program: &Program, packaging: Packaging) -> Result<String, EmitError> {
     if program.outputs.gradient_derivative.is_some() {
         return Err(EmitError::Value(
@@ -64,39 +63,39 @@ fn write_marked_source(file: &File<'_>, packaging: Packaging) -> EmitResult<Stri
         ..Writer::default()
     };
     let head = [
-        constants::constants(file),
-        types::parameters(file)?,
-        types::inputs(file)?,
-        types::coefficients(file, &mut needed, &mut writer)?,
+        constants::write_constants(file),
+        types::write_parameters(file)?,
+        types::write_inputs(file)?,
+        types::write_coefficients(file, &mut needed, &mut writer)?,
     ];
     let mut text = head.concat();
-    let function = |stage: Stage, writer: &mut Writer| stages::function(file, &stage, writer);
-    text += &stages::rates(file, &rates(file, &mut needed)?, &mut writer);
-    for stage in observables(file, &mut needed)? {
+    let function = |stage: Stage, writer: &mut Writer| stages::write_stage(file, &stage, writer);
+    text += &stages::write_rates(file, &build_rates(file, &mut needed)?, &mut writer);
+    for stage in build_observables(file, &mut needed)? {
         text += &function(stage, &mut writer);
     }
-    text += &function(guards(file, &mut needed)?, &mut writer);
-    text += &function(mass_matrix(file, &mut needed)?, &mut writer);
-    text += &regimes::regimes(file, &mut needed, &mut writer)?;
-    for stage in requested_stages(file, &mut needed)? {
+    text += &function(build_guards(file, &mut needed)?, &mut writer);
+    text += &function(build_mass_matrix(file, &mut needed)?, &mut writer);
+    text += &regimes::write_regimes(file, &mut needed, &mut writer)?;
+    for stage in build_requested_stages(file, &mut needed)? {
         text += &function(stage, &mut writer);
     }
-    text += &jacobians::jacobians(file, &mut needed, &mut writer)?;
-    text += &step::step(file);
-    text += &controllers::controllers(file, &mut needed, &mut writer)?;
-    text += &tables(file)?;
+    text += &jacobians::write_jacobians(file, &mut needed, &mut writer)?;
+    text += &step::write_step(file);
+    text += &controllers::write_controllers(file, &mut needed, &mut writer)?;
+    text += &write_tables(file)?;
     text += SCALAR;
     if for_lanes(file) {
         text += COEFFICIENT;
     }
-    let items = text + &items(&needed, writer.conversions);
-    let documentation = documentation(file);
+    let items = text + &write_functions(&needed, writer.conversions);
+    let documentation = describe_file(file);
     let allowed = "#![allow(non_snake_case)]\n#![allow(clippy::all)]\n#![forbid(unsafe_code)]\n";
     Ok(match packaging {
-        Packaging::Crate => file_doc(&documentation) + "#![no_std]\n" + allowed + &items,
-        Packaging::Module => file_doc(&documentation) + allowed + &items,
+        Packaging::Crate => write_file_doc(&documentation) + "#![no_std]\n" + allowed + &items,
+        Packaging::Module => write_file_doc(&documentation) + allowed + &items,
         Packaging::Items => {
-            doc(&documentation)
+            write_doc(&documentation)
                 + "#[allow(non_snake_case, dead_code, clippy::all, clippy::pedantic, clippy::nursery)]\n"
                 + "#[forbid(unsafe_code)]\n"
                 + &block(&format!("mod {ITEMS_MODULE} {{"), &items, "}")
@@ -106,8 +105,8 @@ fn write_marked_source(file: &File<'_>, packaging: Packaging) -> EmitResult<Stri
     })
 }
 
-/// Returns title and origin of the file, by lines.
-fn documentation(file: &File<'_>) -> Vec<String> {
+/// Returns title and origin of the file, one string per line.
+fn describe_file(file: &File<'_>) -> Vec<String> {
     let program = file.program;
     let orders: Vec<String> = program.fields.iter().map(|f| f.order.to_string()).collect();
     let order = if orders.is_empty() {
@@ -132,9 +131,9 @@ fn documentation(file: &File<'_>) -> Vec<String> {
     ]
 }
 
-fn tables(file: &File<'_>) -> EmitResult<String> {
+fn write_tables(file: &File<'_>) -> EmitResult<String> {
     let program = file.program;
-    let mut roots = stage_roots(program);
+    let mut roots = collect_stage_roots(program);
     roots.extend(&program.pivots);
     let reached = program.reachable(&roots);
     let mut items = String::new();
@@ -156,7 +155,7 @@ fn tables(file: &File<'_>) -> EmitResult<String> {
             }
             other => (format!("[f64; {}]", other.length()), array(&values)),
         };
-        items.push_str(&doc(std::slice::from_ref(&table.doc)));
+        items.push_str(&write_doc(std::slice::from_ref(&table.doc)));
         items.push_str(&format!("static {name}: {extent} = {content};\n"));
     }
     Ok(items)

@@ -8,7 +8,7 @@ use crate::statements::layout::{
     LAYOUT_BOUNDARY, SPACE, SPACE_OUT, ZERO,
 };
 use crate::statements::{
-    Array, Expression, Index, Notes, Operator, Place, Span, Statement, Structure,
+    ArgumentStruct, Array, Expression, Index, Notes, Operator, Place, Span, Statement,
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -20,16 +20,16 @@ enum Level {
     Atom,
 }
 
-/// Array conversions with a use.
+/// Array conversions that the file uses.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Conversions {
-    /// Vectors of another type.
+    /// True if vectors are converted to another number type.
     pub(super) converted: bool,
-    /// Matrices of another type.
+    /// True if matrices are converted to another number type.
     pub(super) converted_matrix: bool,
-    /// Whole vectors of coefficients.
+    /// True if whole vectors of coefficients are read.
     pub(super) read_array: bool,
-    /// Whole matrices of coefficients.
+    /// True if whole matrices of coefficients are read.
     pub(super) read_matrix: bool,
 }
 
@@ -38,7 +38,7 @@ pub(super) struct Writer {
     /// True if coefficients are read for SIMD lanes.
     pub(super) lanes: bool,
     pub(super) conversions: Conversions,
-    /// Origin of the values of the current function.
+    /// Units and terms of the named values in the current function.
     pub(super) notes: Notes,
 }
 
@@ -63,7 +63,7 @@ impl Writer {
             }
             Statement::Flag(name) => format!("let mut {name} = true;\n"),
             Statement::Assign(place, value) => {
-                assignment(&place_text(place), self.expression(value)) + "\n"
+                write_assignment(&write_target(place), self.expression(value)) + "\n"
             }
             Statement::Loop { index, span, lines } => {
                 write_loop_over(index, span, &self.statements(lines))
@@ -75,9 +75,9 @@ impl Writer {
                 span,
                 product,
             } => {
-                let defined = assignment(&format!("let mut {name}"), self.expression(first));
+                let defined = write_assignment(&format!("let mut {name}"), self.expression(first));
                 let rest = Expression::subtract(&Expression::name(*name), product);
-                let line = assignment(name, self.expression(&rest)) + "\n";
+                let line = write_assignment(name, self.expression(&rest)) + "\n";
                 defined + "\n" + &write_loop_over(index, span, &line)
             }
             Statement::Sum {
@@ -91,12 +91,12 @@ impl Writer {
                     "sum_of_few"
                 };
                 let sum = self.sum(function, *length, element);
-                assignment(&format!("let {name}"), sum) + "\n"
+                write_assignment(&format!("let {name}"), sum) + "\n"
             }
             Statement::Cholesky { name, matrix, .. } => {
                 let matrix = reference(self.array(matrix));
                 let factor = call("cholesky", &[matrix]);
-                assignment(&format!("let {name}"), factor) + "\n"
+                write_assignment(&format!("let {name}"), factor) + "\n"
             }
             Statement::CholeskySolve {
                 name,
@@ -111,13 +111,13 @@ impl Writer {
                 };
                 let operands = [factor, right].map(|array| reference(self.array(array)));
                 let solution = call(function, &operands);
-                assignment(&format!("let {name}"), solution) + "\n"
+                write_assignment(&format!("let {name}"), solution) + "\n"
             }
         }
     }
 
     pub(super) fn write_definition(&mut self, name: &str, value: &Expression) -> String {
-        assignment(&format!("let {name}"), self.expression(value)) + "\n"
+        write_assignment(&format!("let {name}"), self.expression(value)) + "\n"
     }
 
     /// Writes an expression without outer parentheses.
@@ -140,10 +140,10 @@ impl Writer {
 
     fn write_with_level(&mut self, expression: &Expression) -> (String, Level) {
         let text = match expression {
-            Expression::Number(value) => converted(&number(*value)),
+            Expression::Number(value) => convert_number(&number(*value)),
             Expression::Name(name) | Expression::Flag(name) => name.clone(),
             Expression::Element(array, indices) => self.element(array, indices),
-            Expression::Field(structure, name) => field(structure_name(*structure), name),
+            Expression::Field(structure, name) => write_field(structure_name(*structure), name),
             Expression::Shared(coefficient) => call("C::read", &[self.expression(coefficient)]),
             Expression::Binary(operator, a, b) => return self.binary(*operator, a, b),
             Expression::Negate(a) => {
@@ -163,7 +163,7 @@ impl Writer {
             Expression::Greater(parts) => call("T::all_greater", &self.expressions(&**parts)),
             Expression::And(parts) => {
                 let [a, b] = &**parts;
-                let text = infix(
+                let text = write_infix(
                     "&&",
                     self.write_at_level(a, Level::And),
                     self.write_at_level(b, Level::Atom),
@@ -183,17 +183,17 @@ impl Writer {
             Operator::Divide => ("/", Level::Product, Level::Negation),
         };
         let (a, b) = (self.write_at_level(a, level), self.write_at_level(b, right));
-        (infix(sign, a, b), level)
+        (write_infix(sign, a, b), level)
     }
 
     /// Writes an element; an entry of a table is converted to the scalar type.
     fn element(&mut self, array: &Array, indices: &[Index]) -> String {
-        let brackets: Vec<String> = indices.iter().map(index_text).collect();
+        let brackets: Vec<String> = indices.iter().map(write_index).collect();
         let brackets = brackets.join("][");
         match array {
-            Array::Table(name, _) => converted(&format!("{name}[{brackets}]")),
+            Array::Table(name, _) => convert_number(&format!("{name}[{brackets}]")),
             Array::Coefficient(name, _) => {
-                format!("{}[{brackets}]", field("coefficients", name))
+                format!("{}[{brackets}]", write_field("coefficients", name))
             }
             Array::Local(name) => format!("{name}[{brackets}]"),
             Array::Filled(value, _) => self.expression(value),
@@ -215,7 +215,7 @@ impl Writer {
                 format!("{function}(&{name})")
             }
             Array::Coefficient(name, extent) => {
-                let field = field("coefficients", name);
+                let field = write_field("coefficients", name);
                 if !self.lanes {
                     return field;
                 }
@@ -231,8 +231,8 @@ impl Writer {
         }
     }
 
-    /// Writes the call of a function that sums `length` elements i. The length is in the type of an array, so
-    /// that the function knows it at compile time.
+    /// Writes the call of a function that sums `length` elements. The length is passed as the type of an array, so
+    /// that it is known at compile time.
     fn sum(&mut self, function: &str, length: usize, element: &Expression) -> String {
         let (element, level) = self.write_with_level(element);
         let body = if level == Level::Atom && element.ends_with(')') {
@@ -256,39 +256,39 @@ pub(super) fn zeros(name: &str, lengths: &[String]) -> String {
 }
 
 /// Converts an `f64`, a literal or a table entry, to the scalar type.
-fn converted(number: &str) -> String {
+fn convert_number(number: &str) -> String {
     call("T::number", &[number.to_owned()])
 }
 
-fn field(of: &str, name: &str) -> String {
+fn write_field(of: &str, name: &str) -> String {
     format!("{BLOCK}{BLOCK_OUT}{of}{CLOSE}{ZERO}.{name}{CLOSE}")
 }
 
-fn structure_name(structure: Structure) -> &'static str {
+fn structure_name(structure: ArgumentStruct) -> &'static str {
     match structure {
-        Structure::Coefficients => "coefficients",
-        Structure::Parameters => "parameters",
-        Structure::Inputs => "inputs",
-        Structure::InputDirection => "input_direction",
-        Structure::Measured => "measured",
-        Structure::Memory => "memory",
+        ArgumentStruct::Coefficients => "coefficients",
+        ArgumentStruct::Parameters => "parameters",
+        ArgumentStruct::Inputs => "inputs",
+        ArgumentStruct::InputDirection => "input_direction",
+        ArgumentStruct::Measured => "measured",
+        ArgumentStruct::Memory => "memory",
     }
 }
 
-fn place_text(place: &Place) -> String {
+fn write_target(place: &Place) -> String {
     let mut text = place.name.clone();
     for index in &place.indices {
-        text.push_str(&format!("[{}]", index_text(index)));
+        text.push_str(&format!("[{}]", write_index(index)));
     }
     text
 }
 
-fn index_text(index: &Index) -> String {
+fn write_index(index: &Index) -> String {
     match index {
         Index::Number(number) => number.to_string(),
         Index::Variable(name) => (*name).to_owned(),
-        Index::Sum(a, b) => infix("+", index_text(a), index_text(b)),
-        Index::Product(a, b) => infix("*", index_text(a), index_text(b)),
+        Index::Sum(a, b) => write_infix("+", write_index(a), write_index(b)),
+        Index::Product(a, b) => write_infix("*", write_index(a), write_index(b)),
     }
 }
 
@@ -304,7 +304,7 @@ pub(super) fn write_loop(index: &str, length: usize, lines: &str) -> String {
 }
 
 fn write_loop_over(index: &str, span: &Span, lines: &str) -> String {
-    let indices = format!("{}..{}", index_text(&span.from), index_text(&span.to));
+    let indices = format!("{}..{}", write_index(&span.from), write_index(&span.to));
     let head = if span.reversed {
         format!("for {index} in ({indices}).rev() {{")
     } else {
@@ -314,16 +314,16 @@ fn write_loop_over(index: &str, span: &Span, lines: &str) -> String {
 }
 
 /// Writes a binary operation that can be broken before the operator.
-fn infix(operator: &str, a: impl std::fmt::Display, b: impl std::fmt::Display) -> String {
+fn write_infix(operator: &str, a: impl std::fmt::Display, b: impl std::fmt::Display) -> String {
     format!("{FLOW}{FLOW_OUT}{a}{CLOSE}{SPACE}{operator} {b}{CLOSE}")
 }
 
 /// Writes an assignment; `target` can contain a declaration.
-pub(super) fn assignment(target: &str, value: impl std::fmt::Display) -> String {
+pub(super) fn write_assignment(target: &str, value: impl std::fmt::Display) -> String {
     format!("{target} = {LAYOUT_BOUNDARY}{value};")
 }
 
-/// Joins elements of an array or a call; those that do not fit on one line have one line each.
+/// Joins elements of an array or a call. If they do not fit on one line, each has its own line.
 fn array_items(items: &[String]) -> String {
     let mut text = String::new();
     for (place, item) in items.iter().enumerate() {

@@ -11,7 +11,7 @@ use crate::statements::{
 };
 
 /// Writes the required functions.
-pub fn items(needed: &RequiredFunctions, conversions: Conversions) -> String {
+pub fn write_functions(needed: &RequiredFunctions, conversions: Conversions) -> String {
     let sides = [
         Helper::DeadzoneOnSide,
         Helper::Touching,
@@ -26,8 +26,14 @@ pub fn items(needed: &RequiredFunctions, conversions: Conversions) -> String {
         (has(Helper::Either), EITHER),
         (has(Helper::Chosen), CHOSEN),
         (needed.has_any(&sides), POSITIVE),
-        (has(Helper::Cholesky), &*(cholesky() + &cholesky_solve())),
-        (has(Helper::CholeskyOfMatrix), &*cholesky_solve_matrix()),
+        (
+            has(Helper::Cholesky),
+            &*(write_cholesky() + &write_cholesky_solve()),
+        ),
+        (
+            has(Helper::CholeskyOfMatrix),
+            &*write_cholesky_solve_matrix(),
+        ),
         (
             conversions.converted || conversions.converted_matrix,
             CONVERTED,
@@ -38,7 +44,10 @@ pub fn items(needed: &RequiredFunctions, conversions: Conversions) -> String {
             READ_ARRAY,
         ),
         (conversions.read_matrix, READ_MATRIX),
-        (needed.has_any(&[Helper::Sum, Helper::SumOfFew]), PAIRED),
+        (
+            needed.has_any(&[Helper::Sum, Helper::SumOfFew]),
+            PAIRWISE_SUM,
+        ),
         (has(Helper::SumOfFew), SUM_OF_FEW),
         (has(Helper::Sum), SUM),
     ] {
@@ -56,7 +65,7 @@ const CHOLESKY_HEAD: &str = "\
 /// Computes the lower factor L of a symmetric matrix L L^T; NaN if it is not positive definite.
 fn cholesky<T: Scalar, const N: usize>(matrix: &[[T; N]; N]) -> [[T; N]; N] {";
 
-/// Head of the solution for a vector, which rates for SIMD lanes also use.
+/// Head of the solution for a vector. Rates for SIMD lanes also use this function.
 const CHOLESKY_SOLVE_HEAD: &str = "\
 /// Solves L L^T x = right.
 #[inline(always)]
@@ -73,28 +82,28 @@ fn cholesky_solve_matrix<T: Scalar, const N: usize, const M: usize>(
 ) -> [[T; M]; N] {";
 
 /// Writes the Cholesky factorisation.
-fn cholesky() -> String {
+fn write_cholesky() -> String {
     let lines = recorder().factorise(
         "N",
         &MatrixOperand::local("matrix", Elements::InRows),
         &MatrixOperand::local("factor", Elements::InRows),
     );
-    array_function(CHOLESKY_HEAD, ("factor", &["N", "N"]), &lines)
+    write_array_function(CHOLESKY_HEAD, ("factor", &["N", "N"]), &lines)
 }
 
 /// Writes the solution with a Cholesky factor for a vector.
-fn cholesky_solve() -> String {
-    let lines = solution(Elements::InColumn, None);
-    array_function(CHOLESKY_SOLVE_HEAD, ("x", &["N"]), &lines)
+fn write_cholesky_solve() -> String {
+    let lines = build_solution(Elements::InColumn, None);
+    write_array_function(CHOLESKY_SOLVE_HEAD, ("x", &["N"]), &lines)
 }
 
 /// Writes the solution with a Cholesky factor for a matrix.
-fn cholesky_solve_matrix() -> String {
-    let lines = solution(Elements::InRows, Some("M".into()));
-    array_function(CHOLESKY_SOLVE_MATRIX_HEAD, ("x", &["N", "M"]), &lines)
+fn write_cholesky_solve_matrix() -> String {
+    let lines = build_solution(Elements::InRows, Some("M".into()));
+    write_array_function(CHOLESKY_SOLVE_MATRIX_HEAD, ("x", &["N", "M"]), &lines)
 }
 
-fn solution(elements: Elements, columns: Option<Index>) -> Vec<Statement> {
+fn build_solution(elements: Elements, columns: Option<Index>) -> Vec<Statement> {
     let both = ["right", "x"].map(|name| MatrixOperand::local(name, elements.clone()));
     let factor = MatrixOperand::local("factor", Elements::InRows);
     recorder().solve(("N", columns), &factor, both.each_ref())
@@ -104,8 +113,13 @@ fn recorder() -> Recorder {
     Recorder::new("rest")
 }
 
-/// Writes a function that returns an array with these lengths, which is zero before its lines.
-fn array_function(head: &str, (result, lengths): (&str, &[&str]), lines: &[Statement]) -> String {
+/// Writes a function that returns an array with these lengths. The array is filled with zeros before the statements
+/// of `lines`.
+fn write_array_function(
+    head: &str,
+    (result, lengths): (&str, &[&str]),
+    lines: &[Statement],
+) -> String {
     let lengths: Vec<String> = lengths.iter().map(|length| (*length).to_owned()).collect();
     let lines = zeros(result, &lengths) + &Writer::default().statements(lines);
     block(head, &format!("{lines}{result}\n"), "}")
@@ -137,11 +151,11 @@ fn converted_matrix<T: Scalar, const N: usize, const M: usize>(
 }
 ";
 
-/// Sum of the partial sums in pairs.
-const PAIRED: &str = "\
-/// Adds the first `N` of eight numbers, neighbours in pairs.
+/// Pairwise sum of the partial sums.
+const PAIRWISE_SUM: &str = "\
+/// Returns the pairwise sum of the first `N` of eight numbers.
 #[inline(always)]
-fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
+fn pairwise_sum<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
     let a = if N > 1 { s[0] + s[1] } else { s[0] };
     let b = if N > 3 { s[2] + s[3] } else { s[2] };
     let c = if N > 5 { s[4] + s[5] } else { s[4] };
@@ -152,7 +166,7 @@ fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
 }
 ";
 
-/// Whole vectors of coefficients.
+/// Conversion of whole vectors of coefficients.
 const READ_ARRAY: &str = "\
 /// Reads coefficients as numbers of the computation.
 #[inline(always)]
@@ -165,7 +179,7 @@ fn read_array<T: Scalar, C: Coefficient<T>, const N: usize>(numbers: &[C; N]) ->
 }
 ";
 
-/// Whole matrices of coefficients.
+/// Conversion of whole matrices of coefficients.
 const READ_MATRIX: &str = "\
 /// Reads a matrix of coefficients as numbers of the computation.
 #[inline(always)]
@@ -180,7 +194,7 @@ fn read_matrix<T: Scalar, C: Coefficient<T>, const N: usize, const M: usize>(
 }
 ";
 
-/// Sums of at most as many elements as there are partial sums.
+/// Sum of at most eight elements.
 const SUM_OF_FEW: &str = "\
 /// Adds up to eight elements.
 #[inline(always)]
@@ -192,14 +206,13 @@ fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
     for k in 0..N {
         s[k] = element(k);
     }
-    paired::<N, T>(&s)
+    pairwise_sum::<N, T>(&s)
 }
 ";
 
-/// Sums of more elements. For single numbers the function is not inlined: the compiler would vectorise across
-/// unrolled outer loops and spill registers. For SIMD lanes it is inlined everywhere by attribute, because
-/// the compiler would stop after some calls. The length is a constant of the type, which removes bounds
-/// checks.
+/// Sum of more than eight elements. For scalars the function is not inlined: the compiler would vectorise across
+/// unrolled outer loops and spill registers. For SIMD lanes an attribute enforces inlining, because the compiler
+/// would inline only some of the calls. The length is a constant of the type, which removes bounds checks.
 const SUM: &str = "\
 /// Adds elements in eight partial sums; sum k has the elements k, k + 8, k + 16, ...
 #[inline(always)]
@@ -219,7 +232,7 @@ fn sum<const N: usize, T: Scalar, F: Fn(usize) -> T>(_: [(); N], element: F) -> 
             for i in N / 8 * 8..N {
                 s[i % 8] = s[i % 8] + element(i);
             }
-            paired::<N, T>(&s)
+            pairwise_sum::<N, T>(&s)
         },
     )
 }

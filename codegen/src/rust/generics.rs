@@ -3,7 +3,7 @@
 use crate::program::Output;
 use crate::statements::File;
 
-/// Returns true if every function has a second version for SIMD lanes.
+/// Returns true if every function is also emitted in a version for SIMD lanes.
 pub(super) fn for_lanes(file: &File<'_>) -> bool {
     file.program.outputs.kinds.contains(&Output::Lanes)
 }

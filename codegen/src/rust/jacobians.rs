@@ -1,15 +1,15 @@
 //! Emitted Jacobians. Each has a pattern of structural nonzeros, expanded from blocks at compile time, and a
 //! function that returns the nonzeros, row by row. The linearisation copies them into dense matrices.
 
-use super::expression::{Writer, array, assignment, call, reference};
-use super::literals::linked_doc;
+use super::expression::{Writer, array, call, reference, write_assignment};
+use super::literals::write_linked_doc;
 use super::signature::{Signature, stage_with};
-use super::stages::{call_stage, function};
-use super::types::literal;
+use super::stages::{call_stage, write_stage};
+use super::types::write_literal;
 use crate::program::{Jacobian, Output, ValueId};
-use crate::statements::{EmitResult, File, RequiredFunctions, jacobian_stage};
+use crate::statements::{EmitResult, File, RequiredFunctions, build_jacobian_stage};
 
-pub(super) fn jacobians(
+pub(super) fn write_jacobians(
     file: &File<'_>,
     needed: &mut RequiredFunctions,
     writer: &mut Writer,
@@ -20,20 +20,20 @@ pub(super) fn jacobians(
     }
     let mut text = String::new();
     for jacobian in &outputs.jacobians {
-        text += &pattern(jacobian);
-        text += &function(file, &jacobian_stage(file, jacobian, needed)?, writer);
+        text += &write_pattern(jacobian);
+        text += &write_stage(file, &build_jacobian_stage(file, jacobian, needed)?, writer);
     }
     if outputs.kinds.contains(&Output::Linearisation) {
         text += LINEARISATION;
-        let head = linked_doc("Linearisation about a point.");
+        let head = write_linked_doc("Linearisation about a point.");
         let signature = Signature::new("linearise", "Linearisation<T>");
-        text += &stage_with(file, &head, &signature, &linearise(file));
+        text += &stage_with(file, &head, &signature, &write_linearisation(file));
     }
     Ok(text + PATTERN)
 }
 
 /// Writes the statements of the linearisation, which calls a function for each part.
-fn linearise(file: &File<'_>) -> String {
+fn write_linearisation(file: &File<'_>) -> String {
     let parts = [
         "rates",
         "observables",
@@ -43,7 +43,7 @@ fn linearise(file: &File<'_>) -> String {
         "observables_by_inputs",
     ];
     let computed =
-        parts.map(|part| assignment(&format!("let {part}"), call_stage(file, part)) + "\n");
+        parts.map(|part| write_assignment(&format!("let {part}"), call_stage(file, part)) + "\n");
     let fields = ["A", "B", "C", "D"].iter().zip(&parts[2..]);
     let dense =
         fields.map(|(field, part)| format!("{field}: {}.dense(&{part})", part.to_uppercase()));
@@ -52,10 +52,10 @@ fn linearise(file: &File<'_>) -> String {
         .map(|part| (*part).to_owned())
         .chain(dense)
         .collect();
-    computed.concat() + &literal("Linearisation", &fields)
+    computed.concat() + &write_literal("Linearisation", &fields)
 }
 
-fn pattern(jacobian: &Jacobian<ValueId>) -> String {
+fn write_pattern(jacobian: &Jacobian<ValueId>) -> String {
     let name = jacobian.name.to_uppercase();
     let blocks: Vec<String> = jacobian
         .entries
@@ -86,9 +86,9 @@ const PATTERN: &str = "\
 /// Positions of the structural nonzeros of a matrix, row by row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pattern<const N: usize> {
-    /// Row of each.
+    /// Row of each nonzero.
     pub rows: [usize; N],
-    /// Column of each.
+    /// Column of each nonzero.
     pub columns: [usize; N],
 }
 impl<const N: usize> Pattern<N> {
@@ -159,13 +159,13 @@ pub struct Linearisation<T = f64> {
     pub rates: [T; STATES],
     /// Observables at the point.
     pub observables: [T; OBSERVABLES],
-    /// Derivatives of the rates by the state.
+    /// Derivatives of the rates with respect to the state.
     pub A: [[T; STATES]; STATES],
-    /// Derivatives of the rates by the inputs.
+    /// Derivatives of the rates with respect to the inputs.
     pub B: [[T; INPUTS]; STATES],
-    /// Derivatives of the observables by the state.
+    /// Derivatives of the observables with respect to the state.
     pub C: [[T; STATES]; OBSERVABLES],
-    /// Derivatives of the observables by the inputs.
+    /// Derivatives of the observables with respect to the inputs.
     pub D: [[T; INPUTS]; OBSERVABLES],
 }
 ";

@@ -1,4 +1,5 @@
-//! Functions as emitted Rust, from their kernels. `slopes` writes derivatives of those that are not generic.
+//! Elementary functions as emitted Rust, written from their kernels. `slopes` writes the derivatives of functions
+//! that are not generic.
 
 use super::expression::Writer;
 use super::slopes;
@@ -7,16 +8,17 @@ use crate::statements::layout::block;
 use crate::statements::layout::{DEEPER, SHALLOWER};
 use eomgen_elementary::{Double, Function as Elementary, Single};
 
-/// Writes the function that stages call, and the type that represents it if its derivative is given.
+/// Writes the function that stages call. If its derivative is given, also writes the type that represents the
+/// function.
 pub(super) fn function(function: Elementary) -> String {
     let call = format!(
         "/// {}\n#[inline(always)]\n{} {{\n",
         function.description(),
-        head(function.name(), function, "Scalar")
+        write_head(function.name(), function, "Scalar")
     );
     let kernel = KernelStatements::new::<Double>(function);
-    let Some(slope) = slopes::slope(function) else {
-        return call + &format!("{DEEPER}{}{SHALLOWER}}}\n", lines(&kernel));
+    let Some(slope) = slopes::write_slope(function) else {
+        return call + &format!("{DEEPER}{}{SHALLOWER}}}\n", write_lines(&kernel));
     };
     let type_name = slopes::type_name(function);
     let (family, apply, x, y) = match *function.arguments() {
@@ -25,10 +27,10 @@ pub(super) fn function(function: Elementary) -> String {
         [] => return String::new(),
     };
     let value = |name: &str, kernel: &KernelStatements| {
-        let head = head(name, function, "Real");
+        let head = write_head(name, function, "Real");
         block(
             &format!("#[inline(always)]\n{head} {{"),
-            &lines(kernel),
+            &write_lines(kernel),
             "}",
         )
     };
@@ -43,14 +45,14 @@ pub(super) fn function(function: Elementary) -> String {
         )
 }
 
-/// Writes the signature of a function of numbers of one type.
-fn head(name: &str, function: Elementary, numbers: &str) -> String {
+/// Writes the signature of a function for one number type.
+fn write_head(name: &str, function: Elementary, numbers: &str) -> String {
     let arguments = function.arguments().iter();
     let typed: Vec<String> = arguments.map(|argument| format!("{argument}: T")).collect();
     format!("fn {name}<T: {numbers}>({}) -> T", typed.join(", "))
 }
 
-fn lines(kernel: &KernelStatements) -> String {
+fn write_lines(kernel: &KernelStatements) -> String {
     let mut writer = Writer::default();
     let mut lines = writer.statements(&kernel.computed);
     if let Some(value) = kernel.value() {

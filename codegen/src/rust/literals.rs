@@ -23,12 +23,12 @@ pub fn number(value: f64) -> String {
 }
 
 /// Writes the documentation of an item, one comment for each line.
-pub fn doc(lines: &[String]) -> String {
-    comments("///", lines)
+pub fn write_doc(lines: &[String]) -> String {
+    write_comments("///", lines)
 }
 
 /// Writes the generator's documentation of an item, with links in brackets.
-pub fn linked_doc(lines: &str) -> String {
+pub fn write_linked_doc(lines: &str) -> String {
     let line = |line: &str| match line {
         "" => "///\n".to_owned(),
         line => format!("/// {line}\n"),
@@ -37,21 +37,20 @@ pub fn linked_doc(lines: &str) -> String {
 }
 
 /// Writes the documentation of the file.
-pub fn file_doc(lines: &[String]) -> String {
-    comments("//!", lines)
+pub fn write_file_doc(lines: &[String]) -> String {
+    write_comments("//!", lines)
 }
 
-fn comments(opening: &str, lines: &[String]) -> String {
+fn write_comments(opening: &str, lines: &[String]) -> String {
     lines
         .iter()
-        .map(|line| format!("{opening}{}\n", single_line(line)))
+        .map(|line| format!("{opening}{}\n", escape_line(line)))
         .collect()
 }
 
-/// Prepares a line for a comment: adds a space in front, removes control characters and characters that
-/// change the direction of text (rejected by rustc), and escapes brackets that rustdoc would read as links or
-/// tags.
-fn single_line(text: &str) -> String {
+/// Prepares a line for a comment: adds a space in front, removes control characters and bidirectional control
+/// characters (rejected by rustc), and escapes brackets that rustdoc would read as links or tags.
+fn escape_line(text: &str) -> String {
     let mut clean = String::with_capacity(text.len() + 1);
     for c in text.chars() {
         match c {

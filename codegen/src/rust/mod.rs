@@ -31,7 +31,7 @@ pub use crate::statements::EmitError;
 pub use emit::{ITEMS_MODULE, Packaging, emit};
 pub use vectors::{baked, vectors};
 
-/// Returns true if a name is no word of Rust.
+/// Returns true if a name is a valid identifier and not a reserved word of Rust.
 pub fn is_identifier(name: &str) -> bool {
     words::WORDS.identifier(name).is_ok()
 }

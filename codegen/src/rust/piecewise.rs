@@ -1,17 +1,18 @@
-//! Emitted helpers of piecewise functions for a side given by the constant number of a regime.
+//! Emitted helpers of piecewise functions in a regime whose number is a compile-time constant. The regime determines
+//! the side.
 
-/// f_k on a given side of its dead zone.
+/// Dead-zone function f_k of Eq. (7) on a given side of the play.
 pub const DEADZONE_ON_SIDE: &str = "\
-/// Deflection beyond the backlash on a given side of it: f_k of Eq. (7).
+/// Returns the deflection beyond the play on a given side: f_k of Eq. (7).
 #[inline(always)]
 fn deadzone_on_side<T: Scalar>(above: bool, beyond: bool, p: T, b: T) -> T {
     if above { p - b } else if beyond { T::number(0.0) } else { p + b }
 }
 ";
 
-/// Contact on a given side of its dead zone.
+/// Contact on a given side of the play.
 pub const TOUCHING: &str = "\
-/// Returns true if there is contact on a given side of the backlash.
+/// Returns true if there is contact on a given side of the play.
 #[inline(always)]
 fn touching(above: bool, beyond: bool) -> bool {
     above || !beyond

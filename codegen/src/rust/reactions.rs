@@ -1,8 +1,8 @@
-//! Reactions of frictions and contacts in a step of fixed length, in Rust; the evaluator has the same method with the same
-//! order of operations, `program::evaluator::fixed_step`.
+//! Reactions of frictions and contacts in a step of fixed length, in Rust. `program::evaluator::fixed_step` contains
+//! the same method with the same order of operations.
 
 use super::expression::{array, write_loop};
-use super::literals::{linked_doc, number};
+use super::literals::{number, write_linked_doc};
 use crate::program::evaluator::{
     MAX_LAST_CHANGE, MAX_SETTLED_ROUNDINGS, MAX_SWEEPS, SWEEPS_BETWEEN_CONTACTS,
 };
@@ -10,8 +10,12 @@ use crate::program::{ProgramReactions, ReactionCounts};
 use crate::statements::layout::{DEEPER, SHALLOWER, block};
 use crate::statements::{APPLY_REACTIONS, CLOSE_CONTACTS, FIND_REACTIONS, SEPARATE_CONTACTS};
 
-/// Writes the statements of the step around those of the Runge-Kutta method, which has these declarations.
-pub(super) fn step(known: &ProgramReactions, [declarations, runge_kutta]: [&str; 2]) -> String {
+/// Writes the statements of a step with reactions. `declarations` and `runge_kutta` are those of the Runge-Kutta step
+/// that it contains.
+pub(super) fn write_step(
+    known: &ProgramReactions,
+    [declarations, runge_kutta]: [&str; 2],
+) -> String {
     let ReactionCounts {
         sides,
         contacts,
@@ -34,7 +38,7 @@ pub(super) fn step(known: &ProgramReactions, [declarations, runge_kutta]: [&str;
     let end_functions = "functions = reaction_functions(t + h, &next, inputs, coefficients);\n";
     let start_effects = "let effects = reaction_effects(t, state, inputs, coefficients);\n";
     let close = "close_contacts(h, &before, &functions, &effects, &reactions, &applied, &mut targets, &mut delays)";
-    let open = loop_between(
+    let open = write_loop_between(
         (sides, sides + contacts),
         "targets[r] = T::number(f64::NEG_INFINITY);\n",
     );
@@ -74,7 +78,7 @@ pub(super) fn step(known: &ProgramReactions, [declarations, runge_kutta]: [&str;
         }
         lines += &format!("{};\n", find(MAX_SWEEPS));
         lines += &set_sides;
-        lines += &loop_between((sides, count), "reactions[r] = T::number(0.0);\n");
+        lines += &write_loop_between((sides, count), "reactions[r] = T::number(0.0);\n");
         lines += &open;
     }
     lines += runge_kutta;
@@ -94,7 +98,7 @@ pub(super) fn step(known: &ProgramReactions, [declarations, runge_kutta]: [&str;
     }
     lines += "applied = reactions;\n";
     if contacts > 0 {
-        // Impulses can close further contacts.
+        // An impulse can close another contact.
         let end = block(
             "if T::all_greater(T::number(0.5), closes) {",
             "break;\n",
@@ -121,16 +125,16 @@ pub(super) fn step(known: &ProgramReactions, [declarations, runge_kutta]: [&str;
 }
 
 /// Writes the functions that the step calls.
-pub(super) fn functions(known: &ProgramReactions) -> String {
+pub(super) fn write_functions(known: &ProgramReactions) -> String {
     let contacts = match known.distances.len() {
         0 => String::new(),
-        _ => close_contacts(known) + &separate_contacts(known),
+        _ => write_close_contacts(known) + &write_separate_contacts(known),
     };
-    contacts + &find_reactions(known) + &apply_reactions(known)
+    contacts + &write_find_reactions(known) + &write_apply_reactions(known)
 }
 
-/// Writes a loop over the reactions between two indices; nothing if there are none.
-fn loop_between((first, end): (usize, usize), lines: &str) -> String {
+/// Writes a loop over the reactions `first..end`; writes nothing if this range is empty.
+fn write_loop_between((first, end): (usize, usize), lines: &str) -> String {
     match first < end {
         true => block(&format!("for r in {first}..{end} {{"), lines, "}"),
         false => String::new(),
@@ -142,12 +146,12 @@ fn function((doc, name): (&str, &str), arguments: &[&str], result: &str, lines: 
         .iter()
         .map(|argument| format!("{argument},\n"))
         .collect();
-    let doc = linked_doc(doc);
+    let doc = write_linked_doc(doc);
     let head = format!("{doc}fn {name}<T: Scalar>(\n{DEEPER}{arguments}{SHALLOWER}){result} {{");
     block(&head, lines, "}")
 }
 
-fn contacts_of_frictions(known: &ProgramReactions) -> String {
+fn write_contacts_of_frictions(known: &ProgramReactions) -> String {
     let contacts = known
         .coefficients
         .iter()
@@ -159,8 +163,9 @@ fn contacts_of_frictions(known: &ProgramReactions) -> String {
     }
 }
 
-/// Writes the function that closes open contacts whose distance is not positive. It returns 1 if one closes, else 0.
-fn close_contacts(known: &ProgramReactions) -> String {
+/// Writes the function that closes open contacts whose distance is not positive. The emitted function returns 1 if a
+/// contact closes, else 0.
+fn write_close_contacts(known: &ProgramReactions) -> String {
     let ReactionCounts {
         sides,
         contacts,
@@ -195,7 +200,7 @@ fn close_contacts(known: &ProgramReactions) -> String {
     let mut lines = "let (zero, half, one) = (T::number(0.0), T::number(0.5), T::number(1.0));\n\
                      let mut closes = zero;\n"
         .to_owned()
-        + &contacts_of_frictions(known);
+        + &write_contacts_of_frictions(known);
     lines += &write_loop("i", contacts, &each);
     if !known.coefficients.is_empty() {
         let first_friction = sides + contacts;
@@ -223,8 +228,9 @@ fn close_contacts(known: &ProgramReactions) -> String {
     )
 }
 
-/// Writes the function that corrects the reactions. It returns 0 if they are found, else 1.
-fn find_reactions(known: &ProgramReactions) -> String {
+/// Writes the function that corrects the reactions. The emitted function returns 0 if the iteration converged, else
+/// 1.
+fn write_find_reactions(known: &ProgramReactions) -> String {
     let ReactionCounts {
         sides,
         contacts,
@@ -291,7 +297,7 @@ fn find_reactions(known: &ProgramReactions) -> String {
         ),
         magnitude("step"),
     );
-    // The rounding of the number type.
+    // `negative` is 3 times (4/3 - 1) less 1: the unit roundoff of the number type, apart from the sign.
     let mut lines = format!(
         "let zero = T::number(0.0);\n\
          let third = T::number(4.0) / T::number(3.0) - T::number(1.0);\n\
@@ -299,7 +305,7 @@ fn find_reactions(known: &ProgramReactions) -> String {
          let settled = T::number({}) * {};\n",
         number(MAX_SETTLED_ROUNDINGS),
         magnitude("negative")
-    ) + &contacts_of_frictions(known);
+    ) + &write_contacts_of_frictions(known);
     lines += &format!("let mut sizes = [zero; {count}];\nlet mut lost = T::number(1.0);\n");
     let sum = write_loop(
         "i",
@@ -341,7 +347,7 @@ fn find_reactions(known: &ProgramReactions) -> String {
 }
 
 /// Writes the function that moves the positions so that closed contacts do not overlap.
-fn separate_contacts(known: &ProgramReactions) -> String {
+fn write_separate_contacts(known: &ProgramReactions) -> String {
     let ReactionCounts {
         sides,
         contacts,
@@ -386,7 +392,7 @@ fn separate_contacts(known: &ProgramReactions) -> String {
 const LENGTH: &str = "const LENGTH: usize = STATES - DEGREES_OF_FREEDOM;\n";
 
 /// Writes the function that adds the changes of the reactions to the state.
-fn apply_reactions(known: &ProgramReactions) -> String {
+fn write_apply_reactions(known: &ProgramReactions) -> String {
     let count = known.functions.len();
     let first = known.first_column();
     let position = block(

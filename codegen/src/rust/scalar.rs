@@ -52,13 +52,13 @@ pub trait Real: Scalar {
     /// Returns the mantissa with the exponent of 1.
     fn significand(self) -> Self;
 }
-/// Elementary function: plain operations in a fixed order, with the same bits on every machine.
+/// Elementary function: plain operations in a fixed order, bit-identical on every machine.
 pub trait Function {
     /// Computes the value in double precision.
     fn value<T: Real>(x: T) -> T;
     /// Computes the value in single precision.
     fn single<T: Real>(x: T) -> T;
-    /// Computes the derivative at x; `value` is the value there.
+    /// Computes the derivative at x; `value` is the value at x.
     fn slope<T: Scalar>(x: T, value: T) -> T;
 }
 /// Elementary function of two arguments.
@@ -67,7 +67,7 @@ pub trait FunctionOfTwo {
     fn value<T: Real>(x: T, y: T) -> T;
     /// Computes the value in single precision.
     fn single<T: Real>(x: T, y: T) -> T;
-    /// Computes the derivatives by x and y; `value` is the value there.
+    /// Computes the derivatives by x and y; `value` is the value at (x, y).
     fn slopes<T: Scalar>(x: T, y: T, value: T) -> [T; 2];
 }
 impl Scalar for f64 {

@@ -32,7 +32,7 @@ pub fn with_slopes(functions: &BTreeSet<Elementary>) -> BTreeSet<Elementary> {
 }
 
 /// Writes the function `slope`, or `slopes` by both arguments; None for a generic function.
-pub fn slope(function: Elementary) -> Option<String> {
+pub fn write_slope(function: Elementary) -> Option<String> {
     let signature = match function {
         Elementary::Atan2 => "fn slopes<T: Scalar>(y: T, x: T, _: T) -> [T; 2] {",
         Elementary::Min | Elementary::Max => "fn slopes<T: Scalar>(x: T, y: T, _: T) -> [T; 2] {",
@@ -48,12 +48,12 @@ pub fn slope(function: Elementary) -> Option<String> {
     };
     Some(block(
         &format!("#[inline(always)]\n{signature}"),
-        lines(function)?,
+        write_lines(function)?,
         "}",
     ))
 }
 
-fn lines(function: Elementary) -> Option<&'static str> {
+fn write_lines(function: Elementary) -> Option<&'static str> {
     Some(match function {
         Elementary::Abs => {
             "let (one, zero) = (T::number(1.0), T::number(0.0));\n\

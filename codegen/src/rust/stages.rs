@@ -1,17 +1,17 @@
 //! Stages as emitted functions.
 
-use super::expression::{Writer, array, assignment, call, zeros};
+use super::expression::{Writer, array, call, write_assignment, zeros};
 use super::generics::{inlined_prefix, type_with_generics};
-use super::literals::{doc, linked_doc};
+use super::literals::{write_doc, write_linked_doc};
 use super::signature::{Signature, stage_with};
-use super::types::literal;
+use super::types::write_literal;
 use crate::statements::{
     Argument, Expression, File, Outcome, RATES_ORDER_DOC, Size, Stage, describe_rate_limits,
 };
 
-/// Writes the rates as a function that fills an array, and as one that returns an array, which it must fill
-/// with zeros first.
-pub(super) fn rates(file: &File<'_>, written: &Stage, writer: &mut Writer) -> String {
+/// Writes the rates as two functions. One fills an array of the caller; the other returns an array, which it first
+/// fills with zeros.
+pub(super) fn write_rates(file: &File<'_>, written: &Stage, writer: &mut Writer) -> String {
     let call = format!(
         "let mut rates = [T::number(0.0); STATES];\n\
          {}rates_into(t, state, inputs, coefficients, &mut rates);\n\
@@ -23,11 +23,12 @@ pub(super) fn rates(file: &File<'_>, written: &Stage, writer: &mut Writer) -> St
         describe_rate_limits(file)
     );
     let signature = Signature::new("rates", "[T; STATES]");
-    function(file, written, writer) + &stage_with(file, &linked_doc(&lines), &signature, &call)
+    write_stage(file, written, writer)
+        + &stage_with(file, &write_linked_doc(&lines), &signature, &call)
 }
 
-pub(super) fn function(file: &File<'_>, stage: &Stage, writer: &mut Writer) -> String {
-    // An array with the length of the state is always written to.
+pub(super) fn write_stage(file: &File<'_>, stage: &Stage, writer: &mut Writer) -> String {
+    // An array with one element per state is never empty, so `mut` is always needed.
     let mutable = match stage.outcome {
         Outcome::Array(_, Size::States) => false,
         Outcome::Array(..) | Outcome::MassMatrix => true,
@@ -89,11 +90,11 @@ pub(super) fn function(file: &File<'_>, stage: &Stage, writer: &mut Writer) -> S
         }
         Outcome::ArrayAndInputs(values) => {
             statements += &(zeros("product", &["STATES".to_owned()]) + &written);
-            statements += &(input_product(values, writer) + "(product, input_product)\n");
+            statements += &(write_input_product(values, writer) + "(product, input_product)\n");
             format!("([T; STATES], {})", type_with_generics(file, "Inputs"))
         }
     };
-    let head = linked_doc(&stage.doc) + &doc(&stage.list) + unused;
+    let head = write_linked_doc(&stage.doc) + &write_doc(&stage.list) + unused;
     let signature = Signature {
         name: stage.name,
         constant,
@@ -103,13 +104,13 @@ pub(super) fn function(file: &File<'_>, stage: &Stage, writer: &mut Writer) -> S
     stage_with(file, &head, &signature, &statements)
 }
 
-fn input_product(values: &[(String, Expression)], writer: &mut Writer) -> String {
+fn write_input_product(values: &[(String, Expression)], writer: &mut Writer) -> String {
     let fields: Vec<String> = values
         .iter()
         .map(|(name, value)| format!("{name}: {}", writer.expression(value)))
         .collect();
-    let literal = literal("Inputs", &fields);
-    assignment("let input_product", literal.trim_end()) + "\n"
+    let literal = write_literal("Inputs", &fields);
+    write_assignment("let input_product", literal.trim_end()) + "\n"
 }
 
 /// Returns the length as the name of a constant.

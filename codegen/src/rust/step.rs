@@ -1,15 +1,15 @@
-//! Step of fixed length in Rust: the classical Runge-Kutta method, with reactions of frictions and contacts in
-//! `reactions`.
+//! Fixed-length step in Rust: the classical Runge-Kutta method. The module `reactions` adds the reactions of
+//! frictions and contacts.
 
 use super::generics::type_with_generics;
-use super::literals::linked_doc;
+use super::literals::write_linked_doc;
 use super::reactions;
 use crate::program::{Output, Reactions};
 use crate::statements::layout::{DEEPER, SHALLOWER, block};
 use crate::statements::{File, describe_step};
 
 /// Writes the function, with those that it calls, if it is requested.
-pub(super) fn step(file: &File<'_>) -> String {
+pub(super) fn write_step(file: &File<'_>) -> String {
     let program = file.program;
     if !program.outputs.kinds.contains(&Output::Step) {
         return String::new();
@@ -26,16 +26,19 @@ pub(super) fn step(file: &File<'_>) -> String {
          inputs: &{inputs},\n\
          coefficients: &{coefficients},\n\
          {SHALLOWER}) {{",
-        linked_doc(&describe_step(program))
+        write_linked_doc(&describe_step(program))
     );
     match &program.outputs.reactions {
         None => {
-            let lines = RATES_OF_STAGES.to_owned() + &runge_kutta(file, "state[i]");
+            let lines = RATES_OF_STAGES.to_owned() + &write_runge_kutta(file, "state[i]");
             block(&head, &lines, "}")
         }
         Some(known) => {
-            let lines = reactions::step(known, [RATES_OF_STAGES, &runge_kutta(file, "next[i]")]);
-            block(&head, &lines, "}") + &reactions::functions(known)
+            let lines = reactions::write_step(
+                known,
+                [RATES_OF_STAGES, &write_runge_kutta(file, "next[i]")],
+            );
+            block(&head, &lines, "}") + &reactions::write_functions(known)
         }
     }
 }
@@ -49,8 +52,8 @@ const RATES_OF_STAGES: &str = "\
     let half = T::number(0.5) * h;\n\
     let sixth = h / T::number(6.0);\n";
 
-/// Writes a step of the Runge-Kutta method to the elements `target`.
-fn runge_kutta(file: &File<'_>, target: &str) -> String {
+/// Writes a step of the Runge-Kutta method that assigns the new state to the elements `target`.
+fn write_runge_kutta(file: &File<'_>, target: &str) -> String {
     let known = file.program.outputs.reactions.as_ref();
     let rates = |time: &str, state: &str, k: usize| match known.map_or(0, Reactions::sides) {
         0 => format!("rates_into({time}, {state}, inputs, coefficients, &mut k{k});\n"),

@@ -2,23 +2,23 @@
 
 use super::expression::Writer;
 use super::generics::type_with_generics;
-use super::literals::{doc, number};
+use super::literals::{number, write_doc};
 use crate::program::{Extent, Quantity};
 use crate::statements::layout::block;
 use crate::statements::layout::{CLOSE, FLOW_EVEN, SPACE};
 use crate::statements::{
-    EmitResult, File, PreparedValue, RequiredFunctions, describe_coefficient, preparation,
-    quantity_line,
+    EmitResult, File, PreparedValue, RequiredFunctions, build_preparation, describe_coefficient,
+    describe_quantity,
 };
 
-/// Largest number of characters of a struct literal on one line.
-const LITERAL_WIDTH: usize = 34;
+/// Largest length of a struct literal on one line, in characters.
+const MAX_LITERAL_WIDTH: usize = 34;
 
-pub(super) fn parameters(file: &File<'_>) -> EmitResult<String> {
+pub(super) fn write_parameters(file: &File<'_>) -> EmitResult<String> {
     let mut fields = String::new();
     let (mut defaults, mut casts) = (Vec::new(), Vec::new());
     for parameter in &file.program.parameters {
-        fields.push_str(&field(file, &parameter.quantity, &parameter.origin)?);
+        fields.push_str(&write_field(file, &parameter.quantity, &parameter.origin)?);
         let name = &parameter.quantity.name;
         defaults.push(format!("{name}: {}", number(parameter.value)));
         casts.push(format!("{name}: T::number(self.{name})"));
@@ -29,18 +29,22 @@ pub(super) fn parameters(file: &File<'_>) -> EmitResult<String> {
          pub struct Parameters{} {{",
         declared_type(!casts.is_empty())
     );
-    let default = block("fn default() -> Self {", &literal("Self", &defaults), "}");
+    let default = block(
+        "fn default() -> Self {",
+        &write_literal("Self", &defaults),
+        "}",
+    );
     Ok(block(&head, &fields, "}")
         + &block("impl Default for Parameters {", &default, "}")
-        + &cast("Parameters", "these parameters", &casts)
-        + &array_conversion(file, "Parameters", "PARAMETERS"))
+        + &write_cast("Parameters", "these parameters", &casts)
+        + &write_array_conversion(file, "Parameters", "PARAMETERS"))
 }
 
-pub(super) fn inputs(file: &File<'_>) -> EmitResult<String> {
+pub(super) fn write_inputs(file: &File<'_>) -> EmitResult<String> {
     let mut fields = String::new();
     let mut zeros = Vec::new();
     for input in &file.program.inputs {
-        fields.push_str(&field(file, input, "")?);
+        fields.push_str(&write_field(file, input, "")?);
         zeros.push(format!("{}: T::number(0.0)", input.name));
     }
     let derived = if zeros.is_empty() { "Default, " } else { "" };
@@ -52,13 +56,17 @@ pub(super) fn inputs(file: &File<'_>) -> EmitResult<String> {
     );
     let mut text = block(&head, &fields, "}");
     if !zeros.is_empty() {
-        let default = block("fn default() -> Self {", &literal("Self", &zeros), "}");
+        let default = block(
+            "fn default() -> Self {",
+            &write_literal("Self", &zeros),
+            "}",
+        );
         text += &block("impl<T: Scalar> Default for Inputs<T> {", &default, "}");
     }
-    Ok(text + &array_conversion(file, "Inputs", "INPUTS"))
+    Ok(text + &write_array_conversion(file, "Inputs", "INPUTS"))
 }
 
-fn array_conversion(file: &File<'_>, name: &str, count: &str) -> String {
+fn write_array_conversion(file: &File<'_>, name: &str, count: &str) -> String {
     let program = file.program;
     let quantities: Vec<&Quantity> = match name {
         "Parameters" => program.parameters.iter().map(|p| &p.quantity).collect(),
@@ -71,25 +79,25 @@ fn array_conversion(file: &File<'_>, name: &str, count: &str) -> String {
         .collect();
     let argument = if values.is_empty() { "_" } else { "numbers" };
     let opening = format!("fn from({argument}: [T; {count}]) -> Self {{");
-    let body = block(&opening, &literal("Self", &values), "}");
+    let body = block(&opening, &write_literal("Self", &values), "}");
     let whole = type_with_generics(file, name);
     let head = format!("impl<T: Copy> From<[T; {count}]> for {whole} {{");
     block(&head, &body, "}")
 }
 
-pub(super) fn coefficients(
+pub(super) fn write_coefficients(
     file: &File<'_>,
     needed: &mut RequiredFunctions,
     writer: &mut Writer,
 ) -> EmitResult<String> {
-    let prepared = preparation(file, needed)?;
+    let prepared = build_preparation(file, needed)?;
     writer.notes.clone_from(&prepared.notes);
     let statements = writer.statements(&prepared.computed);
     let mut fields = String::new();
     let (mut values, mut casts) = (Vec::new(), Vec::new());
     for (id, coefficient) in file.fields.iter().zip(&prepared.coefficients) {
         let name = &file.field_names[id];
-        fields.push_str(&doc(&[describe_coefficient(file, &prepared, *id)]));
+        fields.push_str(&write_doc(&[describe_coefficient(file, &prepared, *id)]));
         let value = match coefficient {
             PreparedValue::Number(value) => writer.expression(value),
             PreparedValue::Numbers(array) => writer.array(array),
@@ -131,23 +139,23 @@ pub(super) fn coefficients(
         declared_type(numbers)
     );
     casts.push("positive_definite: self.positive_definite".to_owned());
-    let prepare = prepare(file, &(statements + &literal("Self", &values)));
+    let prepare = write_prepare(file, &(statements + &write_literal("Self", &values)));
     let generic = if numbers {
         "impl<T: Scalar> Coefficients<T> {"
     } else {
         "impl Coefficients {"
     };
     let cast = if numbers {
-        cast("Coefficients", "these coefficients", &casts)
+        write_cast("Coefficients", "these coefficients", &casts)
     } else {
         String::new()
     };
     Ok(block(&head, &fields, "}") + &block(generic, &prepare, "}") + &cast)
 }
 
-/// Writes the function that prepares the coefficients. Without numeric coefficients, the parameters determine
-/// the type of numbers; without either, it is `f64`.
-fn prepare(file: &File<'_>, statements: &str) -> String {
+/// Writes the function that prepares the coefficients. If no coefficient is a number, the parameters determine the
+/// number type; without parameters it is `f64`.
+fn write_prepare(file: &File<'_>, statements: &str) -> String {
     let parameters = type_with_generics(file, "Parameters");
     let (with_coefficients, with_parameters) =
         (!file.fields.is_empty(), !file.program.parameters.is_empty());
@@ -167,14 +175,14 @@ fn prepare(file: &File<'_>, statements: &str) -> String {
     );
     let nobody = !with_coefficients && !with_parameters && statements.contains("T::");
     let declared = if nobody { "type T = f64;\n" } else { "" };
-    // The reference keeps the identity in programs from which the linker removes unused items.
+    // This reference keeps the identity in the image if the linker removes unused items.
     let kept = "let _ = core::hint::black_box(&IDENTITY);\n";
     block(&opening, &format!("{kept}{declared}{statements}"), "}")
 }
 
-fn field(file: &File<'_>, quantity: &Quantity, origin: &str) -> EmitResult<String> {
+fn write_field(file: &File<'_>, quantity: &Quantity, origin: &str) -> EmitResult<String> {
     let name = file.words.identifier(&quantity.name)?;
-    let docs = doc(&[quantity_line(&quantity.doc, &quantity.unit, origin)]);
+    let docs = write_doc(&[describe_quantity(&quantity.doc, &quantity.unit, origin)]);
     Ok(format!("{docs}pub {name}: T,\n"))
 }
 
@@ -184,7 +192,7 @@ fn declared_type(numbers: bool) -> &'static str {
 }
 
 /// Writes the conversion of a struct from `f64` to another scalar type.
-fn cast(name: &str, what: &str, fields: &[String]) -> String {
+fn write_cast(name: &str, what: &str, fields: &[String]) -> String {
     if fields.is_empty() {
         return String::new();
     }
@@ -193,12 +201,12 @@ fn cast(name: &str, what: &str, fields: &[String]) -> String {
          #[inline(always)]\n\
          pub fn cast<T: Scalar>(&self) -> {name}<T> {{"
     );
-    let body = block(&opening, &literal(name, fields), "}");
+    let body = block(&opening, &write_literal(name, fields), "}");
     block(&format!("impl {name} {{"), &body, "}")
 }
 
 /// Writes a struct literal, on one line if it is short.
-pub(super) fn literal(name: &str, values: &[String]) -> String {
+pub(super) fn write_literal(name: &str, values: &[String]) -> String {
     let line = format!("{name} {{ {} }}\n", values.join(", "));
     let width = line
         .chars()
@@ -207,7 +215,7 @@ pub(super) fn literal(name: &str, values: &[String]) -> String {
     if values.is_empty() {
         return format!("{name} {{}}\n");
     }
-    if width <= LITERAL_WIDTH + 2 {
+    if width <= MAX_LITERAL_WIDTH + 2 {
         return line;
     }
     let lines: String = values.iter().map(|value| format!("{value},\n")).collect();

@@ -81,9 +81,9 @@ const SELF_TEST: &str = "\
 // the default parameters. Include this file in a module in which `model` is the emitted module:
 // mod vectors { use super::arm as model; include!(\"vectors.rs\"); }
 include!(\"baked.rs\");
-/// Number of arguments of a vector.
+/// Number of arguments in a test vector.
 const GIVEN: usize = 1 + model::STATES + model::INPUT_NAMES.len();
-/// Number of results of a vector.
+/// Number of results in a test vector.
 const OUTPUTS: usize =
     model::STATES + model::OBSERVABLES + 2 + model::GUARDS + model::DEGREES_OF_FREEDOM * model::DEGREES_OF_FREEDOM;
 static DOUBLE: [[f64; GIVEN + OUTPUTS]; DOUBLE_COUNT] = DOUBLE_VECTORS;

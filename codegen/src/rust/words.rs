@@ -11,7 +11,7 @@ pub(super) const WORDS: Words = Words {
         pub ref return Self self static struct super trait true try type typeof unsafe unsized \
         use virtual where while yield gen",
     taken: "t state inputs coefficients parameters rates values total i j k row column rest sum \
-        sum_of_few paired pow exp_minus_one cholesky cholesky_solve cholesky_solve_matrix \
+        sum_of_few pairwise_sum pow exp_minus_one cholesky cholesky_solve cholesky_solve_matrix \
         converted converted_matrix read_array read_matrix accelerations direction \
         input_direction weights product input_product pattern INPUTS INPUT_NAMES PARAMETERS \
         PARAMETER_NAMES guards deadzone_on_side touching either chosen positive \

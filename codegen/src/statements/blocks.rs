@@ -10,8 +10,8 @@ use super::statement::{Place, Statement};
 use crate::program::{Extent, Op, ValueId};
 
 impl Body<'_> {
-    /// Returns the loop that sums an element of a matrix-vector product or of a Gram matrix's diagonal, and
-    /// the name of the vector.
+    /// Returns the loop that sums one element of a matrix-vector product, or one diagonal element of a Gram matrix,
+    /// and the name of the result vector.
     pub(super) fn summed_element(&mut self, id: ValueId) -> EmitResult<(Statement, String)> {
         let name = self.name(id)?;
         let (summand, length) = match self.program.value(id).op.clone() {

@@ -1,7 +1,7 @@
-//! Statements of one stage: values with a name, values written inside the expressions that use them
-//! (`operands`), and loops over modes.
+//! Statements of one stage: named values, and loops over modes. `operands` writes the other values inside the
+//! expressions that use them.
 //!
-//! Expressions keep the operations and operands of the program, so nesting does not change any bit.
+//! Expressions keep the operations and operands of the program. Nesting therefore does not change the results.
 
 use std::collections::{HashMap, HashSet};
 
@@ -16,7 +16,7 @@ use super::statement::{Place, Statement};
 use crate::program::{Extent, Op, PARTIAL_SUMS, Program, ValueId};
 
 /// Largest number of operations in one emitted expression.
-const EXPRESSION_SIZE: usize = 8;
+const MAX_OPERATIONS_PER_EXPRESSION: usize = 8;
 
 /// Source of the coefficients of a stage.
 pub enum Access<'a> {
@@ -44,8 +44,8 @@ pub struct Body<'a> {
 }
 
 impl<'a> Body<'a> {
-    /// Starts a stage that computes `roots`, with names from `names`. A regime decides the branches
-    /// of the values in `switches`. A value with several uses is bound to a name.
+    /// Starts a stage that computes `roots`, with names from `names`. The regime decides the branches of the values
+    /// in `switches`. A value that is used several times gets a name.
     ///
     /// # Errors
     /// A name that is not an identifier in the language of the file.
@@ -110,17 +110,17 @@ impl<'a> Body<'a> {
         std::mem::take(&mut self.statements)
     }
 
-    /// Returns the names of the values with a statement.
+    /// Returns the names of the values that have a statement.
     pub fn take_names(&mut self) -> HashMap<ValueId, String> {
         std::mem::take(&mut self.bound)
     }
 
-    /// Returns the origin of the values with a statement, by name.
+    /// Returns unit and terms of the values that have a statement, by name.
     pub fn take_notes(&mut self) -> Notes {
         std::mem::take(&mut self.notes)
     }
 
-    /// Names a value of a statement.
+    /// Returns a name for the value of a statement.
     pub(super) fn name(&mut self, id: ValueId) -> EmitResult<String> {
         let name = self.names.value_name(self.program, id, "s")?;
         if let Some(note) = self.program.trace.note(id) {
@@ -213,7 +213,11 @@ impl<'a> Body<'a> {
         }
         let expression = self.own_expression(id, None)?;
         let looped = self.in_loops.get(&id).copied().unwrap_or(false);
-        if uses > 1 || value.name.is_some() || looped || expression.size() > EXPRESSION_SIZE {
+        if uses > 1
+            || value.name.is_some()
+            || looped
+            || expression.size() > MAX_OPERATIONS_PER_EXPRESSION
+        {
             self.bind(id, expression)
         } else {
             Ok(())
@@ -243,7 +247,7 @@ impl<'a> Body<'a> {
         let as_array = self.arrays.contains(&id) || self.is_operand_of_matrix(id);
         if elementwise && uses <= 1 && !as_array {
             let expression = self.own_expression(id, Some("i"))?;
-            if expression.size() <= EXPRESSION_SIZE {
+            if expression.size() <= MAX_OPERATIONS_PER_EXPRESSION {
                 return Ok(());
             }
         }

@@ -17,10 +17,10 @@ pub enum Elements {
     InColumn,
 }
 
-/// Matrix of the recorded statements.
+/// Matrix in the recorded statements.
 #[derive(Clone, Debug)]
 pub struct MatrixOperand {
-    /// Array that contains it. A result is an array of the stage.
+    /// Array that contains the elements. A result is an array of the stage.
     array: Array,
     elements: Elements,
 }
@@ -50,13 +50,13 @@ impl MatrixOperand {
 /// Recorder of statements.
 #[derive(Debug)]
 pub struct Recorder {
-    /// Name of a remainder of products.
+    /// Name of the variable for a number less a sum of products.
     remainder: &'static str,
     lines: Vec<Statement>,
 }
 
 impl Recorder {
-    /// Creates a recorder with a name for remainders that is unused at the place of the statements.
+    /// Creates a recorder. `remainder` names the variable for remainders; the stage must not use this name.
     pub fn new(remainder: &'static str) -> Self {
         Self {
             remainder,

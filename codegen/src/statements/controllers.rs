@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::emit_error::{EmitError, EmitResult};
-use super::expression::{Expression, Structure};
+use super::expression::{ArgumentStruct, Expression};
 use super::file::File;
 use super::needed::RequiredFunctions;
 use super::statement::Statement;
@@ -11,10 +11,10 @@ use crate::program::evaluator::elementary;
 use crate::program::{ControlOp, ProgramController, Quantity};
 
 /// Largest number of operations in one emitted expression.
-const EXPRESSION_SIZE: usize = 8;
+const MAX_OPERATIONS_PER_EXPRESSION: usize = 8;
 
-/// Fields of the memory with the times of a controller, with their meaning.
-pub const TIMES: [(&str, &str); 3] = [
+/// Time fields in a controller's memory, with their meaning.
+pub const TIME_FIELDS: [(&str, &str); 3] = [
     ("period", "time between two samples"),
     ("offset", "time of the first sample"),
     (
@@ -23,7 +23,7 @@ pub const TIMES: [(&str, &str); 3] = [
     ),
 ];
 
-/// Statements of a function, then the values that it writes to fields.
+/// Statements of a function, and the values that it writes to fields.
 pub struct ControllerStage {
     /// Statements.
     pub computed: Vec<Statement>,
@@ -44,8 +44,8 @@ pub struct ControllerStages {
 /// Builds the functions of a controller.
 ///
 /// # Errors
-/// A name that is not an identifier of the language, and a state with the name of a time.
-pub fn controller_stages(
+/// A name is not an identifier of the language, or a state has the name of a time field.
+pub fn build_controller_stages(
     file: &File<'_>,
     controller: &ProgramController,
     needed: &mut RequiredFunctions,
@@ -59,7 +59,7 @@ pub fn controller_stages(
     file.words.identifier(&controller.name)?;
     let (states, outputs) = (names(&controller.states)?, names(&controller.outputs)?);
     let measured = names(&controller.measured)?;
-    if let Some((taken, _)) = TIMES
+    if let Some((taken, _)) = TIME_FIELDS
         .iter()
         .find(|(name, _)| states.iter().any(|s| s == name))
     {
@@ -68,7 +68,7 @@ pub fn controller_stages(
             controller.name
         )));
     }
-    let start = TIMES.iter().map(|(name, _)| (*name).to_owned());
+    let start = TIME_FIELDS.iter().map(|(name, _)| (*name).to_owned());
     let start = start.zip(controller.times);
     let start = start.chain(
         states
@@ -117,7 +117,7 @@ impl ControlWriter<'_> {
                 _ => self.operation(op, &expressions)?,
             };
             let is_leaf = op.operands().is_empty();
-            if uses[place] > 1 && !is_leaf || expression.size() > EXPRESSION_SIZE {
+            if uses[place] > 1 && !is_leaf || expression.size() > MAX_OPERATIONS_PER_EXPRESSION {
                 let name = format!("v{place}");
                 computed.push(Statement::Let(name.clone(), expression));
                 expressions.push(Expression::name(name));
@@ -143,7 +143,7 @@ impl ControlWriter<'_> {
         })
     }
 
-    /// Counts the uses of each value by values that the roots need, and by the roots.
+    /// Counts how often each value is used by the roots and by the values on which the roots depend.
     fn count_uses(&self, roots: impl Iterator<Item = usize>) -> Vec<usize> {
         let mut uses = vec![0; self.controller.values.len()];
         roots.for_each(|root| uses[root] += 1);
@@ -159,16 +159,19 @@ impl ControlWriter<'_> {
 
     fn operation(&mut self, op: &ControlOp, known: &[Expression]) -> EmitResult<Expression> {
         let at = |place: &usize| &known[*place];
-        let field = |of: Structure, name: &str| Expression::Field(of, name.to_owned());
+        let field = |of: ArgumentStruct, name: &str| Expression::Field(of, name.to_owned());
         Ok(match op {
             ControlOp::Constant(value) => Expression::Number(*value),
             ControlOp::Parameter(place) => {
                 let name = &self.file.program.parameters[*place].quantity.name;
-                field(Structure::Parameters, self.file.words.identifier(name)?)
+                field(
+                    ArgumentStruct::Parameters,
+                    self.file.words.identifier(name)?,
+                )
             }
-            ControlOp::Period => field(Structure::Memory, TIMES[0].0),
-            ControlOp::Measured(place) => field(Structure::Measured, &self.measured[*place]),
-            ControlOp::State(place) => field(Structure::Memory, &self.states[*place]),
+            ControlOp::Period => field(ArgumentStruct::Memory, TIME_FIELDS[0].0),
+            ControlOp::Measured(place) => field(ArgumentStruct::Measured, &self.measured[*place]),
+            ControlOp::State(place) => field(ArgumentStruct::Memory, &self.states[*place]),
             ControlOp::Negate(a) => Expression::negate(at(a)),
             ControlOp::Add(a, b) => Expression::add(at(a), at(b)),
             ControlOp::Subtract(a, b) => Expression::subtract(at(a), at(b)),

@@ -1,4 +1,4 @@
-//! Data of an emitted file for its callers: units, initial state and ranges, in the order of the names.
+//! Constant data of an emitted file for its callers: units, initial state and ranges, in the order of the names.
 
 use crate::program::{Program, Quantity};
 
@@ -23,7 +23,7 @@ pub enum DataElements {
 }
 
 /// Returns all arrays.
-pub fn data_arrays(program: &Program) -> Vec<DataArray> {
+pub fn list_data_arrays(program: &Program) -> Vec<DataArray> {
     let domain = &program.domain;
     let units =
         |quantities: Vec<&Quantity>| quantities.into_iter().map(|of| of.unit.clone()).collect();

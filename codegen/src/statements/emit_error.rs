@@ -12,21 +12,21 @@ pub enum EmitError {
         /// The language.
         language: &'static str,
     },
-    /// Header that would replace a header of the system.
+    /// Emitted header that would replace a system header.
     Header {
         /// Name of the model.
         name: String,
         /// Name of the other header, without its ending.
         hidden: String,
     },
-    /// Two entries of the specification with an item of the same name in the emitted source.
+    /// Two entries of the specification that would have the same name in the emitted source.
     Collision {
         /// Name of both items.
         name: String,
         /// Sections of the specification.
         owners: [String; 2],
     },
-    /// Value without source in its stage: a defect of the generator.
+    /// Value that its stage can neither compute nor read: a defect of the generator.
     Value(String),
 }
 

@@ -1,5 +1,5 @@
-//! Expressions of the statements: trees over given, prepared and computed values. Each operation has one IEEE
-//! result.
+//! Expressions of the statements: trees over arguments, coefficients and computed values. IEEE 754 defines the result
+//! of each operation.
 
 use super::index::Index;
 use crate::program::Extent;
@@ -17,9 +17,9 @@ pub enum Operator {
     Divide,
 }
 
-/// Structure with named numbers that a stage reads.
+/// Struct with named numbers that a stage reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Structure {
+pub enum ArgumentStruct {
     /// Prepared coefficients.
     Coefficients,
     /// Parameters from which the coefficients are prepared.
@@ -66,7 +66,7 @@ pub enum Expression {
     /// Element of an array.
     Element(Array, Vec<Index>),
     /// Field of a structure.
-    Field(Structure, String),
+    Field(ArgumentStruct, String),
     /// Coefficient that SIMD lanes share.
     Shared(Box<Self>),
     /// Binary operation.
@@ -83,7 +83,7 @@ pub enum Expression {
     Positive(usize),
     /// True if a > b in all lanes.
     Greater(Box<[Self; 2]>),
-    /// True if both are.
+    /// True if both conditions are true.
     And(Box<[Self; 2]>),
     /// Constant true.
     True,

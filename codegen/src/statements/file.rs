@@ -7,7 +7,7 @@ use super::body::{Access, Body};
 use super::emit_error::EmitResult;
 use super::names::{Names, Words};
 use super::needed::RequiredFunctions;
-use super::roots::coefficient_values;
+use super::roots::collect_coefficients;
 use super::sides::Switches;
 use crate::program::content::Contents;
 use crate::program::{Program, ValueId};
@@ -18,22 +18,22 @@ pub struct File<'p> {
     pub program: &'p Program,
     /// Rules for names in the language of the file.
     pub words: &'static Words,
-    /// Prepared values that the stages read, in the order of the program.
+    /// Coefficients that the stages read, in the order of the program.
     pub fields: Vec<ValueId>,
-    /// Names of the prepared values.
+    /// Names of the coefficients.
     pub field_names: HashMap<ValueId, String>,
     contents: Rc<Contents>,
 }
 
 impl<'p> File<'p> {
-    /// Names the prepared values of `program`.
+    /// Collects and names the coefficients of `program`.
     ///
     /// # Errors
     /// A name that is not an identifier in the language of `words`.
     pub fn new(program: &'p Program, words: &'static Words) -> EmitResult<Self> {
         let contents = Rc::new(Contents::new(program));
         let mut names = Names::new(program, words, &contents);
-        let fields = coefficient_values(program);
+        let fields = collect_coefficients(program);
         let mut field_names = HashMap::new();
         for id in &fields {
             field_names.insert(*id, names.value_name(program, *id, "c")?);
@@ -47,7 +47,7 @@ impl<'p> File<'p> {
         })
     }
 
-    /// Returns the number of guards, counted by element.
+    /// Returns the number of guards; each element of a vector counts.
     pub fn guard_count(&self) -> usize {
         self.program
             .guards
@@ -65,7 +65,7 @@ impl<'p> File<'p> {
         self.body_in_regime(roots, needed, Switches::new())
     }
 
-    /// Starts a stage in which a regime decides the branches of the values in `switches`.
+    /// Starts a stage in which the regime decides the branches of the values in `switches`.
     pub(super) fn body_in_regime<'b>(
         &'b self,
         roots: &[ValueId],
@@ -83,7 +83,7 @@ impl<'p> File<'p> {
 }
 
 /// Joins meaning, unit and origin of a quantity.
-pub fn quantity_line(text: &str, unit: &str, origin: &str) -> String {
+pub fn describe_quantity(text: &str, unit: &str, origin: &str) -> String {
     let mut line = if text.is_empty() {
         String::new()
     } else {

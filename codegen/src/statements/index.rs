@@ -1,4 +1,4 @@
-//! Array indices: numbers, loop variables, and their sums and products.
+//! Array indices: numbers, loop variables, and sums and products of these.
 
 /// Index of an array element.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,19 +38,19 @@ impl Index {
     }
 }
 
-/// Indices of a loop: from a first one up to an excluded one.
+/// Half-open range of the indices of a loop.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Span {
     /// First index.
     pub from: Index,
     /// Index after the last one.
     pub to: Index,
-    /// True if the loop begins at the last index.
+    /// True if the loop runs from the last index down to the first.
     pub reversed: bool,
 }
 
 impl Span {
-    /// Returns the indices between two, in ascending order.
+    /// Returns the range `from..to`, in ascending order.
     pub fn between(from: impl Into<Index>, to: impl Into<Index>) -> Self {
         Self {
             from: from.into(),
@@ -59,12 +59,12 @@ impl Span {
         }
     }
 
-    /// Returns true if it has no index; false if that is unknown.
+    /// Returns true if the range is known to be empty.
     pub fn is_empty(&self) -> bool {
         self.numbers().is_some_and(|(from, to)| from >= to)
     }
 
-    /// Returns the bounds if they are numbers.
+    /// Returns the bounds if both are numbers.
     pub fn numbers(&self) -> Option<(usize, usize)> {
         match (&self.from, &self.to) {
             (Index::Number(from), Index::Number(to)) => Some((*from, *to)),

@@ -15,7 +15,7 @@ pub struct Indices {
 }
 
 /// Returns all kinds with at least one quantity.
-pub fn indices(program: &Program) -> Vec<Indices> {
+pub fn list_indices(program: &Program) -> Vec<Indices> {
     let inputs = program.inputs.iter().map(|input| input.name.clone());
     let parameters = program
         .parameters
@@ -47,13 +47,14 @@ pub fn indices(program: &Program) -> Vec<Indices> {
     all.map(|(kind, doc, names)| Indices {
         kind,
         doc,
-        entries: named(names),
+        entries: name_constants(names),
     })
     .collect()
 }
 
-/// Pairs names with constants: the name in capitals, or the name itself if another one differs only in capitals.
-fn named(names: Vec<String>) -> Vec<(String, String)> {
+/// Pairs each name with the name of its constant: the name in capitals, or the unchanged name if another name differs
+/// only in its capitals.
+fn name_constants(names: Vec<String>) -> Vec<(String, String)> {
     let mut uses: HashMap<String, usize> = HashMap::new();
     for name in &names {
         *uses.entry(name.to_uppercase()).or_default() += 1;
@@ -75,7 +76,7 @@ mod tests {
     #[test]
     fn names_that_differ_in_capitals_keep_them() {
         let names = ["x_sp_dot", "k", "K", "I_p"].map(str::to_owned).to_vec();
-        let constants: Vec<String> = named(names)
+        let constants: Vec<String> = name_constants(names)
             .into_iter()
             .map(|(_, constant)| constant)
             .collect();

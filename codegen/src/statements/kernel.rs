@@ -5,7 +5,7 @@ use super::statement::Statement;
 use eomgen_elementary::{Function as Elementary, Kernel, Operation, Precision, sin_cos_kernel};
 
 /// Largest number of operations in one emitted expression of a kernel.
-const EXPRESSION_SIZE: usize = 6;
+const MAX_OPERATIONS_PER_EXPRESSION: usize = 6;
 
 /// Statements and results of a kernel. An operation with one use becomes part of the expression that uses it,
 /// up to a size limit; the others get a name.
@@ -16,12 +16,12 @@ pub struct KernelStatements {
 }
 
 impl KernelStatements {
-    /// Writes the kernel of a function in a format.
+    /// Writes the kernel of a function in a number format.
     pub fn new<P: Precision>(function: Elementary) -> Self {
         Self::from_kernel(&function.kernel_in::<P>(), function.arguments())
     }
 
-    /// Writes the kernel of the sine and the cosine in a format, in this order.
+    /// Writes the joint kernel of sine and cosine in a number format. The results are sine, then cosine.
     pub fn sine_and_cosine<P: Precision>(argument: &str) -> Self {
         Self::from_kernel(&sin_cos_kernel::<P>(), &[argument])
     }
@@ -32,8 +32,8 @@ impl KernelStatements {
         let mut computed = Vec::new();
         for (index, operation) in kernel.operations.iter().enumerate() {
             let expression = expression(*operation, arguments, &expressions);
-            let single = uses[index] <= 1 && expression.size() <= EXPRESSION_SIZE;
-            // The negation of a name is as short as another name.
+            let single = uses[index] <= 1 && expression.size() <= MAX_OPERATIONS_PER_EXPRESSION;
+            // The negation of a name needs no variable of its own, because it is as short as a name.
             let negated_name = matches!(operation, Operation::Neg(_)) && expression.size() == 1;
             if !operation.is_computed() || single || negated_name {
                 expressions.push(expression);

@@ -4,21 +4,21 @@
 //! Marked text is source with control characters that open and close groups and mark possible line ends.
 //! Lines without marks are copied.
 
-/// Target width of a line.
+/// Target width of a line, in characters.
 const WIDTH: isize = 89;
 
-/// Smallest width available to a deeply indented line.
-const LEAST_WIDTH: isize = 60;
+/// Smallest text width of a deeply indented line, in characters.
+const MIN_WIDTH: isize = 60;
 
 const INDENT: isize = 4;
 
-/// Opens a group that breaks only at full lines; its further lines are indented.
+/// Opens a group that breaks only where a line is full. Its lines after the first are indented.
 pub const FLOW: char = '\u{1}';
 /// [`FLOW`] that removes the indentation of the enclosing group.
 pub const FLOW_OUT: char = '\u{2}';
 /// [`FLOW`] at the indentation of the enclosing group.
 pub const FLOW_EVEN: char = '\u{3}';
-/// Opens a group that breaks at all its marks or at none; its further lines are indented.
+/// Opens a group that breaks at all its marks or at none. Its lines after the first are indented.
 pub const BLOCK: char = '\u{4}';
 /// [`BLOCK`] that removes the indentation of the enclosing group.
 pub const BLOCK_OUT: char = '\u{5}';
@@ -100,7 +100,7 @@ struct Printer<'a> {
     level: isize,
     in_header: bool,
     tokens: Vec<Token<'a>>,
-    /// Width of each token up to the next possible line end outside of it.
+    /// Width from the start of each token to the next possible line end after it.
     widths: Vec<isize>,
     open: Vec<usize>,
     frames: Vec<Frame>,
@@ -164,8 +164,8 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// Computes the widths of groups and breaks. Each width is known at the next break outside the groups
-    /// opened after it.
+    /// Computes the widths of groups and breaks. The width of a token is known at the next break outside the groups
+    /// that are opened after the token.
     fn measure(&mut self) {
         self.widths.clear();
         let mut total = 0;
@@ -207,7 +207,7 @@ impl<'a> Printer<'a> {
 
     fn print(&mut self, indent: isize) {
         let mut indent = indent;
-        let mut room = (WIDTH - indent).max(LEAST_WIDTH);
+        let mut room = (WIDTH - indent).max(MIN_WIDTH);
         self.frames.clear();
         for place in 0..self.tokens.len() {
             let width = self.widths[place];
@@ -250,7 +250,7 @@ impl<'a> Printer<'a> {
                         self.out.push('\n');
                         self.blanks(indent + offset);
                         self.out.push_str(around[1]);
-                        room = (WIDTH - indent - offset).max(LEAST_WIDTH);
+                        room = (WIDTH - indent - offset).max(MIN_WIDTH);
                         room -= around[1].len() as isize;
                     } else {
                         self.blanks(blank);

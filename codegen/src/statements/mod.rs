@@ -1,5 +1,5 @@
 //! Statements of the emitted functions: named values, nested expressions and loops over modes. Operations and
-//! operands are those of the program, so that every backend computes the same bits.
+//! operands are those of the program. The results of all backends are therefore bit-identical.
 //!
 //! `stages`, `requested` and `controllers` build the functions, `preparation` the coefficients, from the shared data in
 //! `file`. `body` (with `operands`, `blocks`, `rows` and `sides`) builds the `statement`s of a function from
@@ -34,24 +34,27 @@ mod step;
 mod used;
 
 pub(crate) use cholesky::{Elements, MatrixOperand, Recorder};
-pub(crate) use controllers::{ControllerStage, ControllerStages, TIMES, controller_stages};
-pub use data::{DataArray, DataElements, data_arrays};
+pub(crate) use controllers::{
+    ControllerStage, ControllerStages, TIME_FIELDS, build_controller_stages,
+};
+pub use data::{DataArray, DataElements, list_data_arrays};
 pub use emit_error::EmitError;
 pub(crate) use emit_error::EmitResult;
-pub(crate) use expression::{Array, Expression, Operator, Structure};
-pub(crate) use file::{File, quantity_line};
+pub(crate) use expression::{ArgumentStruct, Array, Expression, Operator};
+pub(crate) use file::{File, describe_quantity};
 pub(crate) use index::{Index, Span};
-pub use indices::{Indices, indices};
+pub use indices::{Indices, list_indices};
 pub(crate) use kernel::KernelStatements;
 pub(crate) use names::Words;
 pub(crate) use needed::{Helper, RequiredFunctions};
-pub(crate) use preparation::{Preparation, PreparedValue, describe_coefficient, preparation};
-pub(crate) use requested::{jacobian_stage, rates_in_regime, requested_stages};
-pub use roots::coefficient_values;
-pub(crate) use roots::stage_roots;
+pub(crate) use preparation::{Preparation, PreparedValue, build_preparation, describe_coefficient};
+pub(crate) use requested::{build_jacobian_stage, build_rates_in_regime, build_requested_stages};
+pub use roots::collect_coefficients;
+pub(crate) use roots::collect_stage_roots;
 pub(crate) use stage::{Argument, Notes, Outcome, Size, Stage};
 pub(crate) use stages::{
-    RATES_ORDER_DOC, describe_rate_limits, guards, mass_matrix, observables, rates,
+    RATES_ORDER_DOC, build_guards, build_mass_matrix, build_observables, build_rates,
+    describe_rate_limits,
 };
 pub(crate) use statement::{Place, Statement};
 pub(crate) use step::{

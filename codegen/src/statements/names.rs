@@ -24,7 +24,7 @@ impl Words {
     /// Returns `name` if it is an identifier.
     ///
     /// # Errors
-    /// A name that is not an identifier of the language.
+    /// The name is not an identifier of the language.
     pub fn identifier<'n>(&self, name: &'n str) -> Result<&'n str, EmitError> {
         let mut letters = name.bytes();
         let starts = letters
@@ -44,7 +44,7 @@ impl Words {
     }
 }
 
-/// Names given to values; each is given once.
+/// Names assigned to values; no name is assigned twice.
 pub struct Names {
     words: &'static Words,
     prefix: Option<String>,
@@ -94,7 +94,7 @@ impl Names {
         Ok(name)
     }
 
-    /// Gives `name` to a value, or `stem` with its content if `name` is taken.
+    /// Assigns `name` to a value, or `stem` with its content if `name` is taken.
     pub fn assign(
         &mut self,
         program: &Program,

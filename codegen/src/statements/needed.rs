@@ -7,21 +7,21 @@ use eomgen_elementary::Function as Elementary;
 /// Function that each language writes in its own way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Helper {
-    /// f_k of Eq. (7) on a given side.
+    /// Dead-zone function f_k of Eq. (7) on a given side of the play.
     DeadzoneOnSide,
-    /// Contact on a given side.
+    /// Contact on a given side of the play.
     Touching,
     /// Indicator for a function on either side of its zero interval.
     Either,
-    /// Selection by a given condition.
+    /// Selection by a condition known at compile time.
     Chosen,
     /// Cholesky factorisation and solution.
     Cholesky,
     /// Cholesky solution for the columns of a matrix.
     CholeskyOfMatrix,
-    /// Sums of more elements than there are partial sums.
+    /// Sum of more than eight elements.
     Sum,
-    /// Sums of at most as many elements as there are partial sums.
+    /// Sum of at most eight elements.
     SumOfFew,
 }
 

@@ -1,9 +1,9 @@
-//! Operands of expressions: the name of a value, the expression that computes it, or its place in the given
-//! or prepared data.
+//! Operands of expressions: the name of a value, the expression that computes it, or its element in the arguments or
+//! coefficients.
 
 use super::body::{Access, Body};
 use super::emit_error::{EmitError, EmitResult};
-use super::expression::{Array, Expression, Structure};
+use super::expression::{ArgumentStruct, Array, Expression};
 use super::index::Index;
 use super::sides::decide_by_regime;
 use crate::program::evaluator::elementary;
@@ -125,7 +125,7 @@ impl<'a> Body<'a> {
             }
             Op::Argument(argument, variable) if value.extent != Extent::Scalar => of(
                 argument_name(argument),
-                argument_place(program, argument, variable),
+                argument_index(program, argument, variable),
             )?,
             _ => match &self.access {
                 Access::Coefficients(fields) if value.parameter_only => {
@@ -140,7 +140,7 @@ impl<'a> Body<'a> {
                             let array = Array::Coefficient(name.clone(), value.extent);
                             Expression::Element(array, vec![index.into()])
                         }
-                        None => Expression::Field(Structure::Coefficients, name.clone()),
+                        None => Expression::Field(ArgumentStruct::Coefficients, name.clone()),
                     })
                 }
                 _ => return Ok(None),
@@ -160,7 +160,7 @@ impl<'a> Body<'a> {
     pub(super) fn leaf(&self, id: ValueId) -> EmitResult<Expression> {
         let program = self.program;
         let at = |array: &str, place: usize| Expression::element(array, [Index::Number(place)]);
-        let field = |of: Structure, name: &str| {
+        let field = |of: ArgumentStruct, name: &str| {
             let name = self.names.identifier(name)?.to_owned();
             Ok(Expression::Field(of, name))
         };
@@ -168,17 +168,17 @@ impl<'a> Body<'a> {
             Op::Coordinate(index) => at("state", index.index()),
             Op::Rate(index) => at("state", program.degrees_of_freedom() + index.index()),
             Op::State(index) => at("state", 2 * program.degrees_of_freedom() + index.index()),
-            Op::Input(index) => field(Structure::Inputs, &program.inputs[index].name)?,
+            Op::Input(index) => field(ArgumentStruct::Inputs, &program.inputs[index].name)?,
             Op::Parameter(place) => {
                 let name = &program.parameters[place].quantity.name;
-                field(Structure::Parameters, name)?
+                field(ArgumentStruct::Parameters, name)?
             }
             Op::Argument(Argument::Direction, Variable::Input(index)) => {
-                field(Structure::InputDirection, &program.inputs[index].name)?
+                field(ArgumentStruct::InputDirection, &program.inputs[index].name)?
             }
             Op::Argument(argument, variable) => at(
                 argument_name(argument),
-                argument_place(program, argument, variable),
+                argument_index(program, argument, variable),
             ),
             _ => {
                 return Err(EmitError::misplaced_value(
@@ -238,8 +238,8 @@ impl<'a> Body<'a> {
     }
 }
 
-/// Returns the index of a variable in an argument; for a field, that of its first mode.
-fn argument_place(program: &Program, argument: Argument, variable: Variable) -> usize {
+/// Returns the index of a variable in an argument. For a field, returns the index of its first mode.
+fn argument_index(program: &Program, argument: Argument, variable: Variable) -> usize {
     match argument {
         Argument::PointDirection => program.point_place(variable),
         _ => program.variable_place(variable),

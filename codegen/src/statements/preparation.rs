@@ -30,16 +30,19 @@ pub struct Preparation {
     pub computed: Vec<Statement>,
     /// Coefficients, in the order of [`File::fields`].
     pub coefficients: Vec<PreparedValue>,
-    /// Condition that all prepared pivots are positive and finite.
+    /// Condition that all pivots of prepared factorisations are positive and finite.
     pub positive_definite: Expression,
     /// Names of the intermediate values.
     pub names: HashMap<ValueId, String>,
-    /// Origin of the intermediate values.
+    /// Units and terms of the intermediate values.
     pub notes: Notes,
 }
 
 /// Builds the preparation of the coefficients of a file.
-pub fn preparation(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Preparation> {
+pub fn build_preparation(
+    file: &File<'_>,
+    needed: &mut RequiredFunctions,
+) -> EmitResult<Preparation> {
     let roots = file.fields.iter().chain(&file.program.pivots);
     let roots: Vec<ValueId> = roots.copied().collect();
     let access = Access::Prepare;
@@ -52,7 +55,7 @@ pub fn preparation(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResul
             _ => PreparedValue::Numbers(body.numbers(*id)?),
         });
     }
-    let positive_definite = pivot_check(file, &mut body)?;
+    let positive_definite = build_pivot_check(file, &mut body)?;
     Ok(Preparation {
         computed: body.take_statements(),
         coefficients,
@@ -62,7 +65,7 @@ pub fn preparation(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResul
     })
 }
 
-fn pivot_check(file: &File<'_>, body: &mut Body<'_>) -> EmitResult<Expression> {
+fn build_pivot_check(file: &File<'_>, body: &mut Body<'_>) -> EmitResult<Expression> {
     let mut check: Option<Expression> = None;
     for (place, id) in file.program.pivots.iter().enumerate() {
         let conditions = match file.program.value(*id).extent {
@@ -94,7 +97,7 @@ fn pivot_check(file: &File<'_>, body: &mut Body<'_>) -> EmitResult<Expression> {
     Ok(check.unwrap_or(Expression::True))
 }
 
-/// Returns the conditions for a positive and finite pivot.
+/// Returns the conditions that a pivot is positive and finite.
 fn is_positive(pivot: &Expression) -> [Expression; 2] {
     [
         Expression::greater(pivot.clone(), Expression::Number(0.0)),

@@ -1,4 +1,4 @@
-//! Stages of steps with frictions that hold the motion and with contacts.
+//! Stages of fixed-length steps with dry friction that can stick, and with contacts.
 
 use super::body::Body;
 use super::emit_error::EmitResult;
@@ -7,26 +7,26 @@ use super::index::Index;
 use super::needed::RequiredFunctions;
 use super::rows::write_row_values;
 use super::stage::{Argument, Outcome, Size, Stage};
-use super::stages::{RATES_ORDER_DOC, rates_stage};
+use super::stages::{RATES_ORDER_DOC, build_rates_stage};
 use super::statement::Place;
 use crate::program::{ProgramReactions, ValueId};
 
-/// Builds the stages: rates with given sides, functions and effects of the reactions.
-pub(super) fn reaction_stages(
+/// Builds the stages: rates with given sides of the frictions, and the functions and effects of the reactions.
+pub(super) fn build_reaction_stages(
     file: &File<'_>,
     known: &ProgramReactions,
     needed: &mut RequiredFunctions,
 ) -> EmitResult<Vec<Stage>> {
     let mut stages = Vec::new();
     if known.sides() > 0 {
-        stages.push(rates_with_sides(file, known, needed)?);
+        stages.push(build_rates_with_sides(file, known, needed)?);
     }
     stages.push(functions(file, known, needed)?);
     stages.push(effects(file, known, needed)?);
     Ok(stages)
 }
 
-fn rates_with_sides(
+fn build_rates_with_sides(
     file: &File<'_>,
     known: &ProgramReactions,
     needed: &mut RequiredFunctions,
@@ -40,7 +40,7 @@ fn rates_with_sides(
     );
     Ok(Stage {
         arguments: vec![Argument::Sides],
-        ..rates_stage(body, rates, "rates_with_sides", doc)?
+        ..build_rates_stage(body, rates, "rates_with_sides", doc)?
     })
 }
 

@@ -1,5 +1,5 @@
-//! Stages on request: bias forces, inverse dynamics, rates of the guards, products with the Jacobian,
-//! Jacobians and the rates in a regime. `reactions` builds those of steps with frictions and contacts.
+//! Optional stages: bias forces, inverse dynamics, rates of the guards, products with the Jacobian, Jacobians, and
+//! the rates in a regime. `reactions` builds the stages of fixed-length steps with frictions and contacts.
 
 use super::body::Body;
 use super::emit_error::EmitResult;
@@ -7,12 +7,13 @@ use super::expression::Expression;
 use super::file::File;
 use super::index::Index;
 use super::needed::RequiredFunctions;
-use super::reactions::reaction_stages;
-use super::roots::entry_roots;
+use super::reactions::build_reaction_stages;
+use super::roots::collect_entry_roots;
 use super::rows::write_row_values;
 use super::stage::{Argument, Outcome, Size, Stage};
 use super::stages::{
-    RATES_ORDER_DOC, describe_by_positions, describe_rate_limits, guard_values, rates_stage,
+    RATES_ORDER_DOC, build_guard_values, build_rates_stage, describe_by_positions,
+    describe_rate_limits,
 };
 use super::statement::{Place, Statement};
 use crate::program::{
@@ -21,13 +22,16 @@ use crate::program::{
 };
 
 /// Builds the requested stages, except Jacobians and rates in a regime.
-pub fn requested_stages(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Vec<Stage>> {
+pub fn build_requested_stages(
+    file: &File<'_>,
+    needed: &mut RequiredFunctions,
+) -> EmitResult<Vec<Stage>> {
     let outputs = &file.program.outputs;
     let mut stages = Vec::new();
     if let Some(rows) = &outputs.bias_forces {
         let doc = "Bias forces c - f of M q'' + c = f, in the order of the first half of\n\
                    [`STATE_NAMES`]: the additional forces for zero accelerations.";
-        stages.push(forces(file, "bias_forces", doc, rows, needed)?);
+        stages.push(build_forces_stage(file, "bias_forces", doc, rows, needed)?);
     }
     if let Some(rows) = &outputs.inverse_dynamics {
         let doc = "Inverse dynamics M a + c - f: the generalised forces needed in addition to\n\
@@ -35,29 +39,35 @@ pub fn requested_stages(file: &File<'_>, needed: &mut RequiredFunctions) -> Emit
                    [`STATE_NAMES`].";
         stages.push(Stage {
             arguments: vec![Argument::Accelerations],
-            ..forces(file, "inverse_dynamics", doc, rows, needed)?
+            ..build_forces_stage(file, "inverse_dynamics", doc, rows, needed)?
         });
     }
     if let Some(rates) = &outputs.guard_rates {
         let line = "Rates of the switching surfaces along the motion, with constant inputs.";
-        stages.push(guard_values(file, "guard_rates", line, rates, needed)?);
+        stages.push(build_guard_values(
+            file,
+            "guard_rates",
+            line,
+            rates,
+            needed,
+        )?);
     }
     if let Some(products) = &outputs.products {
-        stages.push(jacobian_vector_product(file, products, needed)?);
-        stages.push(vector_jacobian_product(file, products, needed)?);
-        stages.push(product_by_parameters(file, products, needed)?);
+        stages.push(build_jacobian_vector_product(file, products, needed)?);
+        stages.push(build_vector_jacobian_product(file, products, needed)?);
+        stages.push(build_product_by_parameters(file, products, needed)?);
     }
     if let Some(derivative) = &outputs.gradient_derivative {
-        stages.push(gradient_derivative(file, derivative, needed)?);
+        stages.push(build_gradient_derivative(file, derivative, needed)?);
     }
     if let Some(known) = &outputs.reactions {
-        stages.extend(reaction_stages(file, known, needed)?);
+        stages.extend(build_reaction_stages(file, known, needed)?);
     }
     Ok(stages)
 }
 
 /// Builds a stage that returns one number for each degree of freedom.
-fn forces(
+fn build_forces_stage(
     file: &File<'_>,
     name: &'static str,
     doc: &str,
@@ -79,7 +89,7 @@ fn forces(
     })
 }
 
-fn jacobian_vector_product(
+fn build_jacobian_vector_product(
     file: &File<'_>,
     products: &Products<ValueId, RowValues>,
     needed: &mut RequiredFunctions,
@@ -108,7 +118,7 @@ fn jacobian_vector_product(
     })
 }
 
-fn vector_jacobian_product(
+fn build_vector_jacobian_product(
     file: &File<'_>,
     products: &Products<ValueId, RowValues>,
     needed: &mut RequiredFunctions,
@@ -128,7 +138,7 @@ fn vector_jacobian_product(
         let each = || Place::new("product", [Index::from_first(place, "i")]);
         match variable {
             Variable::Input(index) => inputs[*index] = body.scalar(*id)?,
-            // The product is by state and inputs.
+            // The product contains only the derivatives with respect to state and inputs.
             Variable::Parameter(_) | Variable::Time => {}
             Variable::Coordinate(_) | Variable::State(_) => {
                 let value = body.scalar(*id)?;
@@ -170,7 +180,7 @@ fn vector_jacobian_product(
     })
 }
 
-fn product_by_parameters(
+fn build_product_by_parameters(
     file: &File<'_>,
     products: &Products<ValueId, RowValues>,
     needed: &mut RequiredFunctions,
@@ -198,7 +208,7 @@ fn product_by_parameters(
     })
 }
 
-fn gradient_derivative(
+fn build_gradient_derivative(
     file: &File<'_>,
     derivative: &GradientDerivative<ValueId>,
     needed: &mut RequiredFunctions,
@@ -231,12 +241,12 @@ fn gradient_derivative(
 }
 
 /// Builds the stage that writes the structural nonzeros of a Jacobian, row by row.
-pub fn jacobian_stage(
+pub fn build_jacobian_stage(
     file: &File<'_>,
     jacobian: &Jacobian<ValueId>,
     needed: &mut RequiredFunctions,
 ) -> EmitResult<Stage> {
-    let mut body = file.body(&entry_roots(file.program, jacobian), needed)?;
+    let mut body = file.body(&collect_entry_roots(file.program, jacobian), needed)?;
     let computed = body.take_statements();
     for (entry, BlockPlace { start, width }) in jacobian.entries.iter().zip(jacobian.places()) {
         write_entry(&mut body, entry, start, width)?;
@@ -300,7 +310,7 @@ fn write_entry(
 }
 
 /// Builds the stage for the rates in a regime, if requested.
-pub fn rates_in_regime(
+pub fn build_rates_in_regime(
     file: &File<'_>,
     needed: &mut RequiredFunctions,
 ) -> EmitResult<Option<Stage>> {
@@ -320,6 +330,6 @@ pub fn rates_in_regime(
     );
     Ok(Some(Stage {
         arguments: vec![Argument::Regime],
-        ..rates_stage(body, rates, "rates_in_regime_into", doc)?
+        ..build_rates_stage(body, rates, "rates_in_regime_into", doc)?
     }))
 }

@@ -1,34 +1,35 @@
-//! Values from which each part of the file is written.
+//! Values that each part of the file computes or reads.
 
 use std::collections::BTreeSet;
 
 use crate::program::{Jacobian, Op, Program, RowValues, ValueId};
 
-/// Returns the values from which the mass matrix is written.
-pub(super) fn mass_roots(program: &Program) -> Vec<ValueId> {
+/// Returns the values that the mass matrix function computes or reads.
+pub(super) fn collect_mass_roots(program: &Program) -> Vec<ValueId> {
     let mass = &program.mass;
     let mut roots: Vec<ValueId> = mass.scalars.iter().flatten().copied().collect();
     roots.extend(mass.coupling.iter().flatten());
-    // Modal blocks are written from their parts; as whole matrices they would be prepared.
+    // Modal blocks are assembled from their parts in the stage. As whole matrices they would be stored in the
+    // coefficients.
     for block in mass.modal.iter().flatten().flatten() {
         roots.extend(program.value(*block).op.operands());
     }
     roots
 }
 
-/// Returns the values from which all stages with coefficients are written.
-pub fn stage_roots(program: &Program) -> Vec<ValueId> {
+/// Returns the values that the stages with coefficients compute or read.
+pub fn collect_stage_roots(program: &Program) -> Vec<ValueId> {
     let mut roots = program.rate_roots();
     roots.extend(&program.observable_values);
     roots.extend(program.guards.iter().map(|g| g.value));
-    roots.extend(mass_roots(program));
-    roots.extend(output_roots(program));
+    roots.extend(collect_mass_roots(program));
+    roots.extend(collect_output_roots(program));
     roots
 }
 
-/// Returns the prepared values that stages read directly, without constants and tables.
-pub fn coefficient_values(program: &Program) -> Vec<ValueId> {
-    let roots = stage_roots(program);
+/// Returns the coefficients that stages read directly, without constants and tables.
+pub fn collect_coefficients(program: &Program) -> Vec<ValueId> {
+    let roots = collect_stage_roots(program);
     let mut read: BTreeSet<ValueId> = program
         .reachable(&roots)
         .into_iter()
@@ -45,7 +46,7 @@ pub fn coefficient_values(program: &Program) -> Vec<ValueId> {
         .collect()
 }
 
-fn output_roots(program: &Program) -> Vec<ValueId> {
+fn collect_output_roots(program: &Program) -> Vec<ValueId> {
     let outputs = &program.outputs;
     let rows = [&outputs.bias_forces, &outputs.inverse_dynamics];
     let mut roots: Vec<ValueId> = rows
@@ -68,14 +69,14 @@ fn output_roots(program: &Program) -> Vec<ValueId> {
         roots.extend(known.effect_roots());
     }
     for jacobian in &outputs.jacobians {
-        roots.extend(entry_roots(program, jacobian));
+        roots.extend(collect_entry_roots(program, jacobian));
     }
     roots.retain(|id| !matches!(program.value(*id).op, Op::Constant(_)));
     roots
 }
 
-/// Returns the values from which a Jacobian is written; for assembled blocks, their parts.
-pub(super) fn entry_roots(program: &Program, jacobian: &Jacobian<ValueId>) -> Vec<ValueId> {
+/// Returns the values of the structural nonzeros of a Jacobian. An assembled block is replaced by its parts.
+pub(super) fn collect_entry_roots(program: &Program, jacobian: &Jacobian<ValueId>) -> Vec<ValueId> {
     let entries = jacobian.entries.iter();
     entries
         .flat_map(|entry| {

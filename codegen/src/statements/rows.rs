@@ -1,4 +1,4 @@
-//! Assignment of one value for each row of the equations to an array.
+//! Assignment of one value per row of the equations to the elements of an array.
 
 use super::body::Body;
 use super::emit_error::EmitResult;

@@ -1,4 +1,4 @@
-//! Values whose branch is decided by the number of a regime.
+//! Values of piecewise functions whose branch the regime number decides.
 
 use std::collections::HashMap;
 

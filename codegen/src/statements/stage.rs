@@ -20,7 +20,7 @@ pub enum Argument {
     PointDirection,
     /// Weight of each rate.
     Weights,
-    /// Side of each friction that can hold the motion.
+    /// Side of each dry friction that can stick.
     Sides,
 }
 
@@ -83,6 +83,6 @@ pub struct Stage {
     pub computed: Vec<Statement>,
     /// Statements that write the result.
     pub written: Vec<Statement>,
-    /// Origin of the values.
+    /// Units and terms of the named values.
     pub notes: Notes,
 }

@@ -3,10 +3,10 @@
 use super::body::Body;
 use super::emit_error::EmitResult;
 use super::expression::Expression;
-use super::file::{File, quantity_line};
+use super::file::{File, describe_quantity};
 use super::index::Index;
 use super::needed::RequiredFunctions;
-use super::roots::mass_roots;
+use super::roots::collect_mass_roots;
 use super::rows::write_row_values;
 use super::stage::{Outcome, Size, Stage};
 use super::statement::{Place, Statement};
@@ -33,10 +33,10 @@ const BETWEEN_IMPACTS: &str = "\n\n\
 const MAX_UNROLLED_COPY: usize = 8;
 
 /// Builds the stage of the rates.
-pub fn rates(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Stage> {
+pub fn build_rates(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Stage> {
     let body = file.body(&file.program.rate_roots(), needed)?;
     let program = file.program;
-    rates_stage(
+    build_rates_stage(
         body,
         (&program.accelerations, &program.first_order_rates),
         "rates_into",
@@ -62,8 +62,9 @@ pub fn describe_rate_limits(file: &File<'_>) -> String {
     said
 }
 
-/// Builds a stage that writes the rates from a body that has the values of the accelerations and of the first-order rates.
-pub(super) fn rates_stage(
+/// Builds a stage that writes the rates from a body that already contains the values of the accelerations and of the
+/// rates of first-order states.
+pub(super) fn build_rates_stage(
     mut body: Body<'_>,
     (accelerations, first_order_rates): (&RowValues, &[ValueId]),
     name: &'static str,
@@ -117,14 +118,17 @@ fn write_rates_of_positions(body: &mut Body<'_>, degrees: usize) {
 }
 
 /// Builds the stages of the observables, of the energy and of the power.
-pub fn observables(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Vec<Stage>> {
+pub fn build_observables(
+    file: &File<'_>,
+    needed: &mut RequiredFunctions,
+) -> EmitResult<Vec<Stage>> {
     let program = file.program;
     let ids = &program.observable_values;
     let mut body = file.body(ids, needed)?;
     let values = ids.iter().map(|id| body.scalar(*id));
     let values = values.collect::<EmitResult<Vec<_>>>()?;
     let lines = program.observables.iter().map(|observable| {
-        let line = quantity_line(&observable.doc, &observable.unit, "");
+        let line = describe_quantity(&observable.doc, &observable.unit, "");
         format!("- `{}`: {line}", observable.name)
     });
     let all = Stage {
@@ -169,14 +173,14 @@ fn number(
 }
 
 /// Builds the stage of the switching functions.
-pub fn guards(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Stage> {
+pub fn build_guards(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Stage> {
     let ids: Vec<ValueId> = file.program.guards.iter().map(|g| g.value).collect();
     let line = "Switching surfaces: the equations change when one of these changes sign.";
-    guard_values(file, "guards", line, &ids, needed)
+    build_guard_values(file, "guards", line, &ids, needed)
 }
 
 /// Builds a stage that writes a value for each guard.
-pub(super) fn guard_values(
+pub(super) fn build_guard_values(
     file: &File<'_>,
     name: &'static str,
     line: &str,
@@ -217,9 +221,9 @@ pub(super) fn guard_values(
 }
 
 /// Builds the stage of the mass matrix.
-pub fn mass_matrix(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Stage> {
+pub fn build_mass_matrix(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Stage> {
     let program = file.program;
-    let mut body = file.body(&mass_roots(program), needed)?;
+    let mut body = file.body(&collect_mass_roots(program), needed)?;
     let computed = body.take_statements();
     for (row, entries) in program.mass.scalars.iter().enumerate() {
         for (column, id) in entries.iter().enumerate() {
@@ -295,8 +299,8 @@ fn write_modal_blocks(file: &File<'_>, body: &mut Body<'_>) -> EmitResult<()> {
     Ok(())
 }
 
-/// Adapts a description that refers to the first half of the state: first-order states make the
-/// coordinates and modes less than half.
+/// Adapts a description that refers to the first half of the state. If there are first-order states, coordinates and
+/// modes are less than half of the state.
 pub(super) fn describe_by_positions(program: &Program, doc: &str) -> String {
     match program.first_order.is_empty() {
         true => doc.to_owned(),

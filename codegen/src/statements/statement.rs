@@ -21,7 +21,7 @@ impl Place {
         }
     }
 
-    /// Returns the expression that reads the place.
+    /// Returns the expression that reads the target.
     pub fn value(&self) -> Expression {
         Expression::element(&*self.name, &*self.indices)
     }
@@ -47,7 +47,7 @@ pub enum Statement {
         /// Statements for each value.
         lines: Vec<Self>,
     },
-    /// Definition of a number less products, subtracted in the order of an index.
+    /// Definition of a number less a sum of products. The products are subtracted in the order of a loop.
     Remainder {
         /// Name of the remainder.
         name: &'static str,
@@ -120,7 +120,7 @@ impl Statement {
         }
     }
 
-    /// Builds an addition to the value of a place.
+    /// Builds the addition of a summand to the value of a target.
     pub fn add_to(place: Place, summand: &Expression) -> Self {
         let sum = Expression::add(&place.value(), summand);
         Self::Assign(place, sum)

@@ -2,13 +2,13 @@
 
 use crate::program::Program;
 
-const HEAD: &str = "Step of length h (s) of the classical Runge-Kutta method of order 4, with held inputs. It has\n\
-                    the bits of `eomgen simulate --solver fixed`. Switches are not located.";
+const HEAD: &str = "Step of length h (s) of the classical Runge-Kutta method of order 4, with constant inputs. It is\n\
+                    bit-identical to `eomgen simulate --solver fixed`. Switches are not located.";
 
 const REACTIONS: &str = "\n\n\
     Frictions that can hold the motion have one value over the step, so that a friction at rest\n\
     holds. Contacts that are closed at the end of the step receive impulses, with Newton's law of\n\
-    restitution. The state becomes NaN if these reactions do not settle.";
+    restitution. The state becomes NaN if the iteration for these reactions does not converge.";
 
 /// Returns name, value and documentation of the sizes of arrays of reactions; nothing without reactions.
 pub fn reaction_constants(program: &Program) -> Vec<(&'static str, usize, &'static str)> {
@@ -29,7 +29,7 @@ pub fn reaction_constants(program: &Program) -> Vec<(&'static str, usize, &'stat
         ),
     ];
     if known.sides() > 0 {
-        let doc = "Number of frictions that can hold the motion.";
+        let doc = "Number of dry frictions that can stick.";
         constants.insert(0, ("SIDES", known.sides(), doc));
     }
     constants

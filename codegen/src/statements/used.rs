@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::expression::{Array, Expression, Structure};
+use super::expression::{ArgumentStruct, Array, Expression};
 use super::preparation::{Preparation, PreparedValue};
 use super::stage::Outcome;
 use super::statement::Statement;
@@ -14,7 +14,7 @@ pub struct UsedNames {
 }
 
 impl UsedNames {
-    /// Collects the names that an outcome reads and those of the arrays that it returns.
+    /// Collects the names that an outcome reads, and the names of the arrays that it returns.
     pub fn from_outcome(outcome: &Outcome) -> Self {
         let mut used = Self::default();
         for name in ["rates", "values", "product"] {
@@ -106,12 +106,12 @@ impl UsedNames {
             Expression::Name(name) | Expression::Flag(name) => self.name(name),
             Expression::Element(array, _) => self.array(array),
             Expression::Field(structure, _) => self.name(match structure {
-                Structure::Coefficients => "coefficients",
-                Structure::Parameters => "parameters",
-                Structure::Inputs => "inputs",
-                Structure::InputDirection => "input_direction",
-                Structure::Measured => "measured",
-                Structure::Memory => "memory",
+                ArgumentStruct::Coefficients => "coefficients",
+                ArgumentStruct::Parameters => "parameters",
+                ArgumentStruct::Inputs => "inputs",
+                ArgumentStruct::InputDirection => "input_direction",
+                ArgumentStruct::Measured => "measured",
+                ArgumentStruct::Memory => "memory",
             }),
             Expression::Shared(part) | Expression::Negate(part) => self.expression(part),
             Expression::Binary(_, a, b) => {

@@ -5,14 +5,14 @@ use std::collections::HashMap;
 use wasm_encoder::{BlockType, Function, InstructionSink, MemArg, MemArgTarget, ValType};
 
 use super::indices::Indices;
-use super::memory::{Memory, NUMBER, Region, missing_place_error};
+use super::memory::{Memory, NUMBER, Region, missing_address_error};
 use crate::program::{Extent, Program};
 use crate::statements::{EmitError, EmitResult, Index, Span};
 
-/// Index of the imported global variable with the address of the module's numbers.
+/// Index of the imported global variable that contains the address of the module's memory.
 pub(super) const BASE: u32 = 0;
 
-/// Binary logarithm of the bytes of a number, for alignment.
+/// Binary logarithm of the size of a number in bytes, for alignment.
 const ALIGNMENT: u32 = NUMBER.trailing_zeros();
 
 pub(super) struct Code<'m> {
@@ -21,7 +21,7 @@ pub(super) struct Code<'m> {
     pub(super) functions: &'m Indices,
     bytes: Vec<u8>,
     arguments: u32,
-    /// Types of the other variables.
+    /// Types of the variables other than arguments.
     types: Vec<ValType>,
     variables: HashMap<String, u32>,
     arrays: HashMap<String, Region>,
@@ -82,7 +82,7 @@ impl<'m> Code<'m> {
 
     pub(super) fn local_index(&self, name: &str) -> EmitResult<u32> {
         let variable = self.variables.get(name).copied();
-        variable.ok_or_else(|| missing_place_error(name))
+        variable.ok_or_else(|| missing_address_error(name))
     }
 
     /// Allocates a named array; its content is undefined.
@@ -98,7 +98,7 @@ impl<'m> Code<'m> {
 
     pub(super) fn region(&self, name: &str) -> EmitResult<Region> {
         let region = self.arrays.get(name).copied();
-        region.ok_or_else(|| missing_place_error(name))
+        region.ok_or_else(|| missing_address_error(name))
     }
 
     pub(super) fn zero(&mut self, region: Region, length: usize) -> EmitResult<()> {
@@ -176,7 +176,7 @@ impl<'m> Code<'m> {
         Ok(())
     }
 
-    /// Declares a loop variable; returns it and the outer variable with the same name.
+    /// Declares a loop variable. Returns its index, and the index of the outer variable of the same name.
     fn loop_variable(&mut self, index: &str) -> (u32, Option<u32>) {
         let variable = self.variable(ValType::I32);
         (variable, self.variables.insert(index.to_owned(), variable))
@@ -240,15 +240,15 @@ impl<'m> Code<'m> {
         Ok(aligned(from))
     }
 
-    /// Pushes the number at a fixed place.
-    pub(super) fn load(&mut self, place: u32) {
+    /// Pushes the number at a fixed address.
+    pub(super) fn load(&mut self, address: u32) {
         self.instructions()
             .global_get(BASE)
-            .f64_load(aligned(place));
+            .f64_load(aligned(address));
     }
 }
 
-/// Returns the memory argument for numbers from an address on.
+/// Returns the memory argument of a load or store at an address.
 fn aligned(from: u32) -> MemArg {
     MemArg {
         offset: u64::from(from),

@@ -7,14 +7,15 @@ use wasm_encoder::{
 };
 
 use super::code::{BASE, Code};
-use super::functions::{Helper, helpers};
+use super::functions::{Helper, build_helpers};
 use super::indices::Indices;
 use super::memory::{Memory, NUMBER, Region};
 use super::names::WORDS;
 use crate::program::Program;
 use crate::statements::{
     EmitError, EmitResult, File, Index, Outcome, Place, Preparation, PreparedValue,
-    RequiredFunctions, Stage, Statement, UsedNames, guards, observables, preparation, rates,
+    RequiredFunctions, Stage, Statement, UsedNames, build_guards, build_observables,
+    build_preparation, build_rates,
 };
 
 /// WebAssembly module of a program.
@@ -22,7 +23,7 @@ use crate::statements::{
 pub struct EmittedModule {
     /// Content of the file.
     pub bytes: Vec<u8>,
-    /// Bytes of memory that it needs.
+    /// Size of the memory that the module needs, in bytes.
     pub size: usize,
 }
 
@@ -37,22 +38,22 @@ pub struct EmittedModule {
 /// * `observables(t)`: computes the observables, with energy and power last;
 /// * `guards(t)`, if there are any: computes the switching surfaces.
 ///
-/// The constant globals `parameters_at`, `inputs_at`, `state_at`, `rates_at`, `observables_at` and
-/// `guards_at` are the addresses, in bytes from `base`, of the numbers that these read and write, in the order of
-/// the program; `size` is constant, too.
+/// The constant globals `parameters_at`, `inputs_at`, `state_at`, `rates_at`, `observables_at` and `guards_at` are
+/// the addresses of the arrays that these functions read and write, in bytes from `base`. The numbers have the order
+/// of the program. `size` is a constant global, too.
 ///
 /// # Errors
-/// A program that exceeds the memory of a module.
+/// The program exceeds the memory of a module.
 pub fn emit(program: &Program) -> Result<EmittedModule, EmitError> {
     let file = File::new(program, &WORDS)?;
     let mut needed = RequiredFunctions::default();
-    let prepared = preparation(&file, &mut needed)?;
-    let mut stages = vec![rates(&file, &mut needed)?];
-    stages.extend(observables(&file, &mut needed)?.into_iter().take(1));
+    let prepared = build_preparation(&file, &mut needed)?;
+    let mut stages = vec![build_rates(&file, &mut needed)?];
+    stages.extend(build_observables(&file, &mut needed)?.into_iter().take(1));
     if file.guard_count() > 0 {
-        stages.push(guards(&file, &mut needed)?);
+        stages.push(build_guards(&file, &mut needed)?);
     }
-    let helpers = helpers(&needed);
+    let helpers = build_helpers(&needed);
     let functions = Indices::new(helpers.iter().map(|helper| helper.name));
     let mut memory = Memory::new(&file)?;
     let mut written = Vec::new();
@@ -66,7 +67,7 @@ pub fn emit(program: &Program) -> Result<EmittedModule, EmitError> {
         written.push(write_stage(program, stage, &mut memory, &functions)?);
     }
     Ok(EmittedModule {
-        bytes: module(&helpers, &exported, &written, &memory),
+        bytes: assemble_module(&helpers, &exported, &written, &memory),
         size: memory.size() as usize,
     })
 }
@@ -90,7 +91,7 @@ fn write_preparation(
     let mut code = Code::new(program, memory, functions, &[]);
     code.statements(&computed)?;
     for (id, coefficient) in file.fields.iter().zip(&prepared.coefficients) {
-        // Names of a model contain no space.
+        // These names contain a space, so no name of a model is equal to them.
         let (target, source) = ("the coefficient", "what was prepared");
         let region = code.memory.coefficient(&file.field_names[id])?;
         code.name_array(target, region);
@@ -153,7 +154,12 @@ fn write_stage(
 }
 
 /// Assembles the sections of a module; helpers precede the exported functions.
-fn module(helpers: &[Helper], exported: &[&str], written: &[Function], memory: &Memory) -> Vec<u8> {
+fn assemble_module(
+    helpers: &[Helper],
+    exported: &[&str],
+    written: &[Function],
+    memory: &Memory,
+) -> Vec<u8> {
     const REAL: ValType = ValType::F64;
     let mut types = TypeSection::new();
     types.ty().function([REAL], [REAL]);
@@ -190,8 +196,8 @@ fn module(helpers: &[Helper], exported: &[&str], written: &[Function], memory: &
         function_index: written.len() as u32,
     };
     let mut globals = GlobalSection::new();
-    let places = places(memory).map(|(name, region)| (name, region.first));
-    let numbers = places.into_iter().chain([("size", memory.size())]);
+    let addresses = exported_regions(memory).map(|(name, region)| (name, region.first));
+    let numbers = addresses.into_iter().chain([("size", memory.size())]);
     for (index, (name, number)) in (BASE + 1..).zip(numbers) {
         globals.global(constant, &ConstExpr::i32_const(number as i32));
         exports.export(name, ExportKind::Global, index);
@@ -214,7 +220,7 @@ fn module(helpers: &[Helper], exported: &[&str], written: &[Function], memory: &
     module.finish()
 }
 
-/// Writes the function that copies the constants to their places, at the start of the module.
+/// Writes the start function of the module, which copies the constants to their addresses.
 fn write_constants(memory: &Memory) -> Function {
     let mut function = Function::new([]);
     let mut put = function.instructions();
@@ -231,7 +237,7 @@ fn write_constants(memory: &Memory) -> Function {
 }
 
 /// Returns the regions of the exported globals.
-fn places(memory: &Memory) -> [(&'static str, Region); 6] {
+fn exported_regions(memory: &Memory) -> [(&'static str, Region); 6] {
     let exchanged = memory.exchanged;
     [
         ("parameters_at", exchanged.parameters),

@@ -1,8 +1,8 @@
 //! Expressions as instructions that push a number or a condition.
 
 use super::code::Code;
-use super::memory::{Region, missing_place_error};
-use crate::statements::{Array, EmitError, EmitResult, Expression, Operator, Structure};
+use super::memory::{Region, missing_address_error};
+use crate::statements::{ArgumentStruct, Array, EmitError, EmitResult, Expression, Operator};
 
 impl Code<'_> {
     /// Pushes the value of an expression.
@@ -39,7 +39,7 @@ impl Code<'_> {
             }
             Expression::Primitive("select_equal", parts) => {
                 let [a, b, then, otherwise] = &parts[..] else {
-                    return Err(missing_place_error("select_equal"));
+                    return Err(missing_address_error("select_equal"));
                 };
                 self.expressions([then, otherwise, a, b])?;
                 self.instructions().f64_eq().select();
@@ -78,13 +78,13 @@ impl Code<'_> {
         all.into_iter().try_for_each(|one| self.expression(one))
     }
 
-    fn field(&mut self, structure: Structure, name: &str) -> EmitResult<()> {
+    fn field(&mut self, structure: ArgumentStruct, name: &str) -> EmitResult<()> {
         let place = match structure {
-            Structure::Coefficients => self.memory.coefficient(name)?.first,
-            Structure::Parameters => self.memory.parameter(name)?,
-            Structure::Inputs => self.memory.input(name)?,
-            Structure::InputDirection | Structure::Measured | Structure::Memory => {
-                return Err(missing_place_error(name));
+            ArgumentStruct::Coefficients => self.memory.coefficient(name)?.first,
+            ArgumentStruct::Parameters => self.memory.parameter(name)?,
+            ArgumentStruct::Inputs => self.memory.input(name)?,
+            ArgumentStruct::InputDirection | ArgumentStruct::Measured | ArgumentStruct::Memory => {
+                return Err(missing_address_error(name));
             }
         };
         self.load(place);
@@ -135,7 +135,7 @@ impl Code<'_> {
                 put.i64_and().i64_const(0x3ff << MANTISSA_BITS).i64_or();
                 put.f64_reinterpret_i64()
             }
-            _ => return Err(missing_place_error(name)),
+            _ => return Err(missing_address_error(name)),
         };
         Ok(())
     }

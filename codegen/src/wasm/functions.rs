@@ -1,4 +1,5 @@
-//! Functions that the stages call, from their kernels. Each has only numbers as arguments; none calls another.
+//! Elementary functions that the stages call, written from their kernels. All arguments are numbers, and no function
+//! calls another one.
 
 use wasm_encoder::Function;
 
@@ -31,11 +32,16 @@ impl Helper {
     }
 }
 
-pub(super) fn helpers(needed: &RequiredFunctions) -> Vec<Helper> {
-    needed.kernels.iter().copied().filter_map(helper).collect()
+pub(super) fn build_helpers(needed: &RequiredFunctions) -> Vec<Helper> {
+    needed
+        .kernels
+        .iter()
+        .copied()
+        .filter_map(build_helper)
+        .collect()
 }
 
-fn helper(function: Elementary) -> Option<Helper> {
+fn build_helper(function: Elementary) -> Option<Helper> {
     let kernel = KernelStatements::new::<Double>(function);
     Some(Helper {
         name: function.name(),

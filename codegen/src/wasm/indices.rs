@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::memory::missing_place_error;
+use super::memory::missing_address_error;
 use crate::statements::EmitResult;
 
 #[derive(Debug)]
@@ -18,6 +18,6 @@ impl Indices {
         self.0
             .get(name)
             .copied()
-            .ok_or_else(|| missing_place_error(name))
+            .ok_or_else(|| missing_address_error(name))
     }
 }

@@ -1,12 +1,12 @@
-//! Layout of the module's part of the linear memory: one array after the other. Addresses are relative to its start. No
-//! memory is allocated at run time.
+//! Layout of the module's part of the linear memory: one array after the other. Addresses are relative to the start
+//! of this part. No memory is allocated at run time.
 
 use std::collections::HashMap;
 
 use crate::program::{Extent, Program};
 use crate::statements::{EmitError, EmitResult, File};
 
-/// Bytes of a number.
+/// Size of a number, in bytes.
 pub(super) const NUMBER: u32 = 8;
 
 /// Largest address: addresses are signed 32-bit constants.
@@ -70,8 +70,8 @@ impl Memory {
             exchanged,
             coefficients: HashMap::new(),
             tables: HashMap::new(),
-            parameters: places(program.parameters.iter().map(|p| &p.quantity.name)),
-            inputs: places(program.inputs.iter().map(|input| &input.name)),
+            parameters: assign_indices(program.parameters.iter().map(|p| &p.quantity.name)),
+            inputs: assign_indices(program.inputs.iter().map(|input| &input.name)),
             constants: vec![(exchanged.parameters, program.default_parameters())],
         };
         for id in &file.fields {
@@ -97,7 +97,7 @@ impl Memory {
             return Ok(*known);
         }
         let table = program.tables.iter().find(|table| table.name == name);
-        let table = table.ok_or_else(|| missing_place_error(name))?;
+        let table = table.ok_or_else(|| missing_address_error(name))?;
         let region = self.allocate(table.extent)?;
         self.constants.push((region, table.values.clone()));
         self.tables.insert(name.to_owned(), region);
@@ -106,14 +106,14 @@ impl Memory {
 
     pub(super) fn coefficient(&self, name: &str) -> EmitResult<Region> {
         let region = self.coefficients.get(name).copied();
-        region.ok_or_else(|| missing_place_error(name))
+        region.ok_or_else(|| missing_address_error(name))
     }
 
     pub(super) fn parameter(&self, name: &str) -> EmitResult<u32> {
         let place = self
             .parameters
             .get(name)
-            .ok_or_else(|| missing_place_error(name))?;
+            .ok_or_else(|| missing_address_error(name))?;
         Ok(self.exchanged.parameters.address(*place))
     }
 
@@ -121,7 +121,7 @@ impl Memory {
         let place = self
             .inputs
             .get(name)
-            .ok_or_else(|| missing_place_error(name))?;
+            .ok_or_else(|| missing_address_error(name))?;
         Ok(self.exchanged.inputs.address(*place))
     }
 }
@@ -145,14 +145,16 @@ fn allocate(size: &mut u32, extent: Extent) -> EmitResult<Region> {
     Ok(Region { first, columns })
 }
 
-fn places<'n>(names: impl Iterator<Item = &'n String>) -> HashMap<String, usize> {
+fn assign_indices<'n>(names: impl Iterator<Item = &'n String>) -> HashMap<String, usize> {
     let numbered = names.enumerate();
     numbered
         .map(|(place, name)| (name.clone(), place))
         .collect()
 }
 
-/// Returns the error for a name without place: a defect of the generator.
-pub(super) fn missing_place_error(name: &str) -> EmitError {
-    EmitError::Value(format!("`{name}` has no place in the module"))
+/// Returns the error for a name without an address: a defect of the generator.
+pub(super) fn missing_address_error(name: &str) -> EmitError {
+    EmitError::Value(format!(
+        "`{name}` has no address in the memory of the module"
+    ))
 }

@@ -6,7 +6,7 @@ use crate::statements::{
     Array, Elements, EmitResult, Expression, Index, MatrixOperand, Place, Recorder, Span, Statement,
 };
 
-/// Name of a remainder of products; names of a model contain no space.
+/// Name of the variable for a remainder. It contains a space, so no name of a model is equal to it.
 const REMAINDER: &str = "the rest";
 
 impl Code<'_> {
@@ -70,7 +70,7 @@ impl Code<'_> {
         }
     }
 
-    /// Computes a named number less products, subtracted in order.
+    /// Computes a number less a sum of products, subtracted in order, and stores it under a name.
     fn remainder(
         &mut self,
         (name, first): (&str, &Expression),
@@ -86,7 +86,7 @@ impl Code<'_> {
         })
     }
 
-    /// Computes a named number.
+    /// Computes a number and stores it under a name.
     pub(super) fn bind(&mut self, name: &str, value: &Expression) -> EmitResult<()> {
         self.expression(value)?;
         let variable = self.number(name);
@@ -109,13 +109,13 @@ impl Code<'_> {
         Ok(())
     }
 
-    /// Computes a sum: each of the first elements begins a partial sum, every eighth element after it is
-    /// added in order, then neighbours are added in pairs.
+    /// Computes a sum in eight partial sums: sum k contains the elements k, k + 8, k + 16, ... in this order. The
+    /// partial sums are then added pairwise.
     fn sum(&mut self, name: &str, length: usize, element: &Expression) -> EmitResult<()> {
         if length == 0 {
             return self.bind(name, &Expression::Number(0.0));
         }
-        // Names of a model contain no space.
+        // This name contains a space, so no name of a model is equal to it.
         let parts = format!("parts of {name}");
         let count = length.min(PARTIAL_SUMS);
         self.array(&parts, &[count])?;
@@ -123,7 +123,7 @@ impl Code<'_> {
         self.write_loop("i", (0, count), |code| {
             code.assign(&part("i".into()), element)
         })?;
-        // Element i belongs to the partial sum with its index within its block.
+        // Element i is added to partial sum k = i mod 8.
         self.write_loop("i", (count, length), |code| {
             let (i, k) = (code.local_index("i")?, code.flag("k"));
             let mut put = code.instructions();
@@ -133,12 +133,13 @@ impl Code<'_> {
             code.assign(&part("k".into()), &sum)
         })?;
         let terms = (0..count).map(|place| part(place.into()).value());
-        self.bind(name, &in_pairs(terms.collect()))
+        self.bind(name, &pairwise_sum(terms.collect()))
     }
 }
 
-/// Adds neighbours in pairs until one is left; an odd last number moves on to the next round.
-fn in_pairs(mut terms: Vec<Expression>) -> Expression {
+/// Returns the pairwise sum of terms. In each round adjacent terms are added, and an odd last term is kept for the
+/// next round.
+fn pairwise_sum(mut terms: Vec<Expression>) -> Expression {
     while terms.len() > 1 {
         let pairs = terms.chunks(2).map(|pair| match pair {
             [a, b] => Expression::add(a, b),

@@ -1,4 +1,4 @@
-//! ZIP archives. Equal contents give equal bytes: all entries have the same time.
+//! ZIP archives. All entries have the same time stamp, so equal contents give identical archives.
 
 use std::io::{Cursor, Read, Write};
 
@@ -7,13 +7,13 @@ use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
 use crate::error::{EmissionError, Result};
 
-/// Packing a unit takes 0.58 s instead of 1.04 s with level 6. The unit is 2 % larger.
+/// With this level instead of level 6, packing a unit takes 0.58 s instead of 1.04 s, and the unit is 2 % larger.
 const COMPRESSION_LEVEL: i64 = 4;
 
 /// Packs files, each a name and its content, into an archive.
 ///
 /// # Errors
-/// Names that an archive does not support.
+/// An archive does not support a name.
 pub fn pack(files: Vec<(String, Vec<u8>)>) -> Result<Vec<u8>> {
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)
@@ -41,7 +41,7 @@ const MAX_BYTES: u64 = 1 << 30;
 /// Returns names and contents of the files in an archive.
 ///
 /// # Errors
-/// Bytes that are no archive, and an archive that is too large.
+/// The bytes are not an archive, or the archive is too large.
 pub fn unpack(archive: &[u8]) -> Result<Vec<(String, Vec<u8>)>> {
     let failed =
         |error: &dyn std::fmt::Display| EmissionError::Request(format!("cannot unpack: {error}"));

@@ -18,7 +18,7 @@ use crate::target::Target;
 /// first. `warn` receives warnings.
 ///
 /// # Errors
-/// A model that the target does not support, or names that its language does not allow.
+/// The target does not support the model, or its language does not allow a name.
 pub fn emit(
     model: &Model,
     variant: &Variant,
@@ -61,7 +61,7 @@ pub fn emit(
             let source = c::emit_casadi(program).map_err(EmissionError::request)?;
             let mut files = vec![EmittedFile::text(format!("{name}_casadi.c"), source)];
             if target == Target::Acados {
-                files.push(acados::file(program)?);
+                files.push(acados::emit_file(program)?);
             }
             Ok(files)
         }
@@ -72,13 +72,13 @@ pub fn emit(
 
 fn unit(model: &Model, variant: &Variant, version: Version) -> Result<Vec<EmittedFile>> {
     let orders = variant.equations.graph.orders();
-    Ok(vec![fmu::file(model, orders, version)?])
+    Ok(vec![fmu::emit_file(model, orders, version)?])
 }
 
 /// Returns the additional output with this name.
 ///
 /// # Errors
-/// An unknown name, with the known ones.
+/// The name is unknown; the message lists the known names.
 pub fn parse_output(name: &str) -> Result<Output, String> {
     if name == "hessians" {
         return Ok(Output::Hessians);
@@ -90,7 +90,7 @@ pub fn parse_output(name: &str) -> Result<Output, String> {
 /// Returns the outputs to derive for a target and additional outputs `with`.
 ///
 /// # Errors
-/// An output that the target does not support.
+/// The target does not support an output.
 pub fn outputs(target: Target, with: &[Output]) -> Result<Vec<Output>> {
     let (extras, target_argument) = (Argument::Extras, Argument::Target);
     let hessians = extras.with_text("hessians");

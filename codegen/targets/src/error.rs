@@ -1,4 +1,4 @@
-//! Errors of emitting files.
+//! Errors of the emission of files.
 
 use std::fmt::Display;
 
@@ -10,7 +10,7 @@ pub type Result<T, E = EmissionError> = std::result::Result<T, E>;
 /// Reason why no files are emitted.
 #[derive(Clone, Debug, Error)]
 pub enum EmissionError {
-    /// Combination of model, target and outputs that is not supported, with its cure.
+    /// Unsupported combination of model, target and outputs, with a proposed correction.
     #[error("{0}")]
     Request(String),
     /// Invalid values of the specification.

@@ -1,23 +1,23 @@
-//! Matrices in compressed columns for CasADi, built from structural nonzeros in row order.
+//! Sparse matrices in the compressed-column format of CasADi, built from structural nonzeros in row order.
 
 use std::ops::Range;
 
-use super::super::expression::initialiser;
+use super::super::expression::write_initialiser;
 use super::super::names::fill_template;
 use crate::program::{GradientDerivative, Jacobian, Program, ValueId};
 
-/// Structural nonzero: its position in the matrix, and its index in row order.
+/// Structural nonzero: its position in the matrix, and its index among the nonzeros in row order.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Nonzero {
     column: usize,
     row: usize,
-    place: usize,
+    index: usize,
 }
 
 pub(super) struct Columns {
     rows: usize,
     columns: usize,
-    /// Nonzeros by columns, then by rows.
+    /// Nonzeros, sorted by column and then by row.
     nonzeros: Vec<Nonzero>,
 }
 
@@ -35,12 +35,12 @@ impl Columns {
         Self::new(rows, columns, Vec::new())
     }
 
-    /// Returns a full column.
+    /// Returns one dense column.
     pub(super) fn dense(rows: usize) -> Self {
         let nonzero = |row| Nonzero {
             column: 0,
             row,
-            place: row,
+            index: row,
         };
         Self::new(rows, 1, (0..rows).map(nonzero).collect())
     }
@@ -54,7 +54,7 @@ impl Columns {
                     nonzeros.push(Nonzero {
                         column: block.column + if block.diagonal { i } else { j },
                         row: block.row + i,
-                        place: place.start + i * place.width + j,
+                        index: place.start + i * place.width + j,
                     });
                 }
             }
@@ -62,7 +62,7 @@ impl Columns {
         Self::new(jacobian.rows, columns, nonzeros)
     }
 
-    /// Collects the structural nonzeros of a Hessian's block with these rows and columns.
+    /// Collects the structural nonzeros of the Hessian block with these rows and columns.
     pub(super) fn hessian_block(
         derivative: &GradientDerivative<ValueId>,
         rows: &Range<usize>,
@@ -76,7 +76,7 @@ impl Columns {
                     nonzeros.push(Nonzero {
                         column: column - columns.start,
                         row: row - rows.start,
-                        place: row,
+                        index: row,
                     });
                 }
             }
@@ -100,33 +100,38 @@ impl Columns {
     }
 
     /// Writes CasADi's sparsity: rows, columns, first nonzero of each column, row of each nonzero.
-    pub(super) fn sparsity(&self, program: &Program, name: &str) -> String {
+    pub(super) fn write_sparsity(&self, program: &Program, name: &str) -> String {
         let starts = (0..=self.columns)
             .map(|column| self.nonzeros.partition_point(|known| known.column < column));
         let numbers = [self.rows, self.columns].into_iter().chain(starts);
         let numbers = numbers.chain(self.nonzeros.iter().map(|nonzero| nonzero.row));
-        list(program, "casadi_int", &format!("{name}_sparsity"), numbers)
+        write_array(program, "casadi_int", &format!("{name}_sparsity"), numbers)
     }
 
     /// Writes the row-order index of each nonzero in column order.
-    pub(super) fn order(&self, program: &Program, name: &str) -> String {
-        let places = self.nonzeros.iter().map(|nonzero| nonzero.place);
-        list(program, "int", &format!("{name}_order"), places)
+    pub(super) fn write_order(&self, program: &Program, name: &str) -> String {
+        let indices = self.nonzeros.iter().map(|nonzero| nonzero.index);
+        write_array(program, "int", &format!("{name}_order"), indices)
     }
 }
 
-/// Writes a constant array with sixteen numbers on a line. An empty list has one 0, because C has no empty
+/// Writes a constant array with sixteen numbers per line. An empty list is written as one 0, because C has no empty
 /// arrays.
-fn list(program: &Program, of: &str, name: &str, numbers: impl Iterator<Item = usize>) -> String {
+fn write_array(
+    program: &Program,
+    element_type: &str,
+    name: &str,
+    numbers: impl Iterator<Item = usize>,
+) -> String {
     let mut numbers: Vec<String> = numbers.map(|number| number.to_string()).collect();
     if numbers.is_empty() {
         numbers.push("0".to_owned());
     }
     let lines: Vec<String> = numbers.chunks(16).map(|line| line.join(", ")).collect();
-    let head = format!("static const {of} NAME_{name}[{}]", numbers.len());
+    let head = format!("static const {element_type} NAME_{name}[{}]", numbers.len());
     format!(
         "{} = {};\n",
         fill_template(program, &head),
-        initialiser(&lines)
+        write_initialiser(&lines)
     )
 }

@@ -1,18 +1,18 @@
-//! Function of CasADi's interface: numbers, names and sparsities of arguments and results, work memory, and
-//! body.
+//! External function in CasADi's C interface: names and sparsities of its arguments and results, length of the work
+//! array, and body.
 
 use super::super::names::fill_template;
-use super::given::RateArgument;
+use super::arguments::RateArgument;
 use crate::program::Program;
 use crate::statements::layout::block;
 
-/// Function of time, state, inputs and parameters, and of further arguments.
+/// Function of time, state, inputs and parameters, and of additional arguments.
 pub(super) struct Function {
     name: &'static str,
     given: Vec<(String, String)>,
     results: Vec<(String, String)>,
-    /// Size of the work array.
-    room: usize,
+    /// Length of the work array, in numbers.
+    work_length: usize,
     /// Statements after the preparation of the coefficients.
     pub(super) statements: String,
 }
@@ -27,7 +27,7 @@ impl Function {
                 .map(|argument| (argument.name.to_owned(), argument.shape.to_owned()))
                 .collect(),
             results: Vec::new(),
-            room: 0,
+            work_length: 0,
             statements: String::new(),
         }
     }
@@ -40,9 +40,9 @@ impl Function {
         self.results.push((name, sparsity.to_owned()));
     }
 
-    /// Makes the work array at least this long.
-    pub(super) fn reserve_work(&mut self, room: usize) {
-        self.room = self.room.max(room);
+    /// Increases the length of the work array to at least `length`.
+    pub(super) fn reserve_work(&mut self, length: usize) {
+        self.work_length = self.work_length.max(length);
     }
 
     /// Writes the function and its descriptions for CasADi.
@@ -62,7 +62,7 @@ impl Function {
             .replace("RESULT_SHAPES", &shapes(&self.results))
             .replace("GIVEN", &self.given.len().to_string())
             .replace("RESULTS", &self.results.len().to_string())
-            .replace("ROOM", &self.room.to_string())
+            .replace("ROOM", &self.work_length.to_string())
             .replace("FUNCTION", self.name);
         let head = format!(
             "CASADI_SYMBOL_EXPORT int {}(const casadi_real **arg, casadi_real **res, \

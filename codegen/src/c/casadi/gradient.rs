@@ -1,24 +1,25 @@
 //! Second derivatives for optimisers: the gradient of the weighted rates, `adj1_rates`, and its Jacobian,
-//! `jac_adj1_rates`. Blocks of the Jacobian by (t, x, u, p) are second derivatives of the weighted rates;
-//! blocks by the weights are transposed Jacobians.
+//! `jac_adj1_rates`. The blocks of `jac_adj1_rates` with respect to (t, x, u, p) are second derivatives of the
+//! weighted rates. The blocks with respect to the weights are transposed Jacobians of the rates.
 
 use super::super::names::fill_template;
+use super::arguments::{RateArgument, find_jacobian};
 use super::columns::Columns;
 use super::function::Function;
-use super::given::{RateArgument, find_jacobian};
 use crate::program::{GradientDerivative, Program, ValueId};
 use crate::statements::EmitResult;
 
-pub(super) fn gradient(
+pub(super) fn write_gradient(
     program: &Program,
     given: &[RateArgument; 4],
     derivative: &GradientDerivative<ValueId>,
 ) -> EmitResult<String> {
-    Ok(weighted_gradient(program, given)? + &second_derivative(program, given, derivative)?)
+    Ok(write_weighted_gradient(program, given)?
+        + &write_second_derivative(program, given, derivative)?)
 }
 
-/// Starts a function of the point, of the rates (unused), and of the weights.
-fn of_weights(given: &[RateArgument; 4], name: &'static str) -> Function {
+/// Creates a function of (t, x, u, p), of the rates (unused), and of the weights.
+fn create_weighted_function(given: &[RateArgument; 4], name: &'static str) -> Function {
     let mut function = Function::new(given, name);
     function.push_argument("out_rates", "states");
     function.push_argument("adj_rates", "states");
@@ -26,8 +27,8 @@ fn of_weights(given: &[RateArgument; 4], name: &'static str) -> Function {
     function
 }
 
-fn weighted_gradient(program: &Program, given: &[RateArgument; 4]) -> EmitResult<String> {
-    let mut function = of_weights(given, "adj1_rates");
+fn write_weighted_gradient(program: &Program, given: &[RateArgument; 4]) -> EmitResult<String> {
+    let mut function = create_weighted_function(given, "adj1_rates");
     for argument in given {
         function.push_result(format!("adj_{}", argument.name), argument.shape);
     }
@@ -44,12 +45,12 @@ fn weighted_gradient(program: &Program, given: &[RateArgument; 4]) -> EmitResult
 }
 
 /// Writes the Jacobian of the gradient, computed column by column, and the sparsities of its blocks.
-fn second_derivative(
+fn write_second_derivative(
     program: &Program,
     given: &[RateArgument; 4],
     derivative: &GradientDerivative<ValueId>,
 ) -> EmitResult<String> {
-    let mut function = of_weights(given, "jac_adj1_rates");
+    let mut function = create_weighted_function(given, "jac_adj1_rates");
     let mut text = fill_template(program, COLUMN);
     for argument in given {
         function.push_argument(&format!("out_adj_{}", argument.name), argument.shape);
@@ -66,17 +67,17 @@ fn second_derivative(
         for (column, by) in given.iter().enumerate() {
             let name = format!("adj_{}_{}", of.name, by.name);
             let block = Columns::hessian_block(derivative, &places[row], &places[column]);
-            text += &block.sparsity(program, &name);
+            text += &block.write_sparsity(program, &name);
             function.push_result(format!("jac_{name}"), &name);
         }
         let name = format!("adj_{}_out", of.name);
-        text += &Columns::zero(of.count, program.states()).sparsity(program, &name);
+        text += &Columns::zero(of.count, program.states()).write_sparsity(program, &name);
         function.push_result(format!("jac_adj_{}_out_rates", of.name), &name);
         let turned =
             Columns::from_jacobian(find_jacobian(program, of.jacobian)?, of.count).transpose();
         let name = format!("adj_{}_weights", of.name);
-        text += &turned.sparsity(program, &name);
-        text += &turned.order(program, &name);
+        text += &turned.write_sparsity(program, &name);
+        text += &turned.write_order(program, &name);
         function.reserve_work(turned.count());
         function.push_result(format!("jac_adj_{}_adj_rates", of.name), &name);
         let place = results * row + given.len() + 1;

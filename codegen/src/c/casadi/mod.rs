@@ -1,22 +1,22 @@
-//! CasADi's external functions of a program, in one C file with the functions that they call: `rates` and
-//! `jac_rates` of (t, x, u, p) with sparsities in compressed columns, and `default_parameters`, the p of the
-//! specification. With the Hessians also `adj1_rates`, the gradient of the weighted rates, and its Jacobian
-//! `jac_adj1_rates`.
+//! External functions of CasADi for a program, in one C file together with the functions that they call. `rates` and
+//! `jac_rates` have the arguments (t, x, u, p) and sparsities in compressed columns. `default_parameters` returns the
+//! p of the specification. If Hessians are requested, the file also contains `adj1_rates`, the gradient of the
+//! weighted rates, and its Jacobian `jac_adj1_rates`.
 //!
 //! u and p are the inputs and the parameters in SI units, in the order of their names.
 //!
-//! `given` lists the arguments, `columns` builds compressed columns, `function` writes a function of the
-//! interface, and `gradient` the functions for the Hessians.
+//! `arguments` lists the arguments, `columns` builds compressed columns, `function` writes one external function, and
+//! `gradient` writes the functions for the Hessians.
 
+mod arguments;
 mod columns;
 mod function;
-mod given;
 mod gradient;
 
+use arguments::{find_jacobian, rate_arguments};
 use columns::Columns;
 use function::Function;
-use given::{find_jacobian, rate_arguments};
-use gradient::gradient;
+use gradient::write_gradient;
 
 use super::comments::comment;
 use super::emit::emit;
@@ -31,12 +31,12 @@ pub const CASADI_OUTPUTS: [Output; 2] = [Output::Jacobians, Output::TimeDerivati
 /// Writes the file `NAME_casadi.c`, which compiles without other files.
 ///
 /// # Errors
-/// A name of the program that is a word of C or C++, and a program without [`CASADI_OUTPUTS`].
+/// A name of the program is a reserved word of C or C++, or the program lacks [`CASADI_OUTPUTS`].
 pub fn emit_casadi(program: &Program) -> Result<String, EmitError> {
     let files = emit(program)?;
     let include = format!("#include \"{}.h\"\n", program.name);
     let double = fill_template(program, "#undef NAME_REAL\n#define NAME_REAL double\n");
-    let functions = layout::source(&functions(program)?);
+    let functions = layout::source(&write_functions(program)?);
     Ok([
         double,
         files.header,
@@ -46,19 +46,19 @@ pub fn emit_casadi(program: &Program) -> Result<String, EmitError> {
     .concat())
 }
 
-fn functions(program: &Program) -> EmitResult<String> {
+fn write_functions(program: &Program) -> EmitResult<String> {
     let given = rate_arguments(program);
     let mut text = fill_template(program, OPENING);
     for argument in given {
-        text += &Columns::dense(argument.count).sparsity(program, argument.shape);
+        text += &Columns::dense(argument.count).write_sparsity(program, argument.shape);
     }
     let mut jac_rates = Function::new(&given, "jac_rates");
     jac_rates.push_argument("out_rates", "states");
     for (place, argument) in given.iter().enumerate() {
         let name = argument.jacobian;
         let compressed = Columns::from_jacobian(find_jacobian(program, name)?, argument.count);
-        text += &compressed.sparsity(program, name);
-        text += &compressed.order(program, name);
+        text += &compressed.write_sparsity(program, name);
+        text += &compressed.write_order(program, name);
         jac_rates.push_result(format!("jac_rates_{}", argument.name), name);
         jac_rates.reserve_work(compressed.count());
         jac_rates.statements += &format!(
@@ -76,13 +76,13 @@ fn functions(program: &Program) -> EmitResult<String> {
     text += &rates.text(program);
     text += &jac_rates.text(program);
     if let Some(derivative) = &program.outputs.gradient_derivative {
-        text += &gradient(program, &given, derivative)?;
+        text += &write_gradient(program, &given, derivative)?;
     }
-    text += &defaults(program);
+    text += &write_defaults(program);
     Ok(text + "#ifdef __cplusplus\n}\n#endif\n")
 }
 
-fn defaults(program: &Program) -> String {
+fn write_defaults(program: &Program) -> String {
     let line = "Parameters of the specification in SI units; a function without arguments.";
     let filled = program
         .parameters

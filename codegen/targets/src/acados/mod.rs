@@ -6,14 +6,14 @@ use crate::error::{EmissionError, Result};
 use crate::file::EmittedFile;
 use eomgen_model_spec::argument::Argument;
 
-/// Module with `@key@` for each text of a program.
+/// Template of the module. `@key@` is replaced by a text of the program.
 const TEMPLATE: &str = include_str!("model.py");
 
 /// Returns the Python module of a program that has the [outputs](eomgen_codegen::c::CASADI_OUTPUTS) for CasADi.
 ///
 /// # Errors
-/// Rates that depend on time: the dynamics of acados have states, inputs and parameters only.
-pub(crate) fn file(program: &Program) -> Result<EmittedFile> {
+/// The rates depend on time: the dynamics of acados have states, inputs and parameters only.
+pub(crate) fn emit_file(program: &Program) -> Result<EmittedFile> {
     let mut jacobians = program.outputs.jacobians.iter();
     if jacobians.any(|known| known.name == "rates_by_time" && known.nonzeros() > 0) {
         return Err(EmissionError::Request(format!(
@@ -29,12 +29,12 @@ pub(crate) fn file(program: &Program) -> Result<EmittedFile> {
         (_, "model") => program.specification.clone(),
         (_, "specification") => program.spec_hash.clone(),
         (_, "generator") => env!("CARGO_PKG_VERSION").to_owned(),
-        (_, "states") => list(program.state_names().iter().map(|name| &**name)),
-        (_, "inputs") => list(program.inputs.iter().map(|input| &*input.name)),
+        (_, "states") => format_list(program.state_names().iter().map(|name| &**name)),
+        (_, "inputs") => format_list(program.inputs.iter().map(|input| &*input.name)),
         (_, key) => {
             debug_assert_eq!(key, "parameters");
             let parameters = program.parameters.iter();
-            list(parameters.map(|parameter| &*parameter.quantity.name))
+            format_list(parameters.map(|parameter| &*parameter.quantity.name))
         }
     };
     let filled = TEMPLATE.split('@').enumerate().map(text).collect();
@@ -43,7 +43,7 @@ pub(crate) fn file(program: &Program) -> Result<EmittedFile> {
 }
 
 /// Returns a Python list of names.
-fn list<'n>(names: impl Iterator<Item = &'n str>) -> String {
+fn format_list<'n>(names: impl Iterator<Item = &'n str>) -> String {
     let quoted: Vec<String> = names.map(|name| format!("\"{name}\"")).collect();
     format!("[{}]", quoted.join(", "))
 }

@@ -1,4 +1,4 @@
-//! Common parts of the descriptions of both versions.
+//! Parts of `modelDescription.xml` that FMI 2.0 and 3.0 share.
 
 use std::io::{Cursor, Error as Failure};
 
@@ -22,7 +22,7 @@ const SOLVER: &str = "Co-simulation moves the model like eomgen simulate: with t
     linear, and otherwise with error control and located events.";
 
 /// Writes a document.
-pub fn document(write: impl FnOnce(&mut Xml) -> Written) -> Result<Vec<u8>> {
+pub fn write_document(write: impl FnOnce(&mut Xml) -> Written) -> Result<Vec<u8>> {
     let mut xml = Writer::new_with_indent(Cursor::new(Vec::new()), b' ', 2);
     let declaration = BytesDecl::new("1.0", Some("UTF-8"), None);
     xml.write_event(Event::Decl(declaration))
@@ -34,7 +34,7 @@ pub fn document(write: impl FnOnce(&mut Xml) -> Written) -> Result<Vec<u8>> {
 }
 
 /// Writes an element with children.
-pub fn element(
+pub fn write_element(
     xml: &mut Xml,
     name: &str,
     attributes: &[Attribute],
@@ -47,7 +47,7 @@ pub fn element(
 }
 
 /// Writes an element without children.
-pub fn empty(xml: &mut Xml, name: &str, attributes: &[Attribute]) -> Written {
+pub fn write_empty_element(xml: &mut Xml, name: &str, attributes: &[Attribute]) -> Written {
     xml.create_element(name)
         .with_attributes(pairs(attributes))
         .write_empty()?;
@@ -61,7 +61,7 @@ fn pairs(attributes: &[Attribute]) -> impl Iterator<Item = (&str, &str)> {
 }
 
 /// Removes characters that XML does not support.
-pub fn clean(text: &str) -> String {
+pub fn remove_invalid_characters(text: &str) -> String {
     let allowed = |c: char| {
         if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') {
             ' '
@@ -72,35 +72,35 @@ pub fn clean(text: &str) -> String {
     text.chars().map(allowed).collect()
 }
 
-pub fn number(value: f64) -> String {
+pub fn format_number(value: f64) -> String {
     format!("{value:?}")
 }
 
-pub fn list(numbers: impl Iterator<Item = usize>) -> String {
+pub fn format_list(numbers: impl Iterator<Item = usize>) -> String {
     let numbers: Vec<String> = numbers.map(|number| number.to_string()).collect();
     numbers.join(" ")
 }
 
 /// Returns the title and the description of the solver.
 pub fn summary(unit: &Unit) -> String {
-    let title = clean(&unit.title);
+    let title = remove_invalid_characters(&unit.title);
     format!("{}. {SOLVER}", title.trim_end_matches('.'))
 }
 
-pub fn unit_definitions(xml: &mut Xml, unit: &Unit) -> Written {
-    element(xml, "UnitDefinitions", &[], |xml| {
+pub fn write_unit_definitions(xml: &mut Xml, unit: &Unit) -> Written {
+    write_element(xml, "UnitDefinitions", &[], |xml| {
         for (name, definition) in &unit.units.definitions {
-            element(xml, "Unit", &[("name", name.clone())], |xml| {
+            write_element(xml, "Unit", &[("name", name.clone())], |xml| {
                 if let Some(base) = &definition.base {
                     let base: Vec<Attribute> = base
                         .iter()
                         .map(|(name, exponent)| (*name, exponent.to_string()))
                         .collect();
-                    empty(xml, "BaseUnit", &base)?;
+                    write_empty_element(xml, "BaseUnit", &base)?;
                 }
                 for (name, factor) in &definition.shown {
-                    let attributes = [("name", name.clone()), ("factor", number(*factor))];
-                    empty(xml, "DisplayUnit", &attributes)?;
+                    let attributes = [("name", name.clone()), ("factor", format_number(*factor))];
+                    write_empty_element(xml, "DisplayUnit", &attributes)?;
                 }
                 Ok(())
             })?;
@@ -109,25 +109,25 @@ pub fn unit_definitions(xml: &mut Xml, unit: &Unit) -> Written {
     })
 }
 
-pub fn log_categories(xml: &mut Xml) -> Written {
-    element(xml, "LogCategories", &[], |xml| {
+pub fn write_log_categories(xml: &mut Xml) -> Written {
+    write_element(xml, "LogCategories", &[], |xml| {
         let doc = "Reason for a rejected call".to_owned();
         let attributes = [("name", "logStatusError".to_owned()), ("description", doc)];
-        empty(xml, "Category", &attributes)
+        write_empty_element(xml, "Category", &attributes)
     })
 }
 
 /// Writes the default experiment.
-pub fn default_experiment(xml: &mut Xml) -> Written {
+pub fn write_default_experiment(xml: &mut Xml) -> Written {
     let attributes = [
-        ("startTime", number(0.0)),
-        ("stopTime", number(1.0)),
-        ("tolerance", number(eomgen_unit::DEFAULT_TOLERANCE)),
+        ("startTime", format_number(0.0)),
+        ("stopTime", format_number(1.0)),
+        ("tolerance", format_number(eomgen_unit::DEFAULT_TOLERANCE)),
     ];
-    empty(xml, "DefaultExperiment", &attributes)
+    write_empty_element(xml, "DefaultExperiment", &attributes)
 }
 
-/// Returns causality, variability and `initial` of a variable.
+/// Returns the attributes `causality`, `variability` and `initial` of a variable.
 pub fn role(kind: Kind) -> Vec<Attribute> {
     let (causality, variability, initial) = match kind {
         Kind::Time => ("independent", "continuous", None),
@@ -153,7 +153,7 @@ pub fn identity(reference: usize, variable: &Variable) -> Vec<Attribute> {
         ("valueReference", reference.to_string()),
     ];
     if !variable.doc.is_empty() {
-        attributes.push(("description", clean(&variable.doc)));
+        attributes.push(("description", remove_invalid_characters(&variable.doc)));
     }
     attributes
 }
@@ -170,7 +170,7 @@ pub fn quantity(variable: &Variable) -> Vec<Attribute> {
         ("nominal", variable.nominal),
         ("start", variable.start),
     ] {
-        attributes.extend(value.map(|value| (name, number(value))));
+        attributes.extend(value.map(|value| (name, format_number(value))));
     }
     attributes
 }

@@ -1,4 +1,4 @@
-//! The shared library of units for this machine.
+//! Shared library of units for this platform.
 
 use std::env::consts::{ARCH, DLL_PREFIX, DLL_SUFFIX, OS};
 use std::path::{Path, PathBuf};
@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use super::version::Version;
 use crate::error::{EmissionError, Result};
 
-/// The library, if it was built before the program: `EOMGEN_UNIT` named it at compile time.
+/// Content of the library, if it was built before this program and `EOMGEN_UNIT` named its path at compile time.
 #[cfg(eomgen_unit)]
 const EMBEDDED: Option<&[u8]> = Some(include_bytes!(env!("EOMGEN_UNIT")));
 #[cfg(not(eomgen_unit))]
 const EMBEDDED: Option<&[u8]> = None;
 
-/// Returns the standard's folder for binaries of this machine, if defined.
+/// Returns the folder that the standard defines for binaries of this platform, if any.
 fn folder(version: Version) -> Option<String> {
     let system = match OS {
         "linux" => "linux",
@@ -32,7 +32,7 @@ fn folder(version: Version) -> Option<String> {
 /// Returns the library's path in a unit of this name, and its contents.
 ///
 /// # Errors
-/// A machine without a folder in the standard, or no library.
+/// The standard defines no folder for this platform, or there is no library.
 pub fn read(name: &str, version: Version) -> Result<(String, Vec<u8>)> {
     let folder = folder(version).ok_or_else(|| {
         let version = match version {

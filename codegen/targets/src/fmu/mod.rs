@@ -1,5 +1,5 @@
-//! Functional mock-up units: an archive of the description of the variables, the specification, and the library that
-//! simulates it.
+//! Functional mock-up units. A unit is an archive that contains the description of the variables, the specification,
+//! and the library that simulates the model.
 //!
 //! `variables` lists the variables of a unit, `units` their units of measurement; `description`, `fmi2` and `fmi3` write
 //! both as XML; `library` finds the library, which is built from the crate `eomgen-unit`; [`crate::archive`] packs all
@@ -26,8 +26,8 @@ pub use version::Version;
 /// Returns a unit of a model at these orders of its fields.
 ///
 /// # Errors
-/// No library, values that cannot be written into the specification, or tables that cannot be read.
-pub fn file(model: &Model, orders: &[usize], version: Version) -> Result<EmittedFile> {
+/// There is no library, a value cannot be written to the specification, or a table cannot be read.
+pub fn emit_file(model: &Model, orders: &[usize], version: Version) -> Result<EmittedFile> {
     let library = library::read(&model.name, version)?;
     let model = write_parameters(model)?;
     let compiled = CompiledModel::derive(model, Orders::PerField(orders));
@@ -36,19 +36,20 @@ pub fn file(model: &Model, orders: &[usize], version: Version) -> Result<Emitted
     let mut files = vec![(
         "modelDescription.xml".to_owned(),
         match version {
-            Version::Two => fmi2::description(&unit)?,
-            Version::Three => fmi3::description(&unit)?,
+            Version::Two => fmi2::write_description(&unit)?,
+            Version::Three => fmi3::write_description(&unit)?,
         },
     )];
     files.push(library);
-    files.extend(resources(compiled.model())?);
+    files.extend(read_resources(compiled.model())?);
     Ok(EmittedFile {
         name: format!("{}.fmu", compiled.program().name),
         contents: pack(files)?,
     })
 }
 
-/// Returns the model with its values of parameters in the text of its specification, which the unit contains.
+/// Returns the model with its parameter values written to the text of its specification, because the unit contains
+/// this text.
 fn write_parameters(model: &Model) -> Result<Model> {
     let checked = eomgen_model_spec::check(model.source.clone());
     let declared = checked.map_err(EmissionError::Specification)?.model;
@@ -74,7 +75,7 @@ fn write_parameters(model: &Model) -> Result<Model> {
 }
 
 /// Returns the specification and the tables that it names.
-fn resources(model: &Model) -> Result<Vec<(String, Vec<u8>)>> {
+fn read_resources(model: &Model) -> Result<Vec<(String, Vec<u8>)>> {
     let text = model.source.text.as_bytes().to_vec();
     let mut files = vec![(format!("resources/{}.toml", model.name), text)];
     let folder = model.source.folder.as_deref().unwrap_or("".as_ref());

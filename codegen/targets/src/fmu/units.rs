@@ -56,7 +56,7 @@ impl Units {
         }
     }
 
-    /// Registers the unit of the derivative of order `times` of a quantity in `unit`.
+    /// Registers the unit of the time derivative of order `times` of a quantity in `unit`.
     pub fn rate(&mut self, unit: &Unit, times: u8) -> Option<Measure> {
         let mut dimension = unit.dimension;
         for _ in 0..times {
@@ -87,7 +87,7 @@ impl Units {
     }
 }
 
-/// Returns exponents by base unit. Radians have no dimension and are recognised by the unit's name.
+/// Returns exponents by base unit. The radian is dimensionless, so it is recognised by the name of the unit.
 fn base(name: &str, dimension: Dimension) -> Option<Vec<(&'static str, i32)>> {
     let exponents = dimension.exponents();
     if !exponents.iter().all(|exponent| exponent.is_integer()) {

@@ -55,7 +55,7 @@ pub struct Variable {
     pub max: Option<f64>,
 }
 
-/// Content of a unit's description.
+/// Content of the description of a unit.
 #[derive(Clone, Debug)]
 pub struct Unit {
     /// Name of the model.
@@ -68,7 +68,7 @@ pub struct Unit {
     pub variables: Vec<Variable>,
     /// Units of measurement.
     pub units: Units,
-    /// True if the unit takes samples, which model exchange does not support.
+    /// True if the unit contains sampled controllers, which model exchange does not support.
     pub has_controllers: bool,
     /// True if the equations depend on time.
     depends_on_time: bool,
@@ -144,8 +144,9 @@ impl Unit {
         })
     }
 
-    /// Returns the value references that a variable depends on, with or without parameters. It lists the whole state,
-    /// because a rate may switch with a state although its derivative by it is zero.
+    /// Returns the value references that a variable depends on, with or without parameters. The list contains the
+    /// whole state, because a rate may switch with a state although its derivative with respect to this state is
+    /// zero.
     pub fn dependencies(&self, reference: usize, with_parameters: bool) -> Vec<usize> {
         let from_one = match self.variables[reference].kind {
             Kind::State => Some(reference),
@@ -220,7 +221,8 @@ impl List {
         &mut self.variables[last]
     }
 
-    /// Returns a unique name. A name in use gets its kind and a point as prefix; names in a specification have no point.
+    /// Returns a unique name. If a name is already used, its kind and a point are prepended; names in a specification
+    /// contain no point.
     fn free(&self, name: &str, kind: Kind) -> String {
         let group = match kind {
             Kind::Time | Kind::State | Kind::Rate(_) => "state",
@@ -244,7 +246,7 @@ impl List {
         (initial, sizes): (&[f64], &[f64]),
         orders: &[usize],
     ) {
-        // Description, unit, and whether it is a rate in that unit per second.
+        // Description, unit, and true for a rate in this unit per second.
         let mut rows: Vec<(String, &Measurement, bool)> = Vec::new();
         for coordinate in &model.coordinates {
             rows.push((coordinate.doc.clone(), &coordinate.unit, false));

@@ -1,9 +1,10 @@
-//! Arguments of the rates with CasADi's names, and the Jacobian by each.
+//! Arguments of the CasADi function `rates`, and the Jacobian of the rates with respect to each argument.
 
 use crate::program::{Jacobian, Program, ValueId};
 use crate::statements::{EmitError, EmitResult};
 
-/// Argument of the rates: name, sparsity of its column, Jacobian of the rates by it, and length.
+/// Argument of the rates: its name, the sparsity of its column, the Jacobian of the rates with respect to it, and its
+/// length.
 #[derive(Clone, Copy)]
 pub(super) struct RateArgument {
     pub(super) name: &'static str,
