@@ -61,21 +61,20 @@ impl std::error::Error for Error {}
 /// | `&[0]` | `arm_rigid.rs`, no modes |
 /// | `&[]` | `arm.rs`, at the orders of the specification; also for models without a field |
 ///
-/// Warnings, for example of an unused parameter, become warnings of cargo.
+/// Warnings, for example about an unused parameter, become warnings of cargo.
 ///
 /// # Errors
-/// All errors in the specification, with file, line and column; an order that the model cannot
-/// have; a file that cannot be written; a call outside a build script.
+/// The specification has errors (all are reported, with file, line and column), the model does not have an order, a
+/// file cannot be written, or the call is outside a build script.
 pub fn generate(specification: impl AsRef<Path>, orders: &[usize]) -> Result<Vec<PathBuf>, Error> {
     generate_with(specification, orders, &[])
 }
 
-/// Emits a specification like [`generate`], with further functions: `bias_forces`,
-/// `inverse_dynamics`, `guard_rates`, `jacobians`, `products`, `linearisation`, `regimes`,
-/// `lanes`.
+/// Emits a specification like [`generate`], with additional functions: `bias_forces`, `inverse_dynamics`,
+/// `guard_rates`, `jacobians`, `products`, `linearisation`, `regimes`, `lanes`.
 ///
 /// # Errors
-/// Those of [`generate`]; an unknown name in `with`.
+/// As for [`generate`], or a name in `with` is unknown.
 pub fn generate_with(
     specification: impl AsRef<Path>,
     orders: &[usize],
@@ -150,7 +149,7 @@ fn generate_variant(
     Ok(path.to_owned())
 }
 
-/// Writes to a temporary name and renames, so that no partial file remains.
+/// Writes to a temporary file and renames it, so that no partial file remains.
 fn write(path: &Path, text: &str) -> std::io::Result<()> {
     let beside = path.with_extension("rs.new");
     std::fs::write(&beside, text)?;
@@ -164,7 +163,7 @@ fn specification_error(found: &Diagnostics) -> Error {
     ))
 }
 
-/// Formats a finding on one line: cargo prints one line per warning.
+/// Formats a warning on one line, because cargo prints one line per warning.
 fn format_on_one_line(finding: &Record) -> String {
     let place = match (finding.line, finding.column) {
         (Some(line), Some(column)) => format!("{}:{line}:{column}", finding.file),

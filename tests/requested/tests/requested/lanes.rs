@@ -64,7 +64,7 @@ macro_rules! bits {
                         expected[place][k] = *number;
                     }
                 }
-                for registers in Registers::ALL.into_iter().filter(|r| r.are_there()) {
+                for registers in Registers::ALL.into_iter().filter(|r| r.are_available()) {
                     let task = all();
                     let found = run_with_large_stack(move || eomgen_lanes::run_with(registers, task));
                     for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
