@@ -135,7 +135,7 @@ pub enum Ordinate {
 pub struct DrawnLine {
     /// Name.
     pub name: String,
-    /// At least two points.
+    /// Points of the line, at least two.
     pub points: Vec<PointId>,
 }
 

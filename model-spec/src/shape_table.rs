@@ -202,7 +202,7 @@ pub struct TableFault {
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// The cause.
+    /// Cause.
     pub message: String,
 }
 

@@ -24,23 +24,23 @@ pub fn check(resolved: &mut ResolvedModel, found: &mut Diagnostics) {
         model: &resolved.model,
         found,
     };
-    units.parameters();
-    units.coordinates();
-    units.inputs();
-    units.fields();
+    units.check_parameters();
+    units.check_coordinates();
+    units.check_inputs();
+    units.check_fields();
     // A wrong unit of gravity would be reported at the rotations of frames, whose definitions contain it.
     if units.check_demands(&resolved.required_units)
-        && units.definitions()
+        && units.check_definitions()
         && units.check_shorthands(&resolved.required_units, &resolved.same_unit_vectors)
     {
-        units.states();
-        units.energies();
-        units.forces();
+        units.check_states();
+        units.check_energies();
+        units.check_forces();
         units.check_stabilisation_rate();
-        units.coefficients();
+        units.check_coefficients();
     }
-    let observables = units.observables(&resolved.declared_units);
-    let constraints: Vec<Unit> = units.constraints();
+    let observables = units.check_observables(&resolved.declared_units);
+    let constraints: Vec<Unit> = units.check_constraints();
     let impacts: Vec<Unit> = units.check_impacts();
     let definitions = units.known.definitions;
     for (impact, unit) in resolved.model.impacts.iter_mut().zip(impacts) {
@@ -64,7 +64,7 @@ struct Units<'m, 'f> {
 }
 
 impl Units<'_, '_> {
-    fn parameters(&mut self) {
+    fn check_parameters(&mut self) {
         for parameter in &self.model.parameters {
             if let ParameterValue::Expression(expr) = &parameter.value {
                 let declared = format!("declared in {}", parameter.unit);
@@ -74,7 +74,7 @@ impl Units<'_, '_> {
         }
     }
 
-    fn coordinates(&mut self) {
+    fn check_coordinates(&mut self) {
         for coordinate in &self.model.coordinates {
             let own = coordinate.unit.dimension;
             if let Some(expr) = &coordinate.initial {
@@ -87,17 +87,17 @@ impl Units<'_, '_> {
                 let subject = format!("the initial rate of `{}`", coordinate.name);
                 self.expect_quantity(expr, rate, &subject);
             }
-            self.range(coordinate.range.as_ref(), own, &coordinate.name);
+            self.check_range(coordinate.range.as_ref(), own, &coordinate.name);
         }
     }
 
-    fn inputs(&mut self) {
+    fn check_inputs(&mut self) {
         for input in &self.model.inputs {
-            self.range(input.range.as_ref(), input.unit.dimension, &input.name);
+            self.check_range(input.range.as_ref(), input.unit.dimension, &input.name);
         }
     }
 
-    fn states(&mut self) {
+    fn check_states(&mut self) {
         for state in &self.model.states {
             let own = state.unit.dimension;
             if let Some(expr) = &state.initial {
@@ -109,18 +109,18 @@ impl Units<'_, '_> {
                 let because = format!("expected {}: {} per s", UnitPhrase(rate), state.unit);
                 self.expect(&state.rate, rate, &subject, &because);
             }
-            self.range(state.range.as_ref(), own, &state.name);
+            self.check_range(state.range.as_ref(), own, &state.name);
         }
     }
 
-    fn range(&mut self, range: Option<&Range>, expected: Dimension, name: &str) {
+    fn check_range(&mut self, range: Option<&Range>, expected: Dimension, name: &str) {
         let ends = range.map(|range| [("lower", &range.low), ("upper", &range.high)]);
         for (end, expr) in ends.into_iter().flatten() {
             self.expect_quantity(expr, expected, &format!("the {end} end of `{name}`"));
         }
     }
 
-    fn fields(&mut self) {
+    fn check_fields(&mut self) {
         for field in &self.model.fields {
             let subject = |end: &str| format!("the {end} of the field `{}`", field.name);
             self.expect_quantity(&field.from, Dimension::LENGTH, &subject("start"));
@@ -128,7 +128,7 @@ impl Units<'_, '_> {
         }
     }
 
-    fn definitions(&mut self) -> bool {
+    fn check_definitions(&mut self) -> bool {
         let mut all = true;
         for &index in &self.model.definition_order {
             let inferred = self.known.infer(&self.model.definitions[index].value);
@@ -140,26 +140,26 @@ impl Units<'_, '_> {
         all
     }
 
-    fn energies(&mut self) {
+    fn check_energies(&mut self) {
         let model = self.model;
-        self.terms(&model.kinetic, "the kinetic energy", Dimension::ENERGY, "J");
-        self.terms(
+        self.check_terms(&model.kinetic, "the kinetic energy", Dimension::ENERGY, "J");
+        self.check_terms(
             &model.potential,
             "the potential energy",
             Dimension::ENERGY,
             "J",
         );
-        self.terms(&model.dissipation, "the dissipation", Dimension::POWER, "W");
+        self.check_terms(&model.dissipation, "the dissipation", Dimension::POWER, "W");
     }
 
-    fn terms(&mut self, terms: &[Term], of: &str, expected: Dimension, unit: &str) {
+    fn check_terms(&mut self, terms: &[Term], of: &str, expected: Dimension, unit: &str) {
         for term in terms {
             let subject = format!("this term of {of}");
             self.expect(&term.value, expected, &subject, &format!("expected {unit}"));
         }
     }
 
-    fn forces(&mut self) {
+    fn check_forces(&mut self) {
         for force in &self.model.forces {
             let inferred = self.known.infer(&force.on);
             let Some(on) = self.found.push_error(inferred) else {
@@ -209,7 +209,7 @@ impl Units<'_, '_> {
         }
     }
 
-    fn constraints(&mut self) -> Vec<Unit> {
+    fn check_constraints(&mut self) -> Vec<Unit> {
         let mut units = Vec::with_capacity(self.model.constraints.len());
         for constraint in &self.model.constraints {
             let inferred = self.known.infer(&constraint.zero);
@@ -243,7 +243,7 @@ impl Units<'_, '_> {
         units
     }
 
-    fn observables(&mut self, declared: &[Option<Unit>]) -> Vec<Unit> {
+    fn check_observables(&mut self, declared: &[Option<Unit>]) -> Vec<Unit> {
         let mut units = Vec::with_capacity(declared.len());
         for (observable, declared) in self.model.observables.iter().zip(declared) {
             let inferred = match declared {
@@ -269,7 +269,7 @@ impl Units<'_, '_> {
         units
     }
 
-    fn coefficients(&mut self) {
+    fn check_coefficients(&mut self) {
         for coefficient in &self.model.coefficients {
             let inferred = match &coefficient.kind {
                 CoefficientKind::Value(value) => self.known.infer(value),

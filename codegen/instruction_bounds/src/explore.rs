@@ -120,7 +120,7 @@ impl<'a> Explorer<'a> {
             if run.graph.nodes.len() > MAX_STATES {
                 let code_address = self.listing.describe(run.graph.most_visited());
                 return Err(format!(
-                    "a loop or branches with more than {MAX_STATES} states, at {place}"
+                    "a loop or branches with more than {MAX_STATES} states, at {code_address}"
                 ));
             }
             self.follow(&mut run, next)?;
@@ -128,7 +128,7 @@ impl<'a> Explorer<'a> {
         }
         let instructions = run.graph.longest_path().map_err(|code_address| {
             let code_address = self.listing.describe(code_address);
-            format!("a loop without proven number of iterations, at {place}")
+            format!("a loop without proven number of iterations, at {code_address}")
         })?;
         Ok(Summary {
             instructions,
@@ -154,7 +154,7 @@ impl<'a> Explorer<'a> {
                 }
                 let Some(instruction) = self.instructions.get(&code_address) else {
                     let code_address = self.listing.describe(code_address);
-                    return Err(format!("a jump to {place}, which is no instruction"));
+                    return Err(format!("a jump to {code_address}, which is no instruction"));
                 };
                 count += 1;
                 let after = code_address + instruction.size;

@@ -45,7 +45,7 @@ pub fn bound_functions(listing: &str) -> Result<Vec<BoundedFunction>, String> {
     let (names, code_addresses): (Vec<&String>, Vec<u64>) = functions
         .map(|(name, function)| (name, function.code_address))
         .unzip();
-    let bounds = Explorer::new(&listing).bounds(&code_addresses);
+    let bounds = Explorer::new(&listing).bound_functions(&code_addresses);
     let bounded = names
         .into_iter()
         .zip(bounds)

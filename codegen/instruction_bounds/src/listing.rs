@@ -47,7 +47,7 @@ pub struct Line {
 const FORMAT: &str = "elf32-littlearm";
 
 impl Line {
-    /// Returns the number of bytes.
+    /// Returns the length of the line, in bytes.
     pub fn size(&self) -> u64 {
         (self.bytes.bytes().filter(u8::is_ascii_hexdigit).count() / 2) as u64
     }

@@ -87,7 +87,7 @@ fn split_operands(text: &str) -> Vec<&str> {
 fn parse_operand(text: &str) -> Operand {
     let word = || Operand::Word(text.to_owned());
     if let Some(number) = text.strip_prefix('#') {
-        return number_of(number).map_or_else(word, Operand::Number);
+        return parse_number(number).map_or_else(word, Operand::Number);
     }
     if let Some(register) = register(text) {
         return Operand::Register(register);
@@ -96,7 +96,7 @@ fn parse_operand(text: &str) -> Operand {
         return Operand::Updated(register);
     }
     if let Some(list) = text.strip_prefix('{') {
-        return list_of(list.trim_end_matches('}')).unwrap_or_else(word);
+        return parse_list(list.trim_end_matches('}')).unwrap_or_else(word);
     }
     if let Some(inner) = text.strip_prefix('[') {
         return parse_memory(inner).map_or_else(word, Operand::Memory);
@@ -114,7 +114,7 @@ fn parse_operand(text: &str) -> Operand {
     }
 }
 
-fn number_of(text: &str) -> Option<u32> {
+fn parse_number(text: &str) -> Option<u32> {
     let number: i64 = match text.strip_prefix("0x") {
         Some(digits) => i64::from_str_radix(digits, 16).ok()?,
         None => text.parse().ok()?,
@@ -133,7 +133,7 @@ fn float_words(text: &str) -> Option<u32> {
     number.parse::<u8>().ok().map(|_| words)
 }
 
-fn list_of(list: &str) -> Option<Operand> {
+fn parse_list(list: &str) -> Option<Operand> {
     let mut cores = Vec::new();
     let mut words = 0;
     for item in list.split(',').map(str::trim) {
@@ -161,11 +161,11 @@ fn parse_memory(inner: &str) -> Option<Memory> {
     let (mut offset, mut index) = (0, None);
     if let Some(part) = parts.next() {
         match part.strip_prefix('#') {
-            Some(number) => offset = number_of(number)? as i32,
+            Some(number) => offset = parse_number(number)? as i32,
             None => {
                 let places = match parts.next() {
                     None => 0,
-                    Some(shift) => number_of(shift.strip_prefix("lsl #")?)?,
+                    Some(shift) => parse_number(shift.strip_prefix("lsl #")?)?,
                 };
                 index = Some((register(part)?, places));
             }
@@ -190,7 +190,7 @@ fn shift(text: &str) -> Option<Operand> {
         _ => return None,
     };
     match by.strip_prefix('#') {
-        Some(places) => Some(Operand::Shifted(kind, number_of(places)?)),
+        Some(places) => Some(Operand::Shifted(kind, parse_number(places)?)),
         None => Some(Operand::ShiftedBy(kind, register(by)?)),
     }
 }

@@ -110,13 +110,13 @@ impl State {
                     self.words.insert(offset, value);
                 }
             }
-            _ => self.has_escaped |= value.is_of_frame(),
+            _ => self.has_escaped |= value.is_stack_address(),
         }
     }
 
     /// Records that an address of the function's stack may be stored in memory that is not tracked.
     pub fn note_escape(&mut self, value: Value) {
-        self.has_escaped |= value.is_of_frame();
+        self.has_escaped |= value.is_stack_address();
     }
 
     /// Marks the words as unknown that a write of an unknown number changes. The write is between these offsets from
@@ -154,19 +154,19 @@ impl State {
 
     fn forget(&mut self, at: i32) {
         let value = self.words.remove(&at);
-        self.has_escaped |= value.is_some_and(Value::is_of_frame);
+        self.has_escaped |= value.is_some_and(Value::is_stack_address);
     }
 
     fn forget_all(&mut self) {
         let words = std::mem::take(&mut self.words);
-        self.has_escaped |= words.into_values().any(Value::is_of_frame);
+        self.has_escaped |= words.into_values().any(Value::is_stack_address);
     }
 
     /// Applies the effect of a call.
     pub fn call(&mut self, called: &Effect, writes: &mut Writes) {
         let arguments = [0, 1, 2, 3].map(|number| self.register(number));
-        let passes_frame = arguments.into_iter().any(Value::is_of_frame)
-            || self.words.values().any(|value| value.is_of_frame());
+        let passes_frame = arguments.into_iter().any(Value::is_stack_address)
+            || self.words.values().any(|value| value.is_stack_address());
         let before = self.clone();
         if called.writes.anywhere {
             writes.anywhere = true;

@@ -75,7 +75,7 @@ impl Value {
     }
 
     /// Returns true if the value may be an address of the function's stack.
-    pub fn is_of_frame(self) -> bool {
+    pub fn is_stack_address(self) -> bool {
         self == Self::Frame || self.as_stack_offset().is_some()
     }
 
@@ -118,7 +118,7 @@ impl Value {
 /// Returns the result of an operation that is not modelled: an unknown stack address if an operand is a stack
 /// address, else an unknown number.
 pub fn opaque(operands: &[Value]) -> Value {
-    match operands.iter().any(|value| value.is_of_frame()) {
+    match operands.iter().any(|value| value.is_stack_address()) {
         true => Value::Frame,
         false => UNKNOWN,
     }
@@ -138,7 +138,7 @@ pub fn complement(value: Value) -> Value {
 /// Returns `left & right`.
 pub fn and(left: Value, right: Value) -> Value {
     let ((k, b), (m, c)) = (left.parts(), right.parts());
-    if left.is_of_frame() || right.is_of_frame() {
+    if left.is_stack_address() || right.is_stack_address() {
         return Value::Frame;
     }
     let known = (k & m) | (k & !b) | (m & !c);
@@ -150,7 +150,7 @@ pub fn and(left: Value, right: Value) -> Value {
 
 /// Returns `left | right`.
 pub fn or(left: Value, right: Value) -> Value {
-    if left.is_of_frame() || right.is_of_frame() {
+    if left.is_stack_address() || right.is_stack_address() {
         return Value::Frame;
     }
     complement(and(complement(left), complement(right)))
@@ -158,7 +158,7 @@ pub fn or(left: Value, right: Value) -> Value {
 
 /// Returns `left ^ right`.
 pub fn xor(left: Value, right: Value) -> Value {
-    if left.is_of_frame() || right.is_of_frame() {
+    if left.is_stack_address() || right.is_stack_address() {
         return Value::Frame;
     }
     let ((k, b), (m, c)) = (left.parts(), right.parts());

@@ -69,17 +69,17 @@ impl Writer {
             match find_pair(&statements[place..]) {
                 Some((ahead, sine_and_cosine)) => {
                     together.insert(place + ahead);
-                    text += &self.note(statement);
+                    text += &self.write_note(statement);
                     text += &self.sine_and_cosine(&sine_and_cosine);
                 }
-                None => text += &(self.note(statement) + &self.statement(statement)),
+                None => text += &(self.write_note(statement) + &self.statement(statement)),
             }
         }
         text
     }
 
     /// Writes a comment with unit and terms of the value that a statement defines.
-    fn note(&self, statement: &Statement) -> String {
+    fn write_note(&self, statement: &Statement) -> String {
         let note = statement.defined().and_then(|name| self.notes.get(name));
         note.map_or_else(String::new, |note| format!("/* {} */\n", clean(note)))
     }
@@ -99,7 +99,7 @@ impl Writer {
         let real = &self.real;
         match statement {
             Statement::Let(name, value) => self.write_definition(name, value),
-            Statement::Zeros(name, lengths) => self.zeros(name, lengths),
+            Statement::Zeros(name, lengths) => self.write_zeros(name, lengths),
             Statement::Flag(name) => format!("int {name} = 1;\n"),
             Statement::Assign(place, value) if place.indices.is_empty() => {
                 self.set_flag(&place.name, value)
@@ -140,7 +140,7 @@ impl Writer {
                 right,
                 rows,
                 columns,
-            } => self.solution(name, factor, right, (*rows, *columns)),
+            } => self.write_solution(name, factor, right, (*rows, *columns)),
         }
     }
 
@@ -149,7 +149,7 @@ impl Writer {
         write_assignment(&format!("const {} {name}", self.real), &value)
     }
 
-    fn zeros(&self, name: &str, lengths: &[usize]) -> String {
+    fn write_zeros(&self, name: &str, lengths: &[usize]) -> String {
         let extents: String = lengths.iter().map(|length| format!("[{length}]")).collect();
         let (open, close) = ("{".repeat(lengths.len()), "}".repeat(lengths.len()));
         format!("{} {name}{extents} = {open}0{close};\n", self.real)
@@ -201,7 +201,7 @@ impl Writer {
         )
     }
 
-    fn solution(
+    fn write_solution(
         &self,
         name: &str,
         factor: &Array,
@@ -260,18 +260,18 @@ impl Writer {
             Expression::Element(array, indices) => self.array(array) + &write_brackets(indices),
             Expression::Field(structure, name) => write_field(*structure, name),
             Expression::Shared(coefficient) => return self.write_with_level(coefficient),
-            Expression::Binary(operator, a, b) => return self.binary(*operator, a, b),
+            Expression::Binary(operator, a, b) => return self.write_binary(*operator, a, b),
             Expression::Negate(a) => {
                 return (
                     format!("-{}", self.write_at_level(a, Level::Atom)),
                     Level::Negation,
                 );
             }
-            Expression::Call("chosen", parts) => self.conditional(parts),
+            Expression::Call("chosen", parts) => self.write_conditional(parts),
             Expression::Call(name, parts) => self.function(name, parts),
-            Expression::Primitive("select_equal", parts) => self.choice("==", parts),
+            Expression::Primitive("select_equal", parts) => self.write_choice("==", parts),
             Expression::Primitive(name, parts) => self.function(name, parts),
-            Expression::Select(parts) => self.choice(">", &**parts),
+            Expression::Select(parts) => self.write_choice(">", &**parts),
             Expression::Positive(place) => format!("((regime >> {place}) & 1U)"),
             Expression::Greater(parts) => {
                 let [a, b] = &**parts;
@@ -299,7 +299,7 @@ impl Writer {
         )
     }
 
-    fn binary(&self, operator: Operator, a: &Expression, b: &Expression) -> (String, Level) {
+    fn write_binary(&self, operator: Operator, a: &Expression, b: &Expression) -> (String, Level) {
         if let Some((x, aligner)) = rounding_operand(operator, a, b) {
             let function = match aligner / self.rounding_aligner {
                 1.0 => Some("nearest_integer"),
@@ -328,7 +328,7 @@ impl Writer {
     }
 
     /// Writes `[a, b, then, otherwise]`: `then` if the comparison of a and b is true, else `otherwise`.
-    fn choice(&self, comparison: &str, parts: &[Expression]) -> String {
+    fn write_choice(&self, comparison: &str, parts: &[Expression]) -> String {
         match parts {
             [a, b, then, otherwise] => {
                 let condition = write_infix(
@@ -347,7 +347,7 @@ impl Writer {
     }
 
     /// Writes a condition as a comparison, because flags are `int` and sides of a regime are `uint32_t`.
-    fn condition(&self, condition: &Expression) -> (String, Level) {
+    fn write_condition(&self, condition: &Expression) -> (String, Level) {
         let (text, level) = self.write_with_level(condition);
         match condition {
             Expression::Greater(_) | Expression::And(_) => (text, level),
@@ -359,7 +359,7 @@ impl Writer {
     }
 
     fn operand_of_and(&self, operand: &Expression) -> String {
-        match self.condition(operand) {
+        match self.write_condition(operand) {
             (text, Level::And) => text,
             (text, _) => format!("({text})"),
         }
@@ -372,7 +372,7 @@ impl Writer {
                 write_assignment(target, &self.expression(condition))
             }
             _ => {
-                let head = format!("if ({}) {{", self.condition(condition).0);
+                let head = format!("if ({}) {{", self.write_condition(condition).0);
                 let set = |value: &str| write_assignment(target, value);
                 let otherwise = block("} else {", &set("0"), "}");
                 format!("{head}\n{DEEPER}{}{SHALLOWER}{otherwise}", set("1"))
@@ -381,10 +381,10 @@ impl Writer {
     }
 
     /// Writes `[condition, then, otherwise]`.
-    fn conditional(&self, parts: &[Expression]) -> String {
+    fn write_conditional(&self, parts: &[Expression]) -> String {
         match parts {
             [first, then, otherwise] => write_ternary(
-                &self.condition(first).0,
+                &self.write_condition(first).0,
                 &self.expression(then),
                 &self.expression(otherwise),
             ),

@@ -87,7 +87,8 @@ pub(super) fn write_step(
     lines += &open;
     if sizes.sides > 0 {
         lines += &start_effects;
-        // Frictions that drive their own velocity start with its sign.
+        // Initial reactions: 0 if a reaction decelerates its own velocity, else the full impulse with the sign of the
+        // velocity.
         let driving = format!(
             "const NAME_real below = (R(0.0) > before[r]) ? -h : R(0.0);\n\
              const NAME_real sign = (before[r] > R(0.0)) ? h : below;\n\

@@ -90,7 +90,7 @@ impl Writer {
                 } else {
                     "sum_of_few"
                 };
-                let sum = self.sum(function, *length, element);
+                let sum = self.write_sum(function, *length, element);
                 write_assignment(&format!("let {name}"), sum) + "\n"
             }
             Statement::Cholesky { name, matrix, .. } => {
@@ -142,10 +142,10 @@ impl Writer {
         let text = match expression {
             Expression::Number(value) => convert_number(&number(*value)),
             Expression::Name(name) | Expression::Flag(name) => name.clone(),
-            Expression::Element(array, indices) => self.element(array, indices),
+            Expression::Element(array, indices) => self.write_element(array, indices),
             Expression::Field(structure, name) => write_field(structure_name(*structure), name),
             Expression::Shared(coefficient) => call("C::read", &[self.expression(coefficient)]),
-            Expression::Binary(operator, a, b) => return self.binary(*operator, a, b),
+            Expression::Binary(operator, a, b) => return self.write_binary(*operator, a, b),
             Expression::Negate(a) => {
                 return (
                     format!("-{}", self.write_at_level(a, Level::Atom)),
@@ -175,7 +175,12 @@ impl Writer {
         (text, Level::Atom)
     }
 
-    fn binary(&mut self, operator: Operator, a: &Expression, b: &Expression) -> (String, Level) {
+    fn write_binary(
+        &mut self,
+        operator: Operator,
+        a: &Expression,
+        b: &Expression,
+    ) -> (String, Level) {
         let (sign, level, right) = match operator {
             Operator::Add => ("+", Level::Sum, Level::Product),
             Operator::Subtract => ("-", Level::Sum, Level::Product),
@@ -187,7 +192,7 @@ impl Writer {
     }
 
     /// Writes an element; an entry of a table is converted to the scalar type.
-    fn element(&mut self, array: &Array, indices: &[Index]) -> String {
+    fn write_element(&mut self, array: &Array, indices: &[Index]) -> String {
         let brackets: Vec<String> = indices.iter().map(write_index).collect();
         let brackets = brackets.join("][");
         match array {
@@ -233,7 +238,7 @@ impl Writer {
 
     /// Writes the call of a function that sums `length` elements. The length is passed as the type of an array, so
     /// that it is known at compile time.
-    fn sum(&mut self, function: &str, length: usize, element: &Expression) -> String {
+    fn write_sum(&mut self, function: &str, length: usize, element: &Expression) -> String {
         let (element, level) = self.write_with_level(element);
         let body = if level == Level::Atom && element.ends_with(')') {
             element

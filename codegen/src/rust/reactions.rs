@@ -55,7 +55,8 @@ pub(super) fn write_step(
     lines += &open;
     if sides > 0 {
         lines += start_effects;
-        // Frictions that drive their own velocity start with its sign.
+        // Initial reactions: 0 if a reaction decelerates its own velocity, else the full impulse with the sign of the
+        // velocity.
         let driving = format!(
             "let zero = T::number(0.0);\n\
              let below = T::select_greater(zero, before[r], -h, zero);\n\

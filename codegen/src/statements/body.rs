@@ -82,7 +82,7 @@ impl<'a> Body<'a> {
     }
 
     /// Returns the values of this stage, operands first.
-    fn steps(&self, roots: &[ValueId]) -> Vec<ValueId> {
+    fn list_steps(&self, roots: &[ValueId]) -> Vec<ValueId> {
         let prepare = matches!(self.access, Access::Prepare);
         self.program
             .reachable(roots)
@@ -159,7 +159,7 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    fn step(&mut self, id: ValueId) -> EmitResult<()> {
+    fn write_step(&mut self, id: ValueId) -> EmitResult<()> {
         let value = self.program.value(id);
         let uses = self.uses.get(&id).copied().unwrap_or(0);
         match (&value.op, value.extent) {
@@ -188,8 +188,8 @@ impl<'a> Body<'a> {
                 self.bound.insert(id, name);
                 Ok(())
             }
-            (_, Extent::Scalar) => self.scalar_step(id, uses),
-            (_, Extent::Vector(length)) => self.vector_step(id, uses, length),
+            (_, Extent::Scalar) => self.write_scalar(id, uses),
+            (_, Extent::Vector(length)) => self.write_vector(id, uses, length),
             (_, Extent::Matrix(rows, columns)) => self.matrix_step(id, rows, columns),
         }
     }
@@ -206,7 +206,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    fn scalar_step(&mut self, id: ValueId, uses: usize) -> EmitResult<()> {
+    fn write_scalar(&mut self, id: ValueId, uses: usize) -> EmitResult<()> {
         let value = self.program.value(id);
         if let Op::Total(vector) = value.op {
             return self.write_total(id, vector);
@@ -242,7 +242,7 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    fn vector_step(&mut self, id: ValueId, uses: usize, length: usize) -> EmitResult<()> {
+    fn write_vector(&mut self, id: ValueId, uses: usize, length: usize) -> EmitResult<()> {
         let elementwise = is_elementwise(&self.program.value(id).op);
         let as_array = self.arrays.contains(&id) || self.is_operand_of_matrix(id);
         if elementwise && uses <= 1 && !as_array {

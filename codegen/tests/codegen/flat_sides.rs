@@ -7,7 +7,7 @@ use eomgen_codegen::program::evaluator::Point;
 use crate::limits::{evaluator, gradient, jacobian, pushed};
 
 /// Force, a position at which the force is constant, another position, and the derivative at the latter.
-const CLIPPED: [(&str, f64, f64, f64); 15] = [
+const CLIPPED_FORCES: [(&str, f64, f64, f64); 15] = [
     ("sqrt(max(x/l - 0.5, 0))", 0.2, 1.5, 0.5),
     ("sqrt(max(0, x/l - 0.5))", 0.2, 1.5, 0.5),
     ("sqrt(max(1 - (x/l)^2, 0))", 2.0, 0.6, -0.75),
@@ -49,14 +49,14 @@ fn assert_close(found: [f64; 2], expected: f64, force: &str) {
 
 #[test]
 fn clipped_functions_have_the_derivative_0_on_the_flat_side() {
-    for (force, flat, _, _) in CLIPPED {
+    for (force, flat, _, _) in CLIPPED_FORCES {
         assert_eq!(slopes(&pushed(force), flat), [0.0; 2], "{force}");
     }
 }
 
 #[test]
 fn clipped_functions_keep_their_derivative_on_the_other_side() {
-    for (force, _, place, slope) in CLIPPED {
+    for (force, _, place, slope) in CLIPPED_FORCES {
         assert_close(slopes(&pushed(force), place), 2.0 * slope, force);
     }
 }
@@ -71,7 +71,7 @@ fn roots_have_no_derivative_on_the_surface_that_clips_them() {
 
 #[test]
 fn clipped_functions_have_finite_derivatives_by_parameters() {
-    for (force, flat, _, _) in CLIPPED {
+    for (force, flat, _, _) in CLIPPED_FORCES {
         let mut evaluator = evaluator(&pushed(force), &[Output::Products]);
         let state = [flat, 0.0, 0.0, 0.0, 0.0, 0.0];
         let point = Point {
@@ -106,7 +106,7 @@ fn forces_of_clipped_potentials_have_the_derivative_0_on_the_flat_side() {
 }
 
 /// String with an elastic stop along its length.
-const STOPPED: &str = r#"
+const STRING_WITH_STOP: &str = r#"
 [model]
 name = "stopped_string"
 [parameters]
@@ -131,7 +131,7 @@ tension = "1/2*integral(H*diff(w, s)^2, w)"
 
 #[test]
 fn clipped_potentials_along_a_field_add_nothing_on_the_flat_side() {
-    let mut free = evaluator(STOPPED, &[Output::Jacobians]);
+    let mut free = evaluator(STRING_WITH_STOP, &[Output::Jacobians]);
     let state = [0.001, -0.0005, 0.0, 0.0];
     let sum = |nonzeros: Vec<f64>| nonzeros.iter().sum::<f64>();
     let expected = sum(jacobian(&mut free, &state));

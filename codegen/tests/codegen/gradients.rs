@@ -6,7 +6,7 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::variant::Variant;
 
 /// Mass with a constant force. At larger x another force acts, whose derivative is infinite at 0.
-const PUSHED: &str = r#"
+const PUSHED_MASS: &str = r#"
 [model]
 name  = "pushed_mass"
 title = "Mass pushed by the larger of two forces"
@@ -29,7 +29,7 @@ push = { on = "x", value = "max(F, k*sqrt(x/l) + F*(x/l)^2)" }
 
 /// Returns the gradients of 11 times the acceleration with respect to the state and to the parameters.
 fn gradients(x: f64) -> ([f64; 2], [f64; 4]) {
-    let model = crate::support::model(PUSHED);
+    let model = crate::support::model(PUSHED_MASS);
     let variant = Variant::derive_with(&model, &[], &[Output::Products])
         .unwrap_or_else(|found| panic!("{}", found.render(false)));
     let mut evaluator = Evaluator::new(variant.program);

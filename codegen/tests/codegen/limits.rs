@@ -337,7 +337,7 @@ fn power_with_zero_base_has_derivative_by_exponent() {
 }
 
 /// String with drag, which depends on the speed in space of each point of the string.
-const DRAGGED: &str = r#"
+const STRING_WITH_DRAG: &str = r#"
 [model]
 name = "dragged_string"
 [parameters]
@@ -367,7 +367,7 @@ drag = "1/3*integral(c*sqrt(dot(w)^2 + dot(x)^2)^3, w)"
 
 #[test]
 fn drag_along_a_field_has_a_jacobian_at_rest() {
-    let mut evaluator = evaluator(DRAGGED, &[Output::Jacobians, Output::Products]);
+    let mut evaluator = evaluator(STRING_WITH_DRAG, &[Output::Jacobians, Output::Products]);
     let found = jacobian(&mut evaluator, &[0.0; 6]);
     assert!(found.iter().all(|entry| entry.is_finite()), "{found:?}");
     let found = gradient(&mut evaluator, &[0.0; 6]);

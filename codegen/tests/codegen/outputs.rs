@@ -5,7 +5,7 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::variant::Variant;
 
 /// Beam whose inertia grows with its deflection: its modal mass matrix is dense and depends on the state.
-const SWELLING: &str = r#"
+const SWELLING_BEAM: &str = r#"
 [model]
 name  = "swelling_beam"
 title = "Beam that is heavier where it bends"
@@ -149,7 +149,7 @@ fn nonlinear_functions_of_a_field_have_jacobians() {
 
 #[test]
 fn dense_state_dependent_mass_matrix_has_derivatives() {
-    let model = crate::support::model(SWELLING);
+    let model = crate::support::model(SWELLING_BEAM);
     for request in [Output::Jacobians, Output::Products, Output::Linearisation] {
         let found = Variant::derive_with(&model, &[2], &[request]);
         assert!(found.is_ok(), "{request:?}");
@@ -159,7 +159,7 @@ fn dense_state_dependent_mass_matrix_has_derivatives() {
 #[test]
 fn state_weighted_sum_of_squared_modes_is_rejected_at_its_place() {
     let losses = "1/2*c*sum(i, w, integral(exp(w/l)*phi[i]^2, w)*dot(q[i])^2)";
-    let text = SWELLING
+    let text = SWELLING_BEAM
         .replace("rho*(1 + (w/l)^2)", "rho")
         .replace(
             "[kinetic]",
@@ -182,7 +182,7 @@ fn state_weighted_sum_of_squared_modes_is_rejected_at_its_place() {
 
 #[test]
 fn outputs_without_derivatives_are_accepted() {
-    let model = crate::support::model(SWELLING);
+    let model = crate::support::model(SWELLING_BEAM);
     for request in [
         Output::BiasForces,
         Output::InverseDynamics,

@@ -6,7 +6,7 @@ use eomgen_codegen::c;
 use eomgen_codegen::program::units::{ValueUnit, infer_units};
 use eomgen_codegen::program::{Op, Output, Program, ValueId};
 use eomgen_codegen::rust::{Packaging, emit};
-use eomgen_codegen::statements::coefficient_values;
+use eomgen_codegen::statements::collect_coefficients;
 use eomgen_codegen::trace::{TracedLine, traced_lines};
 use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::dimension::Dimension;
@@ -259,7 +259,7 @@ fn an_added_friction_changes_few_lines() {
 fn jacobians_by_state_need_fewer_coefficients() {
     let model = shipped("hub_beam_tip_mass");
     let program = |outputs: &[Output]| derive(&model, 3, outputs);
-    let count = |program: &Program| coefficient_values(program).len();
+    let count = |program: &Program| collect_coefficients(program).len();
     let none = program(&[]);
     let by_state = program(&[Output::StateJacobians]);
     let all = program(&[Output::Jacobians]);

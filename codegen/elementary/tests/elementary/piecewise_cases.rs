@@ -6,7 +6,7 @@ const NAN: f64 = f64::NAN;
 const TINY: f64 = f32::from_bits(1) as f64;
 
 /// `[p, b, deadzone(p, b), contact(p, b)]`.
-pub const OF_DEFLECTION: [[f64; 4]; 27] = [
+pub const DEFLECTION_CASES: [[f64; 4]; 27] = [
     [3.0, 1.0, 2.0, 1.0],
     [-3.0, 1.0, -2.0, 1.0],
     [0.5, 1.0, 0.0, 0.0],
@@ -38,7 +38,7 @@ pub const OF_DEFLECTION: [[f64; 4]; 27] = [
 ];
 
 /// `[p, above(p), pivot_reciprocal(p)]`.
-pub const OF_ONE_NUMBER: [[f64; 3]; 9] = [
+pub const ONE_NUMBER_CASES: [[f64; 3]; 9] = [
     [2.0, 1.0, 0.5],
     [0.25, 1.0, 4.0],
     [0.0, 0.0, NAN],

@@ -14,7 +14,7 @@ const STRIDE: usize = 15_991;
 /// Largest argument of sine, cosine and tangent with an error of at most two units.
 const ACCURATE_ANGLE: f32 = 1e5;
 
-/// Returns numbers at equal distances of their bit patterns, from zero to infinity, of either sign.
+/// Returns numbers of both signs from zero to infinity. Consecutive bit patterns differ by `stride`.
 fn numbers(stride: usize) -> impl Iterator<Item = f32> {
     let patterns = (0..=f32::INFINITY.to_bits()).step_by(stride);
     patterns.flat_map(|bits| [f32::from_bits(bits), -f32::from_bits(bits)])
@@ -167,7 +167,7 @@ fn functions_of_two_numbers_are_accurate() {
 
 /// Special values agree with those of double precision, signs of zeros included.
 #[test]
-fn special_values_are_those_of_double_precision() {
+fn special_values_match_double_precision() {
     let specials = [0.0, 0.5, 1.0, 2.0, 3.0, f32::INFINITY, f32::NAN].map(|x| [x, -x]);
     for function in Function::ALL {
         for &x in specials.as_flattened() {
@@ -209,7 +209,7 @@ fn kernels_match_native_bits() {
 }
 
 #[test]
-fn sine_and_cosine_together_have_the_same_bits() {
+fn joint_sine_and_cosine_are_bit_identical() {
     let both = sin_cos_kernel::<Single>();
     for x in numbers(STRIDE).filter(|x| x.abs() <= LARGEST_SINGLE_ANGLE) {
         let bits = [sin(x), cos(x)].map(f32::to_bits);

@@ -1,6 +1,6 @@
 //! Zeros, infinities, NaN and the ends of domains, as tables.
 
-use crate::piecewise_cases::{OF_DEFLECTION, OF_ONE_NUMBER};
+use crate::piecewise_cases::{DEFLECTION_CASES, ONE_NUMBER_CASES};
 use eomgen_elementary::Function::{self, *};
 use eomgen_elementary::{Operation, Single};
 
@@ -258,11 +258,11 @@ fn piecewise_functions_have_one_value_in_both_formats() {
             "{function:?}{narrow:?} is {value:e}, not {expected:e}"
         );
     };
-    for [p, b, deadzone, contact] in OF_DEFLECTION {
+    for [p, b, deadzone, contact] in DEFLECTION_CASES {
         check(Deadzone, &[p, b], deadzone);
         check(Contact, &[p, b], contact);
     }
-    for [p, above, reciprocal] in OF_ONE_NUMBER {
+    for [p, above, reciprocal] in ONE_NUMBER_CASES {
         check(Above, &[p], above);
         check(PivotReciprocal, &[p], reciprocal);
     }

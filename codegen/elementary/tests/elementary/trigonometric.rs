@@ -46,7 +46,7 @@ fn multiples_of_half_pi_are_reduced_accurately() {
 }
 
 #[test]
-fn sine_and_cosine_together_have_the_same_bits() {
+fn joint_sine_and_cosine_are_bit_identical() {
     for x in angles() {
         let (sine, cosine) = sin_cos(x);
         assert_eq!(sine.to_bits(), sin(x).to_bits(), "sin {x:e}");
