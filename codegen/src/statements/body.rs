@@ -73,10 +73,10 @@ impl<'a> Body<'a> {
         if matches!(body.access, Access::Prepare) {
             body.arrays.extend(roots);
         }
-        let steps = body.steps(roots);
+        let steps = body.list_steps(roots);
         body.count_uses(&steps, roots);
         for id in steps {
-            body.step(id)?;
+            body.write_step(id)?;
         }
         Ok(body)
     }

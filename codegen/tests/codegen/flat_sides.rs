@@ -141,7 +141,7 @@ fn clipped_potentials_along_a_field_add_nothing_on_the_flat_side() {
         "(max(w - g, 0)/l)^0.7*l^0.5",
         "abs(deadzone(w, g))^1.5/l",
     ] {
-        let text = format!("{STOPPED}stop = \"integral(c*({stop}), w)\"\n");
+        let text = format!("{STRING_WITH_STOP}stop = \"integral(c*({stop}), w)\"\n");
         let mut stopped = evaluator(&text, &[Output::Jacobians]);
         let found = sum(jacobian(&mut stopped, &state));
         assert!(

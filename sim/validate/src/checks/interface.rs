@@ -4,7 +4,9 @@
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::program::{Output, Program, SURFACES_OF_A_REGIME};
-use eomgen_codegen::statements::{DataElements, Indices, coefficient_values, data_arrays, indices};
+use eomgen_codegen::statements::{
+    DataElements, Indices, collect_coefficients, list_data_arrays, list_indices,
+};
 
 use super::controllers::{ControllerCalls, expected_lines};
 use super::linked_program::{count_differences, format_bits};
@@ -167,7 +169,7 @@ impl<'p> Calls<'p> {
         let mut evaluator = Evaluator::new(self.program.clone());
         let mut double = Evaluator::new(self.program.clone());
         if precision != Precision::Double {
-            evaluator = evaluator.in_single_precision(&coefficient_values(self.program));
+            evaluator = evaluator.in_single_precision(&collect_coefficients(self.program));
         }
         for (count, call) in (1..).zip(&self.calls) {
             let round = |number: &f64| precision.round(*number);
@@ -369,13 +371,13 @@ fn interface_lines(program: &Program, precision: Precision, lines: &mut Vec<(Str
     for field in &program.fields {
         add("the orders", field.order.to_string());
     }
-    for Indices { kind, entries, .. } in indices(program) {
+    for Indices { kind, entries, .. } in list_indices(program) {
         for (place, (name, _)) in entries.iter().enumerate() {
             add(&format!("the names of kind {kind}"), name.clone());
             add(&format!("the indices of kind {kind}"), place.to_string());
         }
     }
-    for data in data_arrays(program) {
+    for data in list_data_arrays(program) {
         match data.elements {
             DataElements::Texts(texts) => texts.into_iter().for_each(|text| add(data.name, text)),
             DataElements::Numbers(numbers) => {
@@ -418,7 +420,7 @@ pub fn c_harness(all: &Calls<'_>, name: &str) -> String {
     for place in 0..program.fields.len() {
         interface += &format!("    printf(\"%d\\n\", NAME_orders[{place}]);\n");
     }
-    for Indices { kind, entries, .. } in indices(program) {
+    for Indices { kind, entries, .. } in list_indices(program) {
         for (place, (_, constant)) in entries.iter().enumerate() {
             let capitals = kind.to_uppercase();
             interface += &format!(
@@ -426,7 +428,7 @@ pub fn c_harness(all: &Calls<'_>, name: &str) -> String {
             );
         }
     }
-    for data in data_arrays(program) {
+    for data in list_data_arrays(program) {
         let name = data.name;
         match data.elements {
             DataElements::Texts(texts) => {
@@ -580,7 +582,7 @@ pub fn rust_harness(all: &Calls<'_>, emitted: &str) -> String {
     for place in 0..program.fields.len() {
         interface += &format!("    println!(\"{{}}\", model::ORDERS[{place}]);\n");
     }
-    for Indices { kind, entries, .. } in indices(program) {
+    for Indices { kind, entries, .. } in list_indices(program) {
         for (place, (_, constant)) in entries.iter().enumerate() {
             let capitals = kind.to_uppercase();
             interface += &format!(
@@ -588,7 +590,7 @@ pub fn rust_harness(all: &Calls<'_>, emitted: &str) -> String {
             );
         }
     }
-    for data in data_arrays(program) {
+    for data in list_data_arrays(program) {
         let name = data.name.to_uppercase();
         interface += &match data.elements {
             DataElements::Texts(_) => {

@@ -3,7 +3,7 @@
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, Number, Point};
 use eomgen_codegen::rounding::{Format, Quantity, Ranges, ScalarOp, Scalars, quantities};
-use eomgen_codegen::statements::coefficient_values;
+use eomgen_codegen::statements::collect_coefficients;
 use eomgen_model_spec::interval::Interval;
 
 use crate::double_double::DoubleDouble;
@@ -43,7 +43,7 @@ impl ErrorSampler {
         let evaluator = Evaluator::new(program.clone());
         let evaluator = match format {
             Format::Double => evaluator,
-            Format::Single => evaluator.in_single_precision(&coefficient_values(program)),
+            Format::Single => evaluator.in_single_precision(&collect_coefficients(program)),
         };
         let jumps = scalars.list.iter().map(|scalar| scalar.op);
         let jumps = jumps.filter(|op| match op {
