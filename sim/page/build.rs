@@ -58,7 +58,7 @@ fn compile(out: &Path) -> Result<PathBuf, String> {
     }
     if !has_target() {
         return Err(format!(
-            "the compiler has no target {TARGET}; run `rustup target add {TARGET}` and compile again"
+            "the compiler target {TARGET} is not installed; run `rustup target add {TARGET}` and compile again"
         ));
     }
     // OUT_DIR is PROFILE/build/PACKAGE/out.

@@ -223,13 +223,13 @@ mod tests {
             (0..=997)
                 .map(|k| off(6.0 * f64::from(k) / 997.0))
                 .fold([0.0f64; 3], |most, off| {
-                    [0, 1, 2].map(|place| most[place].max(off[place].abs()))
+                    [0, 1, 2].map(|index| most[index].max(off[index].abs()))
                 })
         };
         let (coarse, fine) = (error(40), error(80));
-        for (place, order) in [4.0, 3.0, 2.0].into_iter().enumerate() {
-            let found = (coarse[place] / fine[place]).log2();
-            assert!((found - order).abs() < 0.4, "{place}: {found}");
+        for (index, order) in [4.0, 3.0, 2.0].into_iter().enumerate() {
+            let found = (coarse[index] / fine[index]).log2();
+            assert!((found - order).abs() < 0.4, "{index}: {found}");
         }
     }
 

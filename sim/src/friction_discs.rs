@@ -90,7 +90,7 @@ pub fn decide_with_discs(
         let own = rows(&s, &disc.rows);
         let length = own.norm();
         let rate = rows(&u, &disc.rows).norm();
-        let size = rows(&rates.c, &disc.rows).norm() + problem.own(disc).norm();
+        let size = rows(&rates.c, &disc.rows).norm() + problem.disc_matrix(disc).norm();
         let is_sliding = length >= 1.0 - CONVERGED_CHANGE && rate > RATE_ROUNDING * size;
         match is_sliding || disc.exceeds_limit || !problem.may_hold(disc) {
             true => DiscVerdict::Slides((own / length).iter().copied().collect()),
@@ -117,7 +117,7 @@ impl Problem<'_> {
             }
         }
         if self.residual(&s) > MAX_RESIDUAL {
-            s = self.newton(s);
+            s = self.solve_by_newton(s);
         }
         (self.residual(&s) <= MAX_RESIDUAL).then_some(s)
     }
@@ -159,7 +159,7 @@ impl Problem<'_> {
         (-free / own).clamp(-1.0, 1.0)
     }
 
-    fn own(&self, disc: &DiscArrival) -> DMatrix<f64> {
+    fn disc_matrix(&self, disc: &DiscArrival) -> DMatrix<f64> {
         let (start, count) = (disc.rows.start, disc.rows.len());
         self.rates
             .w
@@ -169,11 +169,11 @@ impl Problem<'_> {
 
     /// Returns true if the friction of the disc cannot drive the sliding velocity.
     fn may_hold(&self, disc: &DiscArrival) -> bool {
-        self.own(disc).trace() <= 0.0
+        self.disc_matrix(disc).trace() <= 0.0
     }
 
     fn solve_disc(&self, s: &DVector<f64>, disc: &DiscArrival) -> DVector<f64> {
-        let own = self.own(disc);
+        let own = self.disc_matrix(disc);
         if !self.may_hold(disc) {
             return DVector::from_column_slice(&disc.along);
         }
@@ -208,7 +208,7 @@ impl Problem<'_> {
     }
 
     /// Solves s = P(s + r u) by Newton's method from `s`.
-    fn newton(&self, mut s: DVector<f64>) -> DVector<f64> {
+    fn solve_by_newton(&self, mut s: DVector<f64>) -> DVector<f64> {
         let count = s.len();
         let mut errors = self.projection_error(&s).0;
         for _ in 0..MAX_NEWTON_STEPS {
@@ -278,7 +278,7 @@ mod tests {
 
     /// Returns the rates of discs with two or three components and of scalar frictions on bodies with a common
     /// mass matrix, and their arrivals.
-    fn problem(seed: u64) -> (Rates, Vec<Arrival>, Vec<DiscArrival>) {
+    fn random_problem(seed: u64) -> (Rates, Vec<Arrival>, Vec<DiscArrival>) {
         let mut numbers = Numbers::new(seed);
         let scalars = (seed % 3) as usize;
         let mut count = scalars;
@@ -318,7 +318,7 @@ mod tests {
     fn random_discs_satisfy_the_inclusion() {
         let mut unsolved = 0;
         for seed in 1..2000 {
-            let (rates, arrivals, discs) = problem(seed);
+            let (rates, arrivals, discs) = random_problem(seed);
             let Some((scalars, vectors)) = decide_with_discs(&rates, &arrivals, &discs) else {
                 unsolved += 1;
                 continue;

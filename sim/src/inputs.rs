@@ -16,13 +16,13 @@ pub trait InputFunction: Debug + Send + Sync {
 }
 
 #[derive(Clone, Debug)]
-struct GivenInputs {
+struct FunctionInputs {
     place: usize,
     count: usize,
     function: Arc<dyn InputFunction>,
 }
 
-impl PartialEq for GivenInputs {
+impl PartialEq for FunctionInputs {
     fn eq(&self, other: &Self) -> bool {
         let same_place = (self.place, self.count) == (other.place, other.count);
         same_place && Arc::ptr_eq(&self.function, &other.function)
@@ -48,7 +48,7 @@ pub struct HeldInputs {
     count: usize,
     /// Prescribed motions: index of the input, whose rate and second rate follow it, and its spline.
     prescribed: Vec<(usize, CubicSpline)>,
-    functions: Vec<GivenInputs>,
+    functions: Vec<FunctionInputs>,
     /// Times at which functions jump, ascending, s.
     jump_times: Vec<f64>,
 }
@@ -108,7 +108,7 @@ impl HeldInputs {
         count: usize,
         function: Arc<dyn InputFunction>,
     ) -> Self {
-        self.functions.push(GivenInputs {
+        self.functions.push(FunctionInputs {
             place,
             count,
             function,
@@ -190,13 +190,13 @@ impl HeldInputs {
             return Cow::Borrowed(held);
         }
         let after = if self.is_jump(t) { t.next_up() } else { t };
-        Cow::Owned(self.complete(held.to_vec(), t, after))
+        Cow::Owned(self.add_varying_inputs(held.to_vec(), t, after))
     }
 
     /// Returns the inputs at a time (s), in the order of the model, with `held` as the values of held inputs.
     pub fn evaluate_with_held<'h>(&self, t: f64, held: &'h [f64]) -> Cow<'h, [f64]> {
         match self.is_time_varying() {
-            true => Cow::Owned(self.complete(held.to_vec(), t, t)),
+            true => Cow::Owned(self.add_varying_inputs(held.to_vec(), t, t)),
             false => Cow::Borrowed(held),
         }
     }
@@ -215,7 +215,7 @@ impl HeldInputs {
     /// inputs.
     pub fn evaluate_before(&self, t: f64, held: &[f64]) -> Vec<f64> {
         let before = if self.is_jump(t) { t.next_down() } else { t };
-        self.complete(held.to_vec(), t, before)
+        self.add_varying_inputs(held.to_vec(), t, before)
     }
 
     fn is_jump(&self, t: f64) -> bool {
@@ -224,10 +224,10 @@ impl HeldInputs {
     }
 
     /// Adds prescribed motions at `t` and functions at `function_time`, in s, to held inputs.
-    fn complete(&self, mut inputs: Vec<f64>, t: f64, function_time: f64) -> Vec<f64> {
+    fn add_varying_inputs(&self, mut inputs: Vec<f64>, t: f64, function_time: f64) -> Vec<f64> {
         for given in &self.functions {
-            let places = given.place..given.place + given.count;
-            given.function.write(function_time, &mut inputs[places]);
+            let indices = given.place..given.place + given.count;
+            given.function.write(function_time, &mut inputs[indices]);
         }
         for (place, spline) in &self.prescribed {
             inputs[*place..*place + 3].copy_from_slice(&spline.evaluate(t));
@@ -287,7 +287,7 @@ impl HeldInputs {
 
     /// Returns the index of the last sample at or before a time (s), 0 before the first sample.
     pub fn last_sample_index(&self, t: f64) -> usize {
-        self.times_until(t).saturating_sub(1)
+        self.count_times_until(t).saturating_sub(1)
     }
 
     /// Returns the held inputs of the last sample at or before a time (s), without prescribed motions and
@@ -299,7 +299,7 @@ impl HeldInputs {
 
     /// Returns the number of sample times at or before `t`. The search divides if the times are evenly spaced,
     /// and bisects otherwise.
-    fn times_until(&self, t: f64) -> usize {
+    fn count_times_until(&self, t: f64) -> usize {
         if self.count == 0 {
             return 0;
         }
@@ -326,7 +326,7 @@ impl HeldInputs {
         if self.count == 0 {
             return None;
         }
-        let sample = self.times.get(self.times_until(t)).copied();
+        let sample = self.times.get(self.count_times_until(t)).copied();
         let jump = self.jump_times.iter().copied().find(|time| *time > t);
         match (sample, jump) {
             (Some(sample), Some(jump)) => Some(sample.min(jump)),

@@ -20,7 +20,7 @@ pub const MIN_SINGULAR_VALUE_FRACTION: f64 = 1e-10;
 
 /// Relative increase of the diagonal of the regularised system. It is small compared with [`RATE_ROUNDING`], so
 /// an error above rounding gives a value far beyond its limit.
-const OWN_EFFECT_EXCESS: f64 = 1e-13;
+const DIAGONAL_INCREASE: f64 = 1e-13;
 
 /// Largest error of a row of a solved system, in roundings of its terms.
 const ROW_ROUNDINGS: f64 = 64.0;
@@ -95,17 +95,17 @@ pub fn decide(rates: &Rates, arrivals: &[Arrival]) -> Option<Vec<Verdict>> {
         let wrong = errors.enumerate().filter(|(_, error)| *error > 0.0);
         let next = match change < LARGEST_FIRST_CHANGES * count {
             true => wrong.max_by(|a, b| a.1.total_cmp(&b.1)),
-            false => wrong.min_by_key(|(place, _)| *place),
+            false => wrong.min_by_key(|(index, _)| *index),
         };
-        let Some((place, _)) = next else {
+        let Some((index, _)) = next else {
             if rates.are_held(&sides, &s) {
                 return Some(rates.verdicts(&sides, &s));
             }
             break;
         };
-        sides[place] = match sides[place] {
-            None => Some(s[place].signum()),
-            Some(_) if rates.may_hold(place) => None,
+        sides[index] = match sides[index] {
+            None => Some(s[index].signum()),
+            Some(_) if rates.may_hold(index) => None,
             Some(side) => Some(-side),
         };
     }
@@ -266,7 +266,7 @@ pub fn solve_holding(w: &DMatrix<f64>, b: &DVector<f64>) -> (DVector<f64>, bool)
     if errors.iter().enumerate().all(is_held) {
         return (values, true);
     }
-    match solve_beyond_limits(w, b) {
+    match solve_regularised(w, b) {
         Some(beyond) => (beyond, false),
         None => (values, true),
     }
@@ -274,10 +274,10 @@ pub fn solve_holding(w: &DMatrix<f64>, b: &DVector<f64>) -> (DVector<f64>, bool)
 
 /// Returns a solution of W x = b with a slightly increased diagonal. It is finite even if rows contradict each
 /// other, and then far beyond the limits of forces.
-pub(crate) fn solve_beyond_limits(w: &DMatrix<f64>, b: &DVector<f64>) -> Option<DVector<f64>> {
+pub(crate) fn solve_regularised(w: &DMatrix<f64>, b: &DVector<f64>) -> Option<DVector<f64>> {
     let (mut divided, sizes) = divide_rows(w);
     for own in 0..w.nrows() {
-        divided[(own, own)] *= 1.0 + OWN_EFFECT_EXCESS;
+        divided[(own, own)] *= 1.0 + DIAGONAL_INCREASE;
     }
     divided.lu().solve(&b.component_div(&sizes))
 }

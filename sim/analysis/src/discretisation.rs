@@ -29,16 +29,16 @@ pub enum DiscretisationError {
     #[error("expected a time in s above 0")]
     Period,
     /// The matrices have different sizes, or entries that are not finite.
-    #[error("the matrices have other sizes, or entries that are not finite")]
+    #[error("the sizes of the matrices do not match, or an entry is not finite")]
     Matrices,
     /// Motions that are too fast for the period.
     #[error(
-        "the fastest motion of the model turns or grows over 1e9 times in this period, so no digit would be \
-         right: give a shorter period"
+        "the fastest rate of the model times the period exceeds 1e9, so the result has no correct digit: \
+         use a shorter period"
     )]
     TooLong,
     /// A motion overflows within a period.
-    #[error("the motion exceeds the largest number within one period: give a shorter period")]
+    #[error("the motion overflows double precision within one period: use a shorter period")]
     Overflow,
 }
 

@@ -23,7 +23,7 @@ pub(crate) fn independent_parts(
 ) -> Vec<Part> {
     let count = matrix.nrows() - degrees;
     // A coordinate and its rate belong to the same part.
-    let place = |state: usize| match state < degrees {
+    let index = |state: usize| match state < degrees {
         true => state,
         false => state - degrees,
     };
@@ -31,20 +31,20 @@ pub(crate) fn independent_parts(
     for row in 0..matrix.nrows() {
         for column in 0..matrix.nrows() {
             if matrix[(row, column)] != 0.0 {
-                groups.join(place(row), place(column));
+                groups.join(index(row), index(column));
             }
         }
     }
     let columns_of = |row: usize| (0..held.ncols()).filter(move |at| held[(row, *at)] != 0.0);
     for row in 0..held.nrows() {
         if let Some(first) = columns_of(row).next() {
-            columns_of(row).for_each(|column| groups.join(place(first), place(column)));
+            columns_of(row).for_each(|column| groups.join(index(first), index(column)));
         }
     }
     let mut rows_of = vec![Vec::new(); count];
     for row in 0..held.nrows() {
         if let Some(first) = columns_of(row).next() {
-            rows_of[groups.root(place(first))].push(row);
+            rows_of[groups.root(index(first))].push(row);
         }
     }
     let mut parts = Vec::new();
@@ -64,13 +64,13 @@ fn part(
     places: Vec<usize>,
     rows: &[usize],
 ) -> Part {
-    let of_coordinates = places.partition_point(|place| *place < degrees);
+    let of_coordinates = places.partition_point(|index| *index < degrees);
     let (coordinates, first_order) = places.split_at(of_coordinates);
     let rates = coordinates.iter().chain(first_order);
     let states: Vec<usize> = coordinates
         .iter()
         .copied()
-        .chain(rates.map(|place| place + degrees))
+        .chain(rates.map(|index| index + degrees))
         .collect();
     Part {
         matrix: DMatrix::from_fn(states.len(), states.len(), |row, column| {
@@ -97,8 +97,8 @@ impl DisjointSets {
         }
     }
 
-    fn root(&mut self, place: usize) -> usize {
-        let mut root = place;
+    fn root(&mut self, index: usize) -> usize {
+        let mut root = index;
         while self.parent[root] != root {
             self.parent[root] = self.parent[self.parent[root]];
             root = self.parent[root];
@@ -114,8 +114,8 @@ impl DisjointSets {
     /// Returns the indices of each set, at the index of its root.
     fn members(&mut self) -> Vec<Vec<usize>> {
         let mut members = vec![Vec::new(); self.parent.len()];
-        for place in 0..self.parent.len() {
-            members[self.root(place)].push(place);
+        for index in 0..self.parent.len() {
+            members[self.root(index)].push(index);
         }
         members
     }
@@ -128,8 +128,8 @@ mod tests {
     /// Returns A of undamped masses with springs between the given pairs.
     fn masses(count: usize, springs: &[(usize, usize)]) -> DMatrix<f64> {
         let mut matrix = DMatrix::zeros(2 * count, 2 * count);
-        for place in 0..count {
-            matrix[(place, count + place)] = 1.0;
+        for index in 0..count {
+            matrix[(index, count + index)] = 1.0;
         }
         for &(a, b) in springs {
             for (row, column) in [(a, b), (b, a)] {

@@ -107,10 +107,10 @@ impl Elimination {
     /// Returns the matrix from the independent states to all states.
     fn solve_for(&self, independent: &[usize]) -> DMatrix<f64> {
         let mut basis = DMatrix::zeros(self.matrix.ncols(), independent.len());
-        for (place, state) in independent.iter().enumerate() {
-            basis[(*state, place)] = 1.0;
+        for (index, state) in independent.iter().enumerate() {
+            basis[(*state, index)] = 1.0;
             for (row, column) in &self.pivots {
-                basis[(*column, place)] = -self.matrix[(*row, *state)];
+                basis[(*column, index)] = -self.matrix[(*row, *state)];
             }
         }
         basis

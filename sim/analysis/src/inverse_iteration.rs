@@ -64,19 +64,19 @@ impl Factors {
         let count = matrix.len();
         let mut rows = vec![vec![Complex::from(0.0); count]; count];
         let (mut below, mut right) = (0, 0);
-        for (place, row) in matrix.iter().enumerate() {
+        for (index, row) in matrix.iter().enumerate() {
             for &(column, entry) in row {
-                rows[place][column] = entry;
-                below = below.max(place.saturating_sub(column));
-                right = right.max(column.saturating_sub(place));
+                rows[index][column] = entry;
+                below = below.max(index.saturating_sub(column));
+                right = right.max(column.saturating_sub(index));
             }
         }
         // Row exchanges widen the upper band.
         let right = right + below;
-        let steps = (0..count).map(|place| {
-            let last_row = count.min(place + below + 1);
-            let last_column = count.min(place + right + 1);
-            eliminate(&mut rows[..last_row], place, last_column)
+        let steps = (0..count).map(|index| {
+            let last_row = count.min(index + below + 1);
+            let last_column = count.min(index + right + 1);
+            eliminate(&mut rows[..last_row], index, last_column)
         });
         Self {
             steps: steps.collect(),
@@ -86,40 +86,40 @@ impl Factors {
     /// Solves matrix x = right; not finite if the matrix is singular.
     fn solve(&self, right: &DVector<Complex<f64>>) -> DVector<Complex<f64>> {
         let mut solution = right.clone();
-        for (place, step) in self.steps.iter().enumerate() {
-            solution.swap_rows(place, step.pivot_row);
-            let own = solution[place];
+        for (index, step) in self.steps.iter().enumerate() {
+            solution.swap_rows(index, step.pivot_row);
+            let own = solution[index];
             for (row, factor) in &step.below {
                 solution[*row] -= factor * own;
             }
         }
-        for (place, step) in self.steps.iter().enumerate().rev() {
+        for (index, step) in self.steps.iter().enumerate().rev() {
             let later = step.right.iter();
             let known: Complex<f64> = later.map(|(column, entry)| entry * solution[*column]).sum();
-            solution[place] = (solution[place] - known) / step.pivot_value;
+            solution[index] = (solution[index] - known) / step.pivot_value;
         }
         solution
     }
 }
 
 /// Eliminates a column from the rows below, whose entries end at `last_column`.
-fn eliminate(rows: &mut [Vec<Complex<f64>>], place: usize, last_column: usize) -> Step {
+fn eliminate(rows: &mut [Vec<Complex<f64>>], index: usize, last_column: usize) -> Step {
     let zero = Complex::from(0.0);
-    let sizes = rows[place..].iter().map(|row| row[place].norm());
+    let sizes = rows[index..].iter().map(|row| row[index].norm());
     let largest = sizes.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-    let pivot = largest.map_or(place, |(row, _)| place + row);
-    rows.swap(place, pivot);
-    let (above, rest) = rows.split_at_mut(place + 1);
-    let pivot_row = &above[place];
-    let own = pivot_row[place];
-    let later = (place + 1..last_column).map(|column| (column, pivot_row[column]));
+    let pivot = largest.map_or(index, |(row, _)| index + row);
+    rows.swap(index, pivot);
+    let (above, rest) = rows.split_at_mut(index + 1);
+    let pivot_row = &above[index];
+    let own = pivot_row[index];
+    let later = (index + 1..last_column).map(|column| (column, pivot_row[column]));
     let right: Vec<(usize, Complex<f64>)> = later.filter(|entry| entry.1 != zero).collect();
     let mut below = Vec::new();
-    for (row, entries) in (place + 1..).zip(rest) {
-        if own == zero || entries[place] == zero {
+    for (row, entries) in (index + 1..).zip(rest) {
+        if own == zero || entries[index] == zero {
             continue;
         }
-        let factor = entries[place] / own;
+        let factor = entries[index] / own;
         below.push((row, factor));
         for (column, entry) in &right {
             entries[*column] -= factor * entry;

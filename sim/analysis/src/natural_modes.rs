@@ -107,8 +107,8 @@ pub(crate) fn collect_modes(
     for part in &parts {
         for mode in modes(part)? {
             let mut shape = vec![Complex::from(0.0); count];
-            for (place, amplitude) in part.indices.iter().zip(mode.shape) {
-                shape[*place] = amplitude;
+            for (index, amplitude) in part.indices.iter().zip(mode.shape) {
+                shape[*index] = amplitude;
             }
             all.push(NaturalMode { shape, ..mode });
         }
@@ -195,18 +195,18 @@ mod tests {
         let degrees = MAX_CONNECTED_STATES / 2 + 1;
         let states = 2 * degrees;
         let mut rows = vec![0.0; states * states];
-        for place in 0..degrees {
-            rows[place * states + degrees + place] = 1.0;
-            rows[(degrees + place) * states + place] = -2.0;
+        for index in 0..degrees {
+            rows[index * states + degrees + index] = 1.0;
+            rows[(degrees + index) * states + index] = -2.0;
         }
         // Without springs between them, each mass is a separate part.
         assert_eq!(
             natural_modes(&rows, degrees).map(|modes| modes.len()),
             Ok(degrees)
         );
-        for place in 1..degrees {
-            rows[(degrees + place) * states + place - 1] = 1.0;
-            rows[(degrees + place - 1) * states + place] = 1.0;
+        for index in 1..degrees {
+            rows[(degrees + index) * states + index - 1] = 1.0;
+            rows[(degrees + index - 1) * states + index] = 1.0;
         }
         let limit = MAX_CONNECTED_STATES;
         assert_eq!(
@@ -219,21 +219,21 @@ mod tests {
     fn connected_part_at_the_limit_is_solved() -> Result<(), AnalysisError> {
         let degrees = MAX_CONNECTED_STATES / 2;
         let states = 2 * degrees;
-        let stiffness = |place: usize| (1.0 + place as f64 / 100.0).powi(2);
+        let stiffness = |index: usize| (1.0 + index as f64 / 100.0).powi(2);
         let mut rows = vec![0.0; states * states];
-        for place in 0..degrees {
-            rows[place * states + degrees + place] = 1.0;
-            rows[(degrees + place) * states + place] = -stiffness(place);
-            if place > 0 {
+        for index in 0..degrees {
+            rows[index * states + degrees + index] = 1.0;
+            rows[(degrees + index) * states + index] = -stiffness(index);
+            if index > 0 {
                 // Each mass drives only the next one: the eigenvalues are those of single masses.
-                rows[(degrees + place) * states + place - 1] = 0.01;
+                rows[(degrees + index) * states + index - 1] = 0.01;
             }
         }
         let modes = natural_modes(&rows, degrees)?;
         assert_eq!(modes.len(), degrees);
-        for (place, mode) in modes.iter().enumerate() {
-            let right = stiffness(place).sqrt() / std::f64::consts::TAU;
-            assert!(close(mode.frequency(), right), "{place}: {mode:?}");
+        for (index, mode) in modes.iter().enumerate() {
+            let right = stiffness(index).sqrt() / std::f64::consts::TAU;
+            assert!(close(mode.frequency(), right), "{index}: {mode:?}");
         }
         Ok(())
     }

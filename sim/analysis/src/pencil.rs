@@ -36,11 +36,11 @@ impl Pencil {
         let (balanced, sizes) = (&balanced.matrix, &balanced.sizes);
         let count = balanced.nrows() - degrees;
         // Index in the state of a coordinate or first-order state.
-        let held = |place: usize| {
-            if place < degrees {
-                place
+        let held = |index: usize| {
+            if index < degrees {
+                index
             } else {
-                place + degrees
+                index + degrees
             }
         };
         let stiffness = DMatrix::from_fn(count, count, |row, column| {
@@ -64,11 +64,11 @@ impl Pencil {
             columns,
             stiffness,
             damping,
-            ratio: DVector::from_fn(count, |place, _| match place < degrees {
-                true => balanced[(place, degrees + place)],
+            ratio: DVector::from_fn(count, |index, _| match index < degrees {
+                true => balanced[(index, degrees + index)],
                 false => 1.0,
             }),
-            sizes: DVector::from_fn(count, |place, _| sizes[held(place)]),
+            sizes: DVector::from_fn(count, |index, _| sizes[held(index)]),
             degrees,
         }
     }

@@ -70,7 +70,7 @@ fn converge_schur<T: ComplexField<RealField = f64>>(
         });
     }
     (1..=MAX_REFLECTIONS).find_map(|basis| {
-        let normal = DVector::from_fn(size, |place, _| T::from_real(1.0 / (place + basis) as f64));
+        let normal = DVector::from_fn(size, |index, _| T::from_real(1.0 / (index + basis) as f64));
         let factor = T::from_real(2.0 / normal.norm_squared());
         let reflection = DMatrix::identity(size, size) - &normal * normal.transpose() * factor;
         let schur = iterate(&reflection * matrix * &reflection)?;
@@ -89,8 +89,8 @@ mod tests {
     /// Returns x' = v, v' = K x of two masses on a spring and a free mass.
     fn circling() -> DMatrix<f64> {
         let mut matrix = DMatrix::zeros(6, 6);
-        for place in 0..3 {
-            matrix[(place, place + 3)] = 1.0;
+        for index in 0..3 {
+            matrix[(index, index + 3)] = 1.0;
         }
         let k = 251.31233257696744;
         for (row, column, entry) in [(3, 0, -k), (3, 2, k), (5, 0, k), (5, 2, -k)] {

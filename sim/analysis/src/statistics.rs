@@ -45,11 +45,11 @@ impl Summary {
     /// Returns the quantile for the probability `part`, by linear interpolation between the sorted values: the
     /// seventh definition of R. J. Hyndman and Y. Fan, The American Statistician 50 (1996) 361-365.
     pub fn quantile(&self, part: f64) -> f64 {
-        let place = part.clamp(0.0, 1.0) * (self.sorted.len() - 1) as f64;
-        let (below, above) = (place.floor(), place.ceil());
-        let at = |place: f64| self.sorted.get(place as usize).copied().unwrap_or(f64::NAN);
+        let index = part.clamp(0.0, 1.0) * (self.sorted.len() - 1) as f64;
+        let (below, above) = (index.floor(), index.ceil());
+        let at = |index: f64| self.sorted.get(index as usize).copied().unwrap_or(f64::NAN);
         let (low, high) = (at(below), at(above));
-        low + (place - below) * (high - low)
+        low + (index - below) * (high - low)
     }
 }
 
@@ -80,8 +80,8 @@ fn ranks(values: &[f64]) -> Vec<f64> {
     let mut first = 0;
     for group in order.chunk_by(|a, b| values[*a] == values[*b]) {
         let rank = first as f64 + (group.len() as f64 + 1.0) / 2.0;
-        for place in group {
-            ranks[*place] = rank;
+        for index in group {
+            ranks[*index] = rank;
         }
         first += group.len();
     }

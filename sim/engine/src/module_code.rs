@@ -54,18 +54,18 @@ pub struct ModuleCode<F> {
 impl<F: ModuleFunctions> ModuleCode<F> {
     /// Combines a program with the functions of its module.
     pub fn new(program: &Program, functions: F) -> Self {
-        let places = Places::new(program);
+        let indices = Places::new(program);
         // A parameter without effect on any value has no index in memory; the number in the specification is
         // used.
         let mut parameters = vec![usize::MAX; program.parameters.len()];
         for id in program.ids() {
-            if let Op::Parameter(place) = program.value(id).op {
-                parameters[place] = places.offset(id);
+            if let Op::Parameter(index) = program.value(id).op {
+                parameters[index] = indices.offset(id);
             }
         }
         let observables = program.observable_values.iter();
         let guards = program.guards.iter().flat_map(|guard| {
-            let first = places.offset(guard.value);
+            let first = indices.offset(guard.value);
             first..first + program.value(guard.value).extent.length()
         });
         let guards: Vec<usize> = guards.collect();
@@ -77,7 +77,7 @@ impl<F: ModuleFunctions> ModuleCode<F> {
             functions,
             stages,
             parameters,
-            observables: observables.map(|id| places.offset(*id)).collect(),
+            observables: observables.map(|id| indices.offset(*id)).collect(),
             guards,
         }
     }
@@ -87,11 +87,11 @@ impl<F: ModuleFunctions> ModuleCode<F> {
         self.functions.write(Array::Inputs, point.inputs);
     }
 
-    fn read_into(&self, array: Array, places: &[usize], memory: &mut [f64]) {
-        let mut numbers = vec![0.0; places.len()];
+    fn read_into(&self, array: Array, indices: &[usize], memory: &mut [f64]) {
+        let mut numbers = vec![0.0; indices.len()];
         self.functions.read(array, &mut numbers);
-        for (place, number) in places.iter().zip(numbers) {
-            memory[*place] = number;
+        for (index, number) in indices.iter().zip(numbers) {
+            memory[*index] = number;
         }
     }
 }
@@ -108,8 +108,8 @@ impl<F: ModuleFunctions> MachineCode for ModuleCode<F> {
     fn prepare(&self, memory: &mut [f64]) {
         let mut parameters = vec![0.0; self.parameters.len()];
         self.functions.read(Array::Parameters, &mut parameters);
-        for (slot, place) in parameters.iter_mut().zip(&self.parameters) {
-            *slot = memory.get(*place).copied().unwrap_or(*slot);
+        for (slot, index) in parameters.iter_mut().zip(&self.parameters) {
+            *slot = memory.get(*index).copied().unwrap_or(*slot);
         }
         self.functions.write(Array::Parameters, &parameters);
         self.functions.prepare();

@@ -107,9 +107,9 @@ impl PageMotion {
         let before = self.motion.inputs().evaluate(t).into_owned();
         let inputs = inputs(&self.driving_signals(), (t, &before));
         // The start has the values before the first output of a controller.
-        for (place, value) in inputs.evaluate(t).iter().enumerate() {
-            if !self.motion.drives(place) {
-                self.inputs[place] = *value;
+        for (index, value) in inputs.evaluate(t).iter().enumerate() {
+            if !self.motion.drives(index) {
+                self.inputs[index] = *value;
             }
         }
         self.follow(|motion| motion.set_inputs(inputs))

@@ -48,7 +48,7 @@ impl Signal {
             _ => (Form::Constant, 0.0),
         };
         Self {
-            places: places.map(|place| (place >= 0.0).then_some(place as usize)),
+            places: places.map(|index| (index >= 0.0).then_some(index as usize)),
             form,
             value,
             change,
@@ -112,22 +112,22 @@ impl InputFunction for SignalInput {
 pub(crate) fn inputs(signals: &[Signal], (t, before): (f64, &[f64])) -> HeldInputs {
     let mut after = before.to_vec();
     for signal in signals {
-        for (place, number) in signal.places.iter().zip(signal.at(t)) {
-            if let Some(place) = place {
-                after[*place] = number;
+        for (index, number) in signal.places.iter().zip(signal.at(t)) {
+            if let Some(index) = index {
+                after[*index] = number;
             }
         }
     }
     let mut inputs = HeldInputs::constant(after.clone()).with_held_step(t, before, &after);
     let varying = signals.iter().filter(|known| known.form != Form::Constant);
     for signal in varying.clone() {
-        for (order, place) in signal.places.iter().enumerate() {
-            if let Some(place) = place {
+        for (order, index) in signal.places.iter().enumerate() {
+            if let Some(index) = index {
                 let input = SignalInput {
                     signal: *signal,
                     order,
                 };
-                inputs = inputs.with_function(*place, 1, Arc::new(input));
+                inputs = inputs.with_function(*index, 1, Arc::new(input));
             }
         }
     }

@@ -81,10 +81,10 @@ fn introduction(report: &Report, has_modes: bool) -> Markup {
 
 fn comma_list<T>(items: &[T], set: impl Fn(&T) -> Markup) -> Markup {
     html! {
-        @for (place, item) in items.iter().enumerate() {
-            @if place > 0 { " " }
+        @for (index, item) in items.iter().enumerate() {
+            @if index > 0 { " " }
             // No line breaks before a comma.
-            span.word { (set(item)) @if place + 1 < items.len() { "," } }
+            span.word { (set(item)) @if index + 1 < items.len() { "," } }
         }
     }
 }
@@ -126,14 +126,14 @@ fn energies(report: &Report) -> Markup {
 
 fn mass_matrix(entries: &[MassMatrixEntry]) -> Markup {
     let rows = html! {
-        @for entry in entries { (equation_row(&entry_of(entry), &entry.formula)) }
+        @for entry in entries { (equation_row(&entry_symbol(entry), &entry.formula)) }
     };
     let heading = html! { "Mass matrix " b { "M" } ": symmetric, its nonzero entries" };
     section_under_heading(&heading, &rows)
 }
 
 /// Returns the name of an entry of the mass matrix. The column of a block of modes has a separate index.
-fn entry_of(entry: &MassMatrixEntry) -> Markup {
+fn entry_symbol(entry: &MassMatrixEntry) -> Markup {
     let column = match &entry.row {
         Formula::Symbol(row) if !row.indices.is_empty() => entry.column.clone().split_by_columns(),
         _ => entry.column.clone(),

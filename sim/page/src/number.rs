@@ -43,7 +43,7 @@ pub(crate) fn rounded(value: f64, digits: usize, notation: Notation) -> (String,
 }
 
 /// Returns a digit as a superscript; other characters are unchanged.
-pub(crate) fn raised_digit(letter: char) -> char {
+pub(crate) fn to_superscript(letter: char) -> char {
     let digit = letter.to_digit(10);
     let raised = digit.and_then(|digit| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(digit as usize));
     raised.unwrap_or(letter)

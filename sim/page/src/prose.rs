@@ -5,7 +5,7 @@ use eomgen_codegen::symbolic::formula::letter;
 use maud::{Markup, html};
 
 use crate::formula::quantity_symbol;
-use crate::number::raised_digit;
+use crate::number::to_superscript;
 
 const NO_BREAK_SPACE: &str = "\u{a0}";
 
@@ -20,8 +20,8 @@ const PREFIXES: [char; 9] = ['p', 'n', 'µ', 'u', 'm', 'c', 'k', 'M', 'G'];
 /// `theta`, become symbols. Lines do not break between a number and its unit.
 pub fn prose(text: &str) -> Markup {
     html! {
-        @for (place, part) in text.split('`').enumerate() {
-            @if place % 2 == 1 { code { (part) } } @else { (words(part)) }
+        @for (index, part) in text.split('`').enumerate() {
+            @if index % 2 == 1 { code { (part) } } @else { (words(part)) }
         }
     }
 }
@@ -29,32 +29,32 @@ pub fn prose(text: &str) -> Markup {
 /// Returns text with symbols for its names.
 fn words(text: &str) -> Markup {
     let pieces = split_words(text);
-    let before = |place: usize, distance: usize| {
-        let place = place.checked_sub(distance);
-        place.map_or("", |place| pieces[place])
+    let before = |index: usize, distance: usize| {
+        let index = index.checked_sub(distance);
+        index.map_or("", |index| pieces[index])
     };
     let is_power =
-        |place: usize| before(place, 1) == "^" && pieces[place].chars().all(|c| c.is_ascii_digit());
-    let is_named = |place: usize| {
-        is_symbol(pieces[place]) || is_site(pieces[place], before(place, 1), before(place, 2))
+        |index: usize| before(index, 1) == "^" && pieces[index].chars().all(|c| c.is_ascii_digit());
+    let is_named = |index: usize| {
+        is_symbol(pieces[index]) || is_site(pieces[index], before(index, 1), before(index, 2))
     };
     html! {
-        @for (place, piece) in pieces.iter().enumerate() {
+        @for (index, piece) in pieces.iter().enumerate() {
             @match *piece {
-                " " if is_unit_after(before(place, 1), pieces.get(place + 1)) => (NO_BREAK_SPACE),
-                "^" if place + 1 < pieces.len() && is_power(place + 1) => {},
-                digits if is_power(place) => (digits.chars().map(raised_digit).collect::<String>()),
+                " " if is_unit_after(before(index, 1), pieces.get(index + 1)) => (NO_BREAK_SPACE),
+                "^" if index + 1 < pieces.len() && is_power(index + 1) => {},
+                digits if is_power(index) => (digits.chars().map(to_superscript).collect::<String>()),
                 "pi" => i { "π" },
-                name if is_named(place) => {
+                name if is_named(index) => {
                     // No line break before a punctuation mark.
-                    @match pieces.get(place + 1).and_then(|next| leading_mark(next)) {
+                    @match pieces.get(index + 1).and_then(|next| leading_mark(next)) {
                         Some(mark) => span.word { (quantity_symbol(name)) (mark) },
                         None => (quantity_symbol(name)),
                     }
                 },
                 name if name.contains('_') => code { (name) },
                 plain => {
-                    @let mark = match place > 0 && is_named(place - 1) {
+                    @let mark = match index > 0 && is_named(index - 1) {
                         true => leading_mark(plain).map_or(0, str::len),
                         false => 0,
                     };
@@ -99,7 +99,7 @@ fn is_symbol(name: &str) -> bool {
 /// Letters after "in" and "of" that can be words or units.
 const WORDS_AND_UNITS: [&str; 5] = ["a", "g", "h", "m", "s"];
 
-/// Returns true for a letter after a preposition, which is a coordinate.
+/// Returns true for a single letter after a preposition, which then names a coordinate.
 fn is_site(name: &str, space: &str, preposition: &str) -> bool {
     let is_letter = name.len() == 1 && name.chars().all(|c| c.is_ascii_lowercase());
     let is_quantity = match preposition {

@@ -125,7 +125,7 @@ fn markup_in_names_is_escaped() {
 }
 
 /// Returns the formula of a line of the planetary arm with its name as plain text.
-fn typeset<'a>(lines: &'a [eomgen_codegen::report::Line], name: &str) -> &'a Formula {
+fn find_formula<'a>(lines: &'a [eomgen_codegen::report::Line], name: &str) -> &'a Formula {
     let mut lines = lines.iter();
     &lines
         .find(|line| line.name.to_string() == name)
@@ -152,7 +152,7 @@ fn entry_of_mass_matrix_has_one_spelling() {
 #[test]
 fn numbers_and_integrals_are_at_their_places() {
     let report = report(models::PLANETARY_ARM.text);
-    let carrier = formula(typeset(&report.terms, "T_carrier")).into_string();
+    let carrier = formula(find_formula(&report.terms, "T_carrier")).into_string();
     // 1/2 is part of the fraction, and the exponent follows the name of the cosine.
     assert!(carrier.starts_with("<math><mfrac><mrow>"), "{carrier}");
     assert!(carrier.contains("<mrow><mn>2</mn>"), "{carrier}");
@@ -160,7 +160,7 @@ fn numbers_and_integrals_are_at_their_places() {
         carrier.contains("<msup><mi>cos</mi><mrow><mn>2</mn></mrow></msup>"),
         "{carrier}"
     );
-    let bending = formula(typeset(&report.terms, "V_bending")).into_string();
+    let bending = formula(find_formula(&report.terms, "V_bending")).into_string();
     assert_eq!(bending.matches("<mi>φ</mi>").count(), 1, "{bending}");
     for line in &report.coefficients {
         let text = formula(&line.formula).into_string();

@@ -16,7 +16,7 @@ pub(super) struct Range {
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tick {
-    pub place: f64,
+    pub position: f64,
     pub label: String,
 }
 
@@ -30,7 +30,7 @@ pub(super) struct Axis {
 
 impl Scale {
     /// Returns the coordinate along the axis: the value or its logarithm; NaN if there is no logarithm.
-    pub fn place(self, value: f64) -> f64 {
+    pub fn to_position(self, value: f64) -> f64 {
         match self {
             Self::Linear => value,
             Self::Logarithmic if value > 0.0 => value.log10(),
@@ -41,19 +41,20 @@ impl Scale {
 
 impl Range {
     /// Returns the range of the finite coordinates; `None` if there are none.
-    pub fn from_places(places: impl Iterator<Item = f64>) -> Option<Self> {
-        places
-            .filter(|place| place.is_finite())
-            .fold(None, |range: Option<Self>, place| {
+    pub fn from_positions(positions: impl Iterator<Item = f64>) -> Option<Self> {
+        positions.filter(|position| position.is_finite()).fold(
+            None,
+            |range: Option<Self>, position| {
                 let Self { low, high } = range.unwrap_or(Self {
-                    low: place,
-                    high: place,
+                    low: position,
+                    high: position,
                 });
                 Some(Self {
-                    low: low.min(place),
-                    high: high.max(place),
+                    low: low.min(position),
+                    high: high.max(position),
                 })
-            })
+            },
+        )
     }
 
     /// Widens a range that is a point, so that rounding noise of a constant is not magnified.
@@ -97,9 +98,9 @@ impl Range {
 }
 
 impl Axis {
-    pub fn pixel(&self, place: f64) -> f64 {
+    pub fn pixel(&self, position: f64) -> f64 {
         let (start, end) = self.pixels;
-        let share = (place - self.range.low) / (self.range.high - self.range.low);
+        let share = (position - self.range.low) / (self.range.high - self.range.low);
         start + share * (end - start)
     }
 }
@@ -116,9 +117,9 @@ fn linear_ticks(range: Range, count: usize) -> Vec<Tick> {
     let step = round_step((range.high - range.low) / count.max(1) as f64);
     let decimals = (-(step.log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize;
     step_multiples(range, step)
-        .map(|place| Tick {
-            place,
-            label: with_minus_sign(&format!("{place:.decimals$}")),
+        .map(|position| Tick {
+            position,
+            label: with_minus_sign(&format!("{position:.decimals$}")),
         })
         .collect()
 }
@@ -151,9 +152,9 @@ fn decade_ticks(range: Range, count: usize) -> Vec<Tick> {
     }
     let stride = (decades / count.max(1) as f64).ceil().max(1.0);
     step_multiples(range, stride)
-        .map(|place| Tick {
-            place,
-            label: format!("10{}", format_superscript(place as i32)),
+        .map(|position| Tick {
+            position,
+            label: format!("10{}", format_superscript(position as i32)),
         })
         .collect()
 }
@@ -163,10 +164,10 @@ fn fine_ticks(range: Range) -> Vec<Tick> {
     decades
         .flat_map(|decade| [1, 2, 5].map(|mantissa| (mantissa, decade)))
         .map(|(mantissa, decade)| Tick {
-            place: f64::from(mantissa).log10() + f64::from(decade),
+            position: f64::from(mantissa).log10() + f64::from(decade),
             label: fine_label(mantissa, decade),
         })
-        .filter(|tick| (range.low..=range.high).contains(&tick.place))
+        .filter(|tick| (range.low..=range.high).contains(&tick.position))
         .collect()
 }
 
@@ -255,9 +256,12 @@ mod tests {
 
     #[test]
     fn value_without_logarithm_has_no_place() {
-        assert!(Scale::Logarithmic.place(0.0).is_nan() && Scale::Logarithmic.place(-1.0).is_nan());
+        assert!(
+            Scale::Logarithmic.to_position(0.0).is_nan()
+                && Scale::Logarithmic.to_position(-1.0).is_nan()
+        );
         assert_eq!(
-            Range::from_places([f64::NAN, f64::INFINITY].into_iter()),
+            Range::from_positions([f64::NAN, f64::INFINITY].into_iter()),
             None
         );
     }

@@ -4,7 +4,7 @@ use super::PlotError;
 use super::axis::{Axis, Range, Scale, Tick, ticks};
 use super::canvas::{Anchor, Canvas, FRAME_STROKE, GRID_STROKE, Stroke, Text};
 use super::figure::Reference;
-use super::layout::{LABEL_SIZE, TICK_SIZE, TITLE_SIZE};
+use super::layout::{LABEL_SIZE_PX, TICK_SIZE_PX, TITLE_SIZE_PX};
 use super::lettering::text_width;
 
 /// Histogram of numbers that start at 0.
@@ -34,12 +34,12 @@ pub struct Shares {
     pub rows: Vec<(String, Vec<f64>)>,
 }
 
-const WIDTH: f64 = 720.0;
-const HEIGHT: f64 = 330.0;
+const WIDTH_PX: f64 = 720.0;
+const HEIGHT_PX: f64 = 330.0;
 /// Margins to the left and right, and above and below the frame, in px.
-const MARGINS: ((f64, f64), (f64, f64)) = ((78.0, 24.0), (54.0, 62.0));
+const MARGINS_PX: ((f64, f64), (f64, f64)) = ((78.0, 24.0), (54.0, 62.0));
 /// Height of a row of shares and of its bar, in px.
-const ROW_HEIGHTS: (f64, f64) = (20.0, 14.0);
+const ROW_HEIGHTS_PX: (f64, f64) = (20.0, 14.0);
 pub(super) const COLUMN_COLOUR: &str = "#56a0d3";
 /// Two strong colours for the most important parts, grey and a pale one; all differ in lightness.
 const PART_COLOURS: [&str; 4] = ["#0b4f86", "#56a0d3", "#c4c4c4", "#f2cfae"];
@@ -56,15 +56,15 @@ pub fn histogram(of: &Histogram<'_>) -> Result<String, PlotError> {
     if most == 0 {
         return Err(empty_error(&of.vertical_label));
     }
-    let ((left, right), (above, below)) = MARGINS;
+    let ((left, right), (above, below)) = MARGINS_PX;
     let linear = |low, high, pixels| Axis {
         scale: Scale::Linear,
         range: Range { low, high },
         pixels,
     };
     let last = of.counts.len() as f64 - 0.5;
-    let along = linear(-0.5, last, (left, WIDTH - right));
-    let up = linear(0.0, 1.08 * most as f64, (HEIGHT - below, above));
+    let along = linear(-0.5, last, (left, WIDTH_PX - right));
+    let up = linear(0.0, 1.08 * most as f64, (HEIGHT_PX - below, above));
     let mut canvas = Canvas::default();
     for tick in ticks(up.scale, up.range, 6) {
         draw_level(&mut canvas, &tick, &up, along.pixels);
@@ -76,7 +76,7 @@ pub fn histogram(of: &Histogram<'_>) -> Result<String, PlotError> {
         canvas.rectangle((from, top), (to - from, up.pixels.0 - top), COLUMN_COLOUR);
     }
     for tick in ticks(along.scale, along.range, 12) {
-        let at = (along.pixel(tick.place), up.pixels.0 + 19.0);
+        let at = (along.pixel(tick.position), up.pixels.0 + 19.0);
         write_text(&mut canvas, &tick.label, at, Anchor::Middle);
     }
     draw_marks(&mut canvas, &of.marks, &along, &up);
@@ -91,7 +91,7 @@ pub fn histogram(of: &Histogram<'_>) -> Result<String, PlotError> {
     let middle = (up.pixels.0 + up.pixels.1) / 2.0;
     draw_label(&mut canvas, &of.vertical_label, (19.0, middle), -90.0);
     draw_title(&mut canvas, &of.title, (left, 22.0));
-    Ok(canvas.document(&of.title, WIDTH, HEIGHT))
+    Ok(canvas.document(&of.title, WIDTH_PX, HEIGHT_PX))
 }
 
 /// Draws shares as an SVG document with a width of 720 px.
@@ -100,12 +100,15 @@ pub fn histogram(of: &Histogram<'_>) -> Result<String, PlotError> {
 ///
 /// [`PlotError`] without rows.
 pub fn shares(of: &Shares) -> Result<String, PlotError> {
-    let names = of.rows.iter().map(|(name, _)| text_width(name, TICK_SIZE));
+    let names = of
+        .rows
+        .iter()
+        .map(|(name, _)| text_width(name, TICK_SIZE_PX));
     let widest = names.fold(0.0, f64::max);
     if of.rows.is_empty() {
         return Err(empty_error(&of.title));
     }
-    let (top, (row, bar)) = (62.0, ROW_HEIGHTS);
+    let (top, (row, bar)) = (62.0, ROW_HEIGHTS_PX);
     let bottom = top + row * of.rows.len() as f64 + 6.0;
     let along = Axis {
         scale: Scale::Linear,
@@ -113,17 +116,17 @@ pub fn shares(of: &Shares) -> Result<String, PlotError> {
             low: 0.0,
             high: 100.0,
         },
-        pixels: (widest + 20.0, WIDTH - 64.0),
+        pixels: (widest + 20.0, WIDTH_PX - 64.0),
     };
     let mut canvas = Canvas::default();
     for tick in ticks(along.scale, along.range, 6) {
-        let x = along.pixel(tick.place);
+        let x = along.pixel(tick.position);
         canvas.segments(&[((x, bottom), (x, top))], GRID_STROKE);
         write_text(&mut canvas, &tick.label, (x, bottom + 19.0), Anchor::Middle);
     }
-    for (place, (name, parts)) in of.rows.iter().enumerate() {
-        let y = top + 6.0 + row * place as f64;
-        let base = y + 0.5 * bar + 0.36 * TICK_SIZE;
+    for (index, (name, parts)) in of.rows.iter().enumerate() {
+        let y = top + 6.0 + row * index as f64;
+        let base = y + 0.5 * bar + 0.36 * TICK_SIZE_PX;
         write_text(&mut canvas, name, (along.pixels.0 - 8.0, base), Anchor::End);
         let mut from = 0.0;
         for (part, colour) in parts.iter().zip(PART_COLOURS) {
@@ -134,7 +137,7 @@ pub fn shares(of: &Shares) -> Result<String, PlotError> {
         }
         let together = 100.0 * parts.iter().take(2).sum::<f64>();
         let text = format!("{together:.0} %");
-        let at = (WIDTH - 12.0, base);
+        let at = (WIDTH_PX - 12.0, base);
         write_text(&mut canvas, &text, at, Anchor::End);
     }
     draw_outline(&mut canvas, along.pixels, (bottom, top));
@@ -142,13 +145,13 @@ pub fn shares(of: &Shares) -> Result<String, PlotError> {
     draw_label(&mut canvas, "share [%]", (middle, bottom + 42.0), 0.0);
     draw_title(&mut canvas, &of.title, (16.0, 22.0));
     draw_legend(&mut canvas, &of.parts, (along.pixels.0, 48.0));
-    Ok(canvas.document(&of.title, WIDTH, bottom + 56.0))
+    Ok(canvas.document(&of.title, WIDTH_PX, bottom + 56.0))
 }
 
 pub(super) fn draw_level(canvas: &mut Canvas, tick: &Tick, up: &Axis, (left, right): (f64, f64)) {
-    let y = up.pixel(tick.place);
+    let y = up.pixel(tick.position);
     canvas.segments(&[((left, y), (right, y))], GRID_STROKE);
-    let at = (left - 7.0, y + 0.35 * TICK_SIZE);
+    let at = (left - 7.0, y + 0.35 * TICK_SIZE_PX);
     write_text(canvas, &tick.label, at, Anchor::End);
 }
 
@@ -158,7 +161,7 @@ pub(super) fn draw_marks(canvas: &mut Canvas, marks: &[Reference], along: &Axis,
     for mark in marks {
         let x = along.pixel(mark.value);
         canvas.segments(&[((x, up.pixels.0), (x, up.pixels.1))], MARK_STROKE);
-        let long = text_width(&mark.label, TICK_SIZE);
+        let long = text_width(&mark.label, TICK_SIZE_PX);
         let start = (x - long / 2.0).min(along.pixels.1 - long).max(free_from);
         free_from = start + long + 10.0;
         let at = (start, up.pixels.1 - 8.0);
@@ -168,9 +171,9 @@ pub(super) fn draw_marks(canvas: &mut Canvas, marks: &[Reference], along: &Axis,
 
 fn draw_legend(canvas: &mut Canvas, parts: &[String], (mut x, y): (f64, f64)) {
     for (name, colour) in parts.iter().zip(PART_COLOURS) {
-        canvas.rectangle((x, y - 11.0), (ROW_HEIGHTS.1, 12.0), colour);
-        write_text(canvas, name, (x + ROW_HEIGHTS.1 + 6.0, y), Anchor::Start);
-        x += ROW_HEIGHTS.1 + 22.0 + text_width(name, TICK_SIZE);
+        canvas.rectangle((x, y - 11.0), (ROW_HEIGHTS_PX.1, 12.0), colour);
+        write_text(canvas, name, (x + ROW_HEIGHTS_PX.1 + 6.0, y), Anchor::Start);
+        x += ROW_HEIGHTS_PX.1 + 22.0 + text_width(name, TICK_SIZE_PX);
     }
 }
 
@@ -188,7 +191,7 @@ pub(super) fn write_text(canvas: &mut Canvas, text: &str, at: (f64, f64), anchor
     canvas.text(Text {
         text,
         position: at,
-        size: TICK_SIZE,
+        size: TICK_SIZE_PX,
         anchor,
         is_bold: false,
     });
@@ -198,7 +201,7 @@ pub(super) fn draw_label(canvas: &mut Canvas, text: &str, at: (f64, f64), angle:
     let text = Text {
         text,
         position: at,
-        size: LABEL_SIZE,
+        size: LABEL_SIZE_PX,
         anchor: Anchor::Middle,
         is_bold: false,
     };
@@ -209,7 +212,7 @@ pub(super) fn draw_title(canvas: &mut Canvas, text: &str, at: (f64, f64)) {
     canvas.text(Text {
         text,
         position: at,
-        size: TITLE_SIZE,
+        size: TITLE_SIZE_PX,
         anchor: Anchor::Start,
         is_bold: true,
     });

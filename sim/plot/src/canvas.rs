@@ -64,8 +64,8 @@ impl Canvas {
     pub fn lines(&mut self, lines: &[Vec<Point>], stroke: Stroke) {
         let mut data = String::new();
         for line in lines {
-            for (place, point) in line.iter().enumerate() {
-                data.push(if place == 0 { 'M' } else { ' ' });
+            for (index, point) in line.iter().enumerate() {
+                data.push(if index == 0 { 'M' } else { ' ' });
                 data.push_str(&format_pair(*point));
             }
             if line.len() == 1 {

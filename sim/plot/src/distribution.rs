@@ -25,10 +25,10 @@ pub struct Distribution<'a> {
     pub marks: Vec<Reference>,
 }
 
-const WIDTH: f64 = 720.0;
-const HEIGHT: f64 = 360.0;
+const WIDTH_PX: f64 = 720.0;
+const HEIGHT_PX: f64 = 360.0;
 /// Margins to the left and right, and above and below the frame, in px.
-const MARGINS: ((f64, f64), (f64, f64)) = ((78.0, 70.0), (58.0, 62.0));
+const MARGINS_PX: ((f64, f64), (f64, f64)) = ((78.0, 70.0), (58.0, 62.0));
 const COLUMN_COUNT_RANGE: (usize, usize) = (5, 60);
 /// Number of points of the curve; more points would not be visible.
 const MAX_CURVE_POINTS: usize = 400;
@@ -57,7 +57,7 @@ pub fn distribution(of: &Distribution<'_>) -> Result<String, PlotError> {
         .iter()
         .map(|value| value / quantity.scale)
         .collect();
-    let whole = Range::from_places(values.iter().copied()).unwrap_or(Range {
+    let whole = Range::from_positions(values.iter().copied()).unwrap_or(Range {
         low: 0.0,
         high: 1.0,
     });
@@ -75,7 +75,7 @@ pub fn distribution(of: &Distribution<'_>) -> Result<String, PlotError> {
     draw_marks(&mut canvas, &marks, &axes.horizontal, &axes.vertical);
     draw_names(&mut canvas, &axes, &quantity.label);
     draw_title(&mut canvas, &of.title, (16.0, 22.0));
-    Ok(canvas.document(&of.title, WIDTH, HEIGHT))
+    Ok(canvas.document(&of.title, WIDTH_PX, HEIGHT_PX))
 }
 
 struct Axes {
@@ -86,16 +86,16 @@ struct Axes {
 
 impl Axes {
     fn new(whole: Range, most: usize) -> Self {
-        let ((left, right), (above, below)) = MARGINS;
+        let ((left, right), (above, below)) = MARGINS_PX;
         let axis = |range, pixels| Axis {
             scale: Scale::Linear,
             range,
             pixels,
         };
-        let upright = (HEIGHT - below, above);
+        let upright = (HEIGHT_PX - below, above);
         let to = |high| Range { low: 0.0, high };
         Self {
-            horizontal: axis(whole.pad(0.03), (left, WIDTH - right)),
+            horizontal: axis(whole.pad(0.03), (left, WIDTH_PX - right)),
             vertical: axis(to(1.08 * most as f64), upright),
             cumulative: axis(to(108.0), upright),
         }
@@ -112,7 +112,7 @@ fn draw_names(
     quantity: &str,
 ) {
     for tick in ticks(along.scale, along.range, 8) {
-        let at = (along.pixel(tick.place), up.pixels.0 + 19.0);
+        let at = (along.pixel(tick.position), up.pixels.0 + 19.0);
         write_text(canvas, &tick.label, at, Anchor::Middle);
     }
     for part in [0.0, 25.0, 50.0, 75.0, 100.0_f64] {
@@ -125,7 +125,7 @@ fn draw_names(
     let middle = (up.pixels.0 + up.pixels.1) / 2.0;
     draw_label(canvas, "samples", (19.0, middle), -90.0);
     let share = "cumulative share [%], orange";
-    draw_label(canvas, share, (WIDTH - 14.0, middle), -90.0);
+    draw_label(canvas, share, (WIDTH_PX - 14.0, middle), -90.0);
 }
 
 fn scale_mark(mark: &Reference, scale: f64) -> Reference {
@@ -145,20 +145,20 @@ fn count_columns(sorted: &[f64], range: Range) -> Vec<usize> {
     let columns = ((span / width).ceil().min(most as f64) as usize).clamp(least, most);
     let mut counts = vec![0; columns];
     for value in sorted {
-        let place = (value - range.low) / span * columns as f64;
-        counts[(place as usize).min(columns - 1)] += 1;
+        let index = (value - range.low) / span * columns as f64;
+        counts[(index as usize).min(columns - 1)] += 1;
     }
     counts
 }
 
 fn draw_columns(canvas: &mut Canvas, counts: &[usize], range: Range, axes: &Axes) {
     let (along, up) = (&axes.horizontal, &axes.vertical);
-    let edge = |place: usize| {
-        let part = place as f64 / counts.len() as f64;
+    let edge = |index: usize| {
+        let part = index as f64 / counts.len() as f64;
         along.pixel(range.low + part * (range.high - range.low))
     };
-    for (place, count) in counts.iter().enumerate() {
-        let (from, to, top) = (edge(place), edge(place + 1), up.pixel(*count as f64));
+    for (index, count) in counts.iter().enumerate() {
+        let (from, to, top) = (edge(index), edge(index + 1), up.pixel(*count as f64));
         canvas.rectangle(
             (from + 0.5, top),
             (to - from - 1.0, up.pixels.0 - top),
@@ -179,12 +179,12 @@ fn cumulative_curve(
     let count = sorted.len();
     let part = |number: usize| share.pixel(100.0 * number as f64 / count as f64);
     let step = count.div_ceil(MAX_CURVE_POINTS);
-    let kept = (0..count).filter(|place| place % step == 0 || *place + 1 == count);
+    let kept = (0..count).filter(|index| index % step == 0 || *index + 1 == count);
     let mut points = vec![(along.pixels.0, part(0))];
-    for place in kept {
+    for index in kept {
         let before = points.last().map_or(part(0), |(_, y)| *y);
-        let x = along.pixel(sorted[place]);
-        points.extend([(x, before), (x, part(place + 1))]);
+        let x = along.pixel(sorted[index]);
+        points.extend([(x, before), (x, part(index + 1))]);
     }
     points.push((along.pixels.1, part(count)));
     points
@@ -202,7 +202,7 @@ mod tests {
             (0..1000).map(f64::from).collect(),
             vec![-1.0, 5.0],
         ] {
-            let range = Range::from_places(values.iter().copied())
+            let range = Range::from_positions(values.iter().copied())
                 .expect("a range")
                 .widen_point();
             let counts = count_columns(&values, range);

@@ -2,7 +2,7 @@
 
 use super::canvas::{Anchor, Canvas, Stroke, Text};
 use super::decimate::Point;
-use super::layout::{TICK_SIZE, TITLE_SIZE};
+use super::layout::{TICK_SIZE_PX, TITLE_SIZE_PX};
 
 /// Drawing of a given size.
 #[derive(Clone, Debug, Default)]
@@ -88,7 +88,7 @@ pub fn draw_sketch(of: &Drawing) -> String {
             Part::Text(at, side, text) => canvas.text(Text {
                 text,
                 position: *at,
-                size: TICK_SIZE,
+                size: TICK_SIZE_PX,
                 anchor: match side {
                     0 => Anchor::Middle,
                     side if *side < 0 => Anchor::Start,
@@ -99,7 +99,7 @@ pub fn draw_sketch(of: &Drawing) -> String {
             Part::Heading(at, text) => canvas.text(Text {
                 text,
                 position: *at,
-                size: TITLE_SIZE,
+                size: TITLE_SIZE_PX,
                 anchor: Anchor::Start,
                 is_bold: true,
             }),
@@ -117,8 +117,8 @@ fn arrow_head(points: &[Point]) -> Vec<Point> {
         .map(|angle| point_on_circle(*end, 9.0, angle))
         .into_iter()
         .enumerate()
-        .flat_map(|(place, side)| {
-            if place == 0 {
+        .flat_map(|(index, side)| {
+            if index == 0 {
                 vec![side, *end]
             } else {
                 vec![side]

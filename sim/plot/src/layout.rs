@@ -7,24 +7,24 @@ use super::lettering::{text_width, truncate_to_width, wrap_label, wrap_to_width}
 use super::quantity::Quantity;
 
 /// Widths of figures, in px.
-const WIDE: f64 = 900.0;
-const NARROW: f64 = 330.0;
-pub(super) const TICK_SIZE: f64 = 14.0;
-pub(super) const LABEL_SIZE: f64 = 15.0;
-pub(super) const TITLE_SIZE: f64 = 16.0;
+const WIDE_PX: f64 = 900.0;
+const NARROW_PX: f64 = 330.0;
+pub(super) const TICK_SIZE_PX: f64 = 14.0;
+pub(super) const LABEL_SIZE_PX: f64 = 15.0;
+pub(super) const TITLE_SIZE_PX: f64 = 16.0;
 /// Length of the line in a legend entry, in px.
-pub(super) const LEGEND_LINE: f64 = 22.0;
-pub(super) const LEGEND_ROW: f64 = 20.0;
+pub(super) const LEGEND_LINE_PX: f64 = 22.0;
+pub(super) const LEGEND_ROW_PX: f64 = 20.0;
 
-const TITLE_ROW: f64 = 24.0;
+const TITLE_ROW_PX: f64 = 24.0;
 const TICK_MARGIN_PX: f64 = 36.0;
 /// Line spacing of labels, in px.
-pub(super) const LABEL_ROW: f64 = 18.0;
+pub(super) const LABEL_ROW_PX: f64 = 18.0;
 const LARGEST_REFERENCE_LABEL: f64 = 110.0;
 const LARGEST_LEGEND_LABEL: f64 = 260.0;
 /// Maximum number of characters for the curves of a figure, and number of characters for the four points of a
 /// pixel column.
-const CURVE_CHARACTERS: f64 = 180_000.0;
+const MAX_CURVE_CHARACTERS: f64 = 180_000.0;
 const COLUMN_CHARACTERS: f64 = 60.0;
 
 #[derive(Clone, Copy, Debug)]
@@ -59,8 +59,8 @@ impl Format {
             _ => (150.0, 5),
         };
         let (width, frame, along) = match width {
-            FigureWidth::Wide => (WIDE, frame, 8),
-            FigureWidth::Narrow => (NARROW, frame.min(170.0), 4),
+            FigureWidth::Wide => (WIDE_PX, frame, 8),
+            FigureWidth::Narrow => (NARROW_PX, frame.min(170.0), 4),
         };
         Self {
             width,
@@ -79,7 +79,7 @@ pub(super) struct Layout {
     pub abscissa: Axis,
     pub abscissa_quantity: Quantity,
     pub abscissa_ticks: Vec<Tick>,
-    pub places: Vec<Place>,
+    pub geometries: Vec<PanelGeometry>,
     pub width: f64,
     pub height: f64,
     /// Left end of the titles: that of the frames; in a narrow figure that of the figure.
@@ -91,7 +91,7 @@ pub(super) struct Layout {
 }
 
 #[derive(Debug)]
-pub(super) struct Place {
+pub(super) struct PanelGeometry {
     pub ordinate: Axis,
     pub quantity: Quantity,
     pub ticks: Vec<Tick>,
@@ -131,18 +131,22 @@ impl Layout {
             range,
             pixels: edges,
         };
-        let title_edge = if format.width > NARROW { edges.0 } else { 6.0 };
+        let title_edge = if format.width > NARROW_PX {
+            edges.0
+        } else {
+            6.0
+        };
         let mut top = 6.0;
-        let mut places = Vec::with_capacity(panels.len());
+        let mut geometries = Vec::with_capacity(panels.len());
         for (panel, ordinate) in panels.iter().zip(ordinates) {
-            let place = Place::new(
+            let geometry = PanelGeometry::new(
                 (panel, ordinate),
                 scale,
                 (top, format.frame),
                 (title_edge, edges),
             );
-            top = place.ordinate.pixels.0 + 16.0;
-            places.push(place);
+            top = geometry.ordinate.pixels.0 + 16.0;
+            geometries.push(geometry);
         }
         let curves: usize = panels.iter().map(|panel| panel.series.len()).sum();
         let span = edges.1 - edges.0;
@@ -150,11 +154,11 @@ impl Layout {
             abscissa: axis,
             abscissa_quantity: quantity,
             abscissa_ticks: ticks(abscissa.scale, range, along),
-            places,
+            geometries,
             width: format.width,
             title_edge,
             height: (top + 40.0).ceil(),
-            column: (span * COLUMN_CHARACTERS * curves as f64 / CURVE_CHARACTERS).max(1.0),
+            column: (span * COLUMN_CHARACTERS * curves as f64 / MAX_CURVE_CHARACTERS).max(1.0),
             is_overlaid: format.is_overlaid,
             style: format.style,
         })
@@ -192,8 +196,8 @@ impl Ordinate {
             }
             Scale::Logarithmic => Quantity::without_prefix(&panel.quantity, &panel.unit),
         };
-        let places = values().map(|value| scale.place(value / quantity.scale));
-        let range = Range::from_places(places).map_or(
+        let positions = values().map(|value| scale.to_position(value / quantity.scale));
+        let range = Range::from_positions(positions).map_or(
             Range {
                 low: 0.0,
                 high: 1.0,
@@ -208,7 +212,7 @@ impl Ordinate {
     }
 }
 
-impl Place {
+impl PanelGeometry {
     /// Computes the positions of a panel from `(top, frame height)`, the left end of titles, and the left and
     /// right `edges`.
     fn new(
@@ -217,12 +221,12 @@ impl Place {
         (top, frame): (f64, f64),
         (title_edge, edges): (f64, (f64, f64)),
     ) -> Self {
-        let lines = wrap_to_width(&panel.title, TITLE_SIZE, edges.1 - title_edge);
+        let lines = wrap_to_width(&panel.title, TITLE_SIZE_PX, edges.1 - title_edge);
         let title: Vec<(f64, String)> = (1..)
             .zip(lines)
-            .map(|(row, line)| (top + f64::from(row) * TITLE_ROW - 8.0, line))
+            .map(|(row, line)| (top + f64::from(row) * TITLE_ROW_PX - 8.0, line))
             .collect();
-        let title_rows = (TITLE_ROW * title.len() as f64).max(6.0);
+        let title_rows = (TITLE_ROW_PX * title.len() as f64).max(6.0);
         let legend = legend(panel, top + title_rows, (title_edge, edges.1));
         let legend_rows = legend
             .last()
@@ -248,9 +252,9 @@ fn drawable_values(series: &Series<'_>, along: Scale, scale: Scale) -> impl Iter
         .iter()
         .zip(series.values)
         .filter(move |(at, value)| {
-            along.place(**at).is_finite()
+            along.to_position(**at).is_finite()
                 && is_drawable(**value)
-                && scale.place(**value).is_finite()
+                && scale.to_position(**value).is_finite()
         })
         .map(|(_, value)| *value)
 }
@@ -267,8 +271,8 @@ fn shared_range(panels: &[Panel<'_>], abscissa: &Abscissa) -> (Range, Quantity) 
         }
         Scale::Logarithmic => Quantity::without_prefix(abscissa.symbol, abscissa.unit),
     };
-    let places = all().map(|value| abscissa.scale.place(value / quantity.scale));
-    let range = Range::from_places(places).unwrap_or(Range {
+    let positions = all().map(|value| abscissa.scale.to_position(value / quantity.scale));
+    let range = Range::from_positions(positions).unwrap_or(Range {
         low: 0.0,
         high: 1.0,
     });
@@ -278,26 +282,26 @@ fn shared_range(panels: &[Panel<'_>], abscissa: &Abscissa) -> (Range, Quantity) 
 fn left_edge(ordinates: &[Ordinate], format: Format) -> f64 {
     let labels = ordinates.iter().flat_map(|ordinate| &ordinate.ticks);
     let widest = labels
-        .map(|tick| text_width(&tick.label, TICK_SIZE))
+        .map(|tick| text_width(&tick.label, TICK_SIZE_PX))
         .fold(0.0, f64::max);
     let lines = ordinates
         .iter()
-        .map(|ordinate| wrap_label(&ordinate.quantity.label, LABEL_SIZE, format.frame).len())
+        .map(|ordinate| wrap_label(&ordinate.quantity.label, LABEL_SIZE_PX, format.frame).len())
         .max();
     let more = lines.map_or(0, |lines| lines.saturating_sub(1));
-    (TICK_MARGIN_PX + LABEL_ROW * more as f64 + widest).max(format.margins.0)
+    (TICK_MARGIN_PX + LABEL_ROW_PX * more as f64 + widest).max(format.margins.0)
 }
 
 fn right_edge(panels: &[Panel<'_>], format: Format) -> f64 {
     let references = panels.iter().flat_map(|panel| &panel.references);
     let widest = references
-        .map(|reference| text_width(&reference_label(&reference.label), TICK_SIZE))
+        .map(|reference| text_width(&reference_label(&reference.label), TICK_SIZE_PX))
         .fold(0.0, f64::max);
     format.width - (widest + 10.0).max(format.margins.1)
 }
 
 pub(super) fn reference_label(label: &str) -> String {
-    truncate_to_width(label, TICK_SIZE, LARGEST_REFERENCE_LABEL)
+    truncate_to_width(label, TICK_SIZE_PX, LARGEST_REFERENCE_LABEL)
 }
 
 fn legend(panel: &Panel<'_>, top: f64, edges: (f64, f64)) -> Vec<((f64, f64), String)> {
@@ -307,10 +311,10 @@ fn legend(panel: &Panel<'_>, top: f64, edges: (f64, f64)) -> Vec<((f64, f64), St
     let mut at = (edges.0, top + 11.0);
     let mut entries = Vec::with_capacity(panel.series.len());
     for series in &panel.series {
-        let label = truncate_to_width(&series.label, TICK_SIZE, LARGEST_LEGEND_LABEL);
-        let entry = LEGEND_LINE + 6.0 + text_width(&label, TICK_SIZE);
+        let label = truncate_to_width(&series.label, TICK_SIZE_PX, LARGEST_LEGEND_LABEL);
+        let entry = LEGEND_LINE_PX + 6.0 + text_width(&label, TICK_SIZE_PX);
         if at.0 > edges.0 && at.0 + entry > edges.1 {
-            at = (edges.0, at.1 + LEGEND_ROW);
+            at = (edges.0, at.1 + LEGEND_ROW_PX);
         }
         entries.push((at, label));
         at.0 += entry + 14.0;

@@ -142,8 +142,8 @@ fn draw(
         Format::stacked(panels.len(), width),
     )?;
     let mut canvas = canvas::Canvas::default();
-    for (panel, place) in panels.iter().zip(&layout.places) {
-        panel::draw_panel(&mut canvas, panel, place, &layout);
+    for (panel, geometry) in panels.iter().zip(&layout.geometries) {
+        panel::draw_panel(&mut canvas, panel, geometry, &layout);
     }
     panel::draw_abscissa(&mut canvas, &layout);
     Ok(canvas.document(title, layout.width, layout.height))

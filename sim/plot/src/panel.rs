@@ -6,8 +6,8 @@ use super::decimate::{Point, polylines, separate_points, thin_orbit};
 use super::error::is_drawable;
 use super::figure::{Panel, Reference, Series, SeriesRole, SeriesStyle};
 use super::layout::{
-    LABEL_ROW, LABEL_SIZE, LEGEND_LINE, LEGEND_ROW, Layout, Place, TICK_SIZE, TITLE_SIZE,
-    reference_label,
+    LABEL_ROW_PX, LABEL_SIZE_PX, LEGEND_LINE_PX, LEGEND_ROW_PX, Layout, PanelGeometry,
+    TICK_SIZE_PX, TITLE_SIZE_PX, reference_label,
 };
 use super::lettering::{text_width, wrap_label};
 
@@ -22,11 +22,16 @@ const MEASURED_STROKE: Stroke = Stroke::new("#b9c2ca", 4.5, "");
 const REFERENCE_STROKE: Stroke = Stroke::new("#6a6a6a", 1.1, "6 4");
 const MARK_STROKE: Stroke = Stroke::new("#8a8a8a", 0.9, "2 3");
 
-pub(super) fn draw_panel(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Layout) {
-    draw_grid(canvas, place, layout);
-    draw_references(canvas, panel, place, layout);
+pub(super) fn draw_panel(
+    canvas: &mut Canvas,
+    panel: &Panel<'_>,
+    geometry: &PanelGeometry,
+    layout: &Layout,
+) {
+    draw_grid(canvas, geometry, layout);
+    draw_references(canvas, panel, geometry, layout);
     for (index, series) in panel.series.iter().enumerate() {
-        let samples = samples(series, place, layout);
+        let samples = samples(series, geometry, layout);
         let lines = match layout.style {
             SeriesStyle::Curve => polylines(samples, layout.column),
             SeriesStyle::Orbit => thin_orbit(samples),
@@ -34,30 +39,40 @@ pub(super) fn draw_panel(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, 
         };
         canvas.lines(&lines, curve_stroke((index, series.role), layout));
     }
-    draw_frame(canvas, place, layout);
-    draw_text(canvas, panel, place, layout);
+    draw_frame(canvas, geometry, layout);
+    draw_text(canvas, panel, geometry, layout);
 }
 
-pub(super) fn draw_marks(canvas: &mut Canvas, marks: &[Reference], place: &Place, layout: &Layout) {
-    let (bottom, top) = place.ordinate.pixels;
+pub(super) fn draw_marks(
+    canvas: &mut Canvas,
+    marks: &[Reference],
+    geometry: &PanelGeometry,
+    layout: &Layout,
+) {
+    let (bottom, top) = geometry.ordinate.pixels;
     for (x, _) in visible_marks(marks, layout) {
         canvas.segments(&[((x, bottom), (x, top))], MARK_STROKE);
     }
 }
 
 /// Writes the names of vertical lines at the top, if there is space.
-pub(super) fn name_marks(canvas: &mut Canvas, marks: &[Reference], place: &Place, layout: &Layout) {
-    let (_, top) = place.ordinate.pixels;
+pub(super) fn name_marks(
+    canvas: &mut Canvas,
+    marks: &[Reference],
+    geometry: &PanelGeometry,
+    layout: &Layout,
+) {
+    let (_, top) = geometry.ordinate.pixels;
     let mut free_from = f64::NEG_INFINITY;
     for (x, name) in visible_marks(marks, layout) {
         if x < free_from {
             continue;
         }
-        free_from = x + text_width(name, TICK_SIZE) + 6.0;
+        free_from = x + text_width(name, TICK_SIZE_PX) + 6.0;
         canvas.text(Text {
             text: name,
-            position: (x + 3.0, top + TICK_SIZE),
-            size: TICK_SIZE,
+            position: (x + 3.0, top + TICK_SIZE_PX),
+            size: TICK_SIZE_PX,
             anchor: Anchor::Start,
             is_bold: false,
         });
@@ -69,24 +84,25 @@ fn visible_marks<'a>(
     layout: &'a Layout,
 ) -> impl Iterator<Item = (f64, &'a str)> {
     let (axis, unit) = (&layout.abscissa, layout.abscissa_quantity.scale);
-    let places = marks
+    let positions = marks
         .iter()
         .filter(|mark| is_drawable(mark.value))
-        .map(move |mark| (axis.scale.place(mark.value / unit), &*mark.label));
-    let reached = places.filter(|(place, _)| (axis.range.low..=axis.range.high).contains(place));
-    reached.map(|(place, name)| (axis.pixel(place), name))
+        .map(move |mark| (axis.scale.to_position(mark.value / unit), &*mark.label));
+    let reached =
+        positions.filter(|(position, _)| (axis.range.low..=axis.range.high).contains(position));
+    reached.map(|(position, name)| (axis.pixel(position), name))
 }
 
 pub(super) fn draw_abscissa(canvas: &mut Canvas, layout: &Layout) {
-    let Some(last) = layout.places.last() else {
+    let Some(last) = layout.geometries.last() else {
         return;
     };
     let (bottom, _) = last.ordinate.pixels;
     for tick in &layout.abscissa_ticks {
         canvas.text(Text {
             text: &tick.label,
-            position: (layout.abscissa.pixel(tick.place), bottom + 19.0),
-            size: TICK_SIZE,
+            position: (layout.abscissa.pixel(tick.position), bottom + 19.0),
+            size: TICK_SIZE_PX,
             anchor: Anchor::Middle,
             is_bold: false,
         });
@@ -95,7 +111,7 @@ pub(super) fn draw_abscissa(canvas: &mut Canvas, layout: &Layout) {
     canvas.text(Text {
         text: &layout.abscissa_quantity.label,
         position: ((left + right) / 2.0, bottom + 42.0),
-        size: LABEL_SIZE,
+        size: LABEL_SIZE_PX,
         anchor: Anchor::Middle,
         is_bold: false,
     });
@@ -126,9 +142,13 @@ fn curve_stroke((index, role): (usize, SeriesRole), layout: &Layout) -> Stroke {
 }
 
 /// Returns a series in pixels, with NaN for values that cannot be drawn.
-fn samples(series: &Series<'_>, place: &Place, layout: &Layout) -> impl Iterator<Item = Point> {
-    let (x, y) = (layout.abscissa, place.ordinate);
-    let (along, up) = (layout.abscissa_quantity.scale, place.quantity.scale);
+fn samples(
+    series: &Series<'_>,
+    geometry: &PanelGeometry,
+    layout: &Layout,
+) -> impl Iterator<Item = Point> {
+    let (x, y) = (layout.abscissa, geometry.ordinate);
+    let (along, up) = (layout.abscissa_quantity.scale, geometry.quantity.scale);
     series
         .abscissa
         .iter()
@@ -144,28 +164,33 @@ fn samples(series: &Series<'_>, place: &Place, layout: &Layout) -> impl Iterator
 }
 
 fn clamped_pixel(axis: &Axis, value: f64) -> f64 {
-    axis.pixel(axis.scale.place(value))
+    axis.pixel(axis.scale.to_position(value))
 }
 
-fn draw_grid(canvas: &mut Canvas, place: &Place, layout: &Layout) {
+fn draw_grid(canvas: &mut Canvas, geometry: &PanelGeometry, layout: &Layout) {
     let (left, right) = layout.abscissa.pixels;
-    let (bottom, top) = place.ordinate.pixels;
+    let (bottom, top) = geometry.ordinate.pixels;
     let level = |tick: &Tick| {
-        let y = place.ordinate.pixel(tick.place);
+        let y = geometry.ordinate.pixel(tick.position);
         ((left, y), (right, y))
     };
     let upright = |tick: &Tick| {
-        let x = layout.abscissa.pixel(tick.place);
+        let x = layout.abscissa.pixel(tick.position);
         ((x, bottom), (x, top))
     };
-    let lines = place.ticks.iter().map(level);
+    let lines = geometry.ticks.iter().map(level);
     let lines: Vec<_> = lines
         .chain(layout.abscissa_ticks.iter().map(upright))
         .collect();
     canvas.segments(&lines, GRID_STROKE);
 }
 
-fn draw_references(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Layout) {
+fn draw_references(
+    canvas: &mut Canvas,
+    panel: &Panel<'_>,
+    geometry: &PanelGeometry,
+    layout: &Layout,
+) {
     let (left, right) = layout.abscissa.pixels;
     let mut lines: Vec<(f64, &str)> = panel
         .references
@@ -173,7 +198,10 @@ fn draw_references(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout
         .filter(|reference| is_drawable(reference.value))
         .map(|reference| {
             (
-                clamped_pixel(&place.ordinate, reference.value / place.quantity.scale),
+                clamped_pixel(
+                    &geometry.ordinate,
+                    reference.value / geometry.quantity.scale,
+                ),
                 &*reference.label,
             )
         })
@@ -184,21 +212,21 @@ fn draw_references(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout
     for (y, label) in lines {
         canvas.segments(&[((left, y), (right, y))], REFERENCE_STROKE);
         // Moves the labels of close lines down, so that they do not overlap.
-        let base = (y + 0.35 * TICK_SIZE).max(free_from);
-        free_from = base + TICK_SIZE + 2.0;
+        let base = (y + 0.35 * TICK_SIZE_PX).max(free_from);
+        free_from = base + TICK_SIZE_PX + 2.0;
         canvas.text(Text {
             text: &reference_label(label),
             position: (right + 6.0, base),
-            size: TICK_SIZE,
+            size: TICK_SIZE_PX,
             anchor: Anchor::Start,
             is_bold: false,
         });
     }
 }
 
-fn draw_frame(canvas: &mut Canvas, place: &Place, layout: &Layout) {
+fn draw_frame(canvas: &mut Canvas, geometry: &PanelGeometry, layout: &Layout) {
     let (left, right) = layout.abscissa.pixels;
-    let (bottom, top) = place.ordinate.pixels;
+    let (bottom, top) = geometry.ordinate.pixels;
     let corners = vec![
         (left, top),
         (right, top),
@@ -208,16 +236,16 @@ fn draw_frame(canvas: &mut Canvas, place: &Place, layout: &Layout) {
     ];
     canvas.lines(&[corners], FRAME_STROKE);
     let length = 5.0;
-    let across = place.ticks.iter().map(|tick| {
-        let y = place.ordinate.pixel(tick.place);
+    let across = geometry.ticks.iter().map(|tick| {
+        let y = geometry.ordinate.pixel(tick.position);
         ((left, y), (left + length, y))
     });
     let up = layout.abscissa_ticks.iter().map(|tick| {
-        let x = layout.abscissa.pixel(tick.place);
+        let x = layout.abscissa.pixel(tick.position);
         ((x, bottom), (x, bottom - length))
     });
     let mut marks: Vec<_> = across.chain(up).collect();
-    marks.extend(minor_marks(&place.ordinate).map(|y| ((left, y), (left + 3.0, y))));
+    marks.extend(minor_marks(&geometry.ordinate).map(|y| ((left, y), (left + 3.0, y))));
     marks.extend(minor_marks(&layout.abscissa).map(|x| ((x, bottom), (x, bottom - 3.0))));
     canvas.segments(&marks, FRAME_STROKE);
 }
@@ -234,62 +262,62 @@ fn minor_marks(axis: &Axis) -> impl Iterator<Item = f64> {
     let axis = *axis;
     decades
         .flat_map(|decade| (2..10).map(move |m| f64::from(m).log10() + f64::from(decade)))
-        .filter(move |place| (low..=high).contains(place))
-        .map(move |place| axis.pixel(place))
+        .filter(move |position| (low..=high).contains(position))
+        .map(move |position| axis.pixel(position))
 }
 
-fn draw_text(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Layout) {
+fn draw_text(canvas: &mut Canvas, panel: &Panel<'_>, geometry: &PanelGeometry, layout: &Layout) {
     let (left, _) = layout.abscissa.pixels;
-    let (bottom, top) = place.ordinate.pixels;
-    for tick in &place.ticks {
+    let (bottom, top) = geometry.ordinate.pixels;
+    for tick in &geometry.ticks {
         canvas.text(Text {
             text: &tick.label,
             position: (
                 left - 7.0,
-                place.ordinate.pixel(tick.place) + 0.35 * TICK_SIZE,
+                geometry.ordinate.pixel(tick.position) + 0.35 * TICK_SIZE_PX,
             ),
-            size: TICK_SIZE,
+            size: TICK_SIZE_PX,
             anchor: Anchor::End,
             is_bold: false,
         });
     }
-    let lines = wrap_label(&place.quantity.label, LABEL_SIZE, bottom - top);
+    let lines = wrap_label(&geometry.quantity.label, LABEL_SIZE_PX, bottom - top);
     for (row, line) in lines.iter().enumerate() {
         let label = Text {
             text: line,
-            position: (19.0 + LABEL_ROW * row as f64, (top + bottom) / 2.0),
-            size: LABEL_SIZE,
+            position: (19.0 + LABEL_ROW_PX * row as f64, (top + bottom) / 2.0),
+            size: LABEL_SIZE_PX,
             anchor: Anchor::Middle,
             is_bold: false,
         };
         canvas.rotated_text(label, -90.0);
     }
-    for (y, line) in &place.title {
+    for (y, line) in &geometry.title {
         canvas.text(Text {
             text: line,
             position: (layout.title_edge, *y),
-            size: TITLE_SIZE,
+            size: TITLE_SIZE_PX,
             anchor: Anchor::Start,
             is_bold: true,
         });
     }
-    draw_legend(canvas, panel, place, layout);
+    draw_legend(canvas, panel, geometry, layout);
 }
 
-fn draw_legend(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Layout) {
+fn draw_legend(canvas: &mut Canvas, panel: &Panel<'_>, geometry: &PanelGeometry, layout: &Layout) {
     let roles = panel.series.iter().map(|series| series.role).enumerate();
-    for (series, ((x, y), label)) in roles.zip(&place.legend) {
-        let middle = y - 0.25 * LEGEND_ROW;
+    for (series, ((x, y), label)) in roles.zip(&geometry.legend) {
+        let middle = y - 0.25 * LEGEND_ROW_PX;
         let stroke = curve_stroke(series, layout);
         let stroke = Stroke {
             width: stroke.width.max(2.0),
             ..stroke
         };
-        canvas.segments(&[((*x, middle), (x + LEGEND_LINE, middle))], stroke);
+        canvas.segments(&[((*x, middle), (x + LEGEND_LINE_PX, middle))], stroke);
         canvas.text(Text {
             text: label,
-            position: (x + LEGEND_LINE + 6.0, *y),
-            size: TICK_SIZE,
+            position: (x + LEGEND_LINE_PX + 6.0, *y),
+            size: TICK_SIZE_PX,
             anchor: Anchor::Start,
             is_bold: false,
         });

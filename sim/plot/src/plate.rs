@@ -109,10 +109,10 @@ pub fn plate(plate: &Plate<'_>) -> Result<String, PlotError> {
 /// Same as [`super::time_history`], with panels counted row by row.
 pub fn plate_at(plate: &Plate<'_>, width: FigureWidth) -> Result<String, PlotError> {
     let panels: Vec<Panel<'_>> = plate.frames.iter().map(|f| f.panel.clone()).collect();
-    check_panels(&panels, |place| {
+    check_panels(&panels, |index| {
         plate
             .frames
-            .get(place)
+            .get(index)
             .map_or(SeriesStyle::Curve, |f| f.style)
     })?;
     let (columns, format) = match width {
@@ -148,10 +148,10 @@ fn draw_frame(frame: &Frame<'_>, format: Format) -> Result<(Canvas, f64), PlotEr
     };
     let layout = Layout::new(panels, &abscissa, scale, format)?;
     let mut canvas = Canvas::default();
-    for place in &layout.places {
-        panel::draw_marks(&mut canvas, &frame.marks, place, &layout);
-        panel::draw_panel(&mut canvas, &frame.panel, place, &layout);
-        panel::name_marks(&mut canvas, &frame.marks, place, &layout);
+    for geometry in &layout.geometries {
+        panel::draw_marks(&mut canvas, &frame.marks, geometry, &layout);
+        panel::draw_panel(&mut canvas, &frame.panel, geometry, &layout);
+        panel::name_marks(&mut canvas, &frame.marks, geometry, &layout);
     }
     panel::draw_abscissa(&mut canvas, &layout);
     Ok((canvas, layout.height))

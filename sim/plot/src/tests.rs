@@ -4,11 +4,11 @@ use roxmltree::{Document, Node};
 
 use super::*;
 
-const SAMPLES: usize = 100_000;
+const SAMPLE_COUNT: usize = 100_000;
 
 fn times() -> Vec<f64> {
-    (0..SAMPLES)
-        .map(|i| 2.0 * i as f64 / (SAMPLES - 1) as f64)
+    (0..SAMPLE_COUNT)
+        .map(|i| 2.0 * i as f64 / (SAMPLE_COUNT - 1) as f64)
         .collect()
 }
 

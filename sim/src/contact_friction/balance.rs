@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::sliding_modes::{solve_beyond_limits, solve_least_squares};
+use crate::sliding_modes::{solve_least_squares, solve_regularised};
 
 /// Largest pivot that counts as rounding, as a fraction of the largest pivot.
 const MIN_PIVOT_FRACTION: f64 = 1e-10;
@@ -39,7 +39,7 @@ pub fn solve_holding_balance(matrix: Vec<f64>, right: Vec<f64>) -> Option<Vec<f6
     if (&matrix * &x - &right).amax() <= MAX_ROW_ERROR * right.amax().max(x.amax()) {
         return Some(solved);
     }
-    let beyond = solve_beyond_limits(&matrix, &right);
+    let beyond = solve_regularised(&matrix, &right);
     Some(beyond.map_or(solved, |beyond| beyond.iter().copied().collect()))
 }
 
@@ -83,8 +83,8 @@ fn eliminate(mut matrix: Vec<f64>, mut right: Vec<f64>) -> Option<Vec<f64>> {
         right[step] = (right[step] - known.sum::<f64>()) / matrix[step * size + step];
     }
     let mut solved = vec![0.0; size];
-    for (place, value) in columns.iter().zip(right) {
-        solved[*place] = value;
+    for (index, value) in columns.iter().zip(right) {
+        solved[*index] = value;
     }
     Some(solved)
 }

@@ -26,7 +26,7 @@ impl ContactProblem {
         // Rows of a direction: the effects of the normal impulses with their friction, then those of t + mu n.
         let rows = (0..count).map(|contact| (contact, contact));
         let tangents = full.iter().enumerate();
-        let rows = rows.chain(tangents.map(|(place, contact)| (count + place, count + contact)));
+        let rows = rows.chain(tangents.map(|(index, contact)| (count + index, count + contact)));
         for (row, direction) in rows {
             right[row] = self.c[direction];
             for contact in 0..count {
@@ -35,12 +35,12 @@ impl ContactProblem {
                 matrix[row * size + contact] =
                     self.entry(direction, contact) + ratio * self.entry(direction, count + contact);
             }
-            for (place, contact) in full.iter().enumerate() {
-                matrix[row * size + count + place] = self.entry(direction, count + contact);
+            for (index, contact) in full.iter().enumerate() {
+                matrix[row * size + count + index] = self.entry(direction, count + contact);
             }
         }
-        for (place, contact) in full.iter().enumerate() {
-            let (to_right, to_left) = (count + place, count + full.len() + place);
+        for (index, contact) in full.iter().enumerate() {
+            let (to_right, to_left) = (count + index, count + full.len() + index);
             matrix[to_right * size + to_left] = 1.0;
             matrix[to_left * size + contact] = 2.0 * self.scaled_coefficient(*contact);
             matrix[to_left * size + to_right] = -1.0;
@@ -52,8 +52,8 @@ impl ContactProblem {
             }
             match full.iter().position(|own| *own == contact) {
                 None => ContactMode::Slides(self.friction[contact].direction.unwrap_or(0.0)),
-                Some(place) if !z[count + place] => ContactMode::Slides(1.0),
-                Some(place) if z[count + full.len() + place] => ContactMode::Slides(-1.0),
+                Some(index) if !z[count + index] => ContactMode::Slides(1.0),
+                Some(index) if z[count + full.len() + index] => ContactMode::Slides(-1.0),
                 Some(_) => ContactMode::Sticks,
             }
         };
@@ -87,7 +87,7 @@ pub(super) fn solve_by_lemke(matrix: &[f64], q: &[f64]) -> Option<Vec<bool>> {
         pivot(&mut table, width, (leaving_row, entering));
         basis[leaving_row] = entering;
         if left == artificial {
-            let is_basic = |place: usize| basis.contains(&(size + place));
+            let is_basic = |index: usize| basis.contains(&(size + index));
             return Some((0..size).map(is_basic).collect());
         }
         entering = if left < size {
@@ -136,9 +136,9 @@ fn pivot(table: &mut [f64], width: usize, (row, column): (usize, usize)) {
         *entry /= divisor;
     }
     let own = table[row * width..(row + 1) * width].to_vec();
-    for (place, other) in table.chunks_exact_mut(width).enumerate() {
+    for (index, other) in table.chunks_exact_mut(width).enumerate() {
         let factor = other[column];
-        if place != row && factor != 0.0 {
+        if index != row && factor != 0.0 {
             for (entry, own) in other.iter_mut().zip(&own) {
                 *entry -= factor * own;
             }

@@ -99,7 +99,7 @@ impl ContactProblem {
     /// Creates a problem from W (row by row) and c. W is symmetric and positive semidefinite.
     pub fn new(friction: Vec<ContactFriction>, w: &[f64], c: &[f64]) -> Self {
         let size = c.len();
-        let root = |place: usize| match w[place * size + place].sqrt() {
+        let root = |index: usize| match w[index * size + index].sqrt() {
             root if root > 0.0 => root,
             _ => 1.0,
         };

@@ -3,7 +3,7 @@
 use super::surfaces::Side;
 
 /// Number of bisections of the interval with a crossing before its refinement.
-const HALVINGS: usize = 30;
+const BISECTIONS: usize = 30;
 
 /// Value and rate of a function at one end of a step.
 type End = (f64, f64);
@@ -11,7 +11,7 @@ type End = (f64, f64);
 /// Returns the time since the start of a step of this length, s, at which a function leaves its side for the
 /// first time. The function is approximated by the cubic through values and rates at both ends.
 #[inline(always)]
-pub fn first_crossing(side: Side, (begin, end): (End, End), length: f64) -> Option<f64> {
+pub fn find_first_crossing(side: Side, (begin, end): (End, End), length: f64) -> Option<f64> {
     let sign = match side {
         Side::Held => return None,
         Side::Below => -1.0,
@@ -23,13 +23,13 @@ pub fn first_crossing(side: Side, (begin, end): (End, End), length: f64) -> Opti
     if b >= 0.0 && (da >= 0.0 || db <= 0.0 || a + da > 0.0) {
         return None;
     }
-    crossing([a, da, b, db]).map(|s| s * length)
+    find_crossing([a, da, b, db]).map(|s| s * length)
 }
 
 /// Returns the first time at which a function becomes negative in a step of length 1; `a` and `da` are value
 /// and rate at the start, `b` and `db` at the end.
 #[inline(never)]
-fn crossing([a, da, b, db]: [f64; 4]) -> Option<f64> {
+fn find_crossing([a, da, b, db]: [f64; 4]) -> Option<f64> {
     let (c, d) = (3.0 * (b - a) - 2.0 * da - db, 2.0 * (a - b) + da + db);
     let value = |s: f64| a + s * (da + s * (c + s * d));
     let mut last = 1.0;
@@ -63,7 +63,7 @@ fn crossing([a, da, b, db]: [f64; 4]) -> Option<f64> {
             return Some(0.0);
         }
     }
-    for _ in 0..HALVINGS {
+    for _ in 0..BISECTIONS {
         let middle = 0.5 * (first + last);
         if value(middle) < 0.0 {
             last = middle;

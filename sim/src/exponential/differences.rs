@@ -17,11 +17,11 @@ const VALUE_FRACTION: f64 = 1e-8;
 
 /// Smallest step of a finite difference, as a fraction of the typical size of the state; it applies to states
 /// at rest at 0.
-const OF_TYPICAL_SIZE: f64 = 1e-10;
+const TYPICAL_SIZE_FRACTION: f64 = 1e-10;
 
 /// Changes of an acceleration below this fraction of its largest magnitude so far count as rounding.
 /// Accelerations are not compared with each other because their units may differ.
-const ROUNDING: f64 = 1e-10;
+const ROUNDING_FRACTION: f64 = 1e-10;
 
 impl ExponentialIntegrator {
     /// Advances the tangent vectors by their pending steps to the current time of the motion.
@@ -53,8 +53,8 @@ impl ExponentialIntegrator {
         force: &mut dyn Force,
         slopes: &mut Slopes,
     ) -> Result<(), String> {
-        let is_due = slopes.asked.is_multiple_of(DIFFERENTIATION_INTERVAL);
-        slopes.asked += 1;
+        let is_due = slopes.call_count.is_multiple_of(DIFFERENTIATION_INTERVAL);
+        slopes.call_count += 1;
         if !is_due && slopes.is_known[0] {
             slopes.keep();
             return Ok(());
@@ -74,25 +74,25 @@ impl ExponentialIntegrator {
         );
         slopes.state.clone_from(&motion.state);
         let here = (motion.regime, &motion.sides[..]);
-        self.remainder_at(here, (t, &slopes.state, &motion.given), force, &mut base)?;
-        for place in 0..n {
-            let x = motion.state[place];
-            slopes.state[place] = x + self.difference(place, x, slopes.rates[place]);
-            let size = slopes.state[place] - x;
-            self.remainder_at(here, (t, &slopes.state, &motion.given), force, &mut moved)?;
-            slopes.state[place] = x;
-            if self.sides_differ(motion, place, size, (&base, &moved)) {
+        self.compute_remainder(here, (t, &slopes.state, &motion.given), force, &mut base)?;
+        for index in 0..n {
+            let x = motion.state[index];
+            slopes.state[index] = x + self.choose_difference(index, x, slopes.rates[index]);
+            let size = slopes.state[index] - x;
+            self.compute_remainder(here, (t, &slopes.state, &motion.given), force, &mut moved)?;
+            slopes.state[index] = x;
+            if self.sides_differ(motion, index, size, (&base, &moved)) {
                 continue;
             }
             let mut matters = false;
-            let column = &mut slopes.there[place * forced..(place + 1) * forced];
+            let column = &mut slopes.there[index * forced..(index + 1) * forced];
             let slots = column.iter_mut().zip(&slopes.largest);
-            for ((slot, largest), (after, before)) in slots.zip(pairs(&moved, &base)) {
-                matters |= (after - before).abs() > ROUNDING * largest;
+            for ((slot, largest), (after, before)) in slots.zip(pair_accelerations(&moved, &base)) {
+                matters |= (after - before).abs() > ROUNDING_FRACTION * largest;
                 *slot = (after - before) / size;
             }
-            if matters && !slopes.active.contains(&place) {
-                slopes.active.push(place);
+            if matters && !slopes.active.contains(&index) {
+                slopes.active.push(index);
             }
         }
         (slopes.base, slopes.moved) = (base, moved);
@@ -102,7 +102,7 @@ impl ExponentialIntegrator {
 
     /// Returns the gradient of a surface's function in the whole model. The rates scale the steps of the
     /// differences.
-    pub(super) fn gradient(
+    pub(super) fn compute_gradient(
         &self,
         motion: &Motion,
         (surface, t): (usize, f64),
@@ -120,27 +120,27 @@ impl ExponentialIntegrator {
             return gradient;
         }
         let here = values[guard];
-        for (place, slot) in gradient[..own.len()].iter_mut().enumerate() {
-            let x = state[place];
-            state[place] = x + self.difference(place, x, rates[place]);
+        for (index, slot) in gradient[..own.len()].iter_mut().enumerate() {
+            let x = state[index];
+            state[index] = x + self.choose_difference(index, x, rates[index]);
             force.write_guards(t, &state, inputs, &mut values);
-            *slot = (values[guard] - here) / (state[place] - x);
-            state[place] = x;
+            *slot = (values[guard] - here) / (state[index] - x);
+            state[index] = x;
         }
         gradient
     }
 
     /// Returns the step of a finite difference for a state with this rate.
-    fn difference(&self, place: usize, x: f64, rate: f64) -> f64 {
+    fn choose_difference(&self, index: usize, x: f64, rate: f64) -> f64 {
         let size = (DISPLACEMENT_FRACTION * (rate * self.step).abs()).max(VALUE_FRACTION * x.abs());
-        size.max(OF_TYPICAL_SIZE * self.typical_sizes[place])
+        size.max(TYPICAL_SIZE_FRACTION * self.typical_sizes[index])
     }
 
     /// Returns true if a surface separates the state of a motion from the same state with one changed entry.
     fn sides_differ(
         &self,
         motion: &Motion,
-        place: usize,
+        index: usize,
         size: f64,
         (base, moved): (&Remainder, &Remainder),
     ) -> bool {
@@ -148,13 +148,16 @@ impl ExponentialIntegrator {
         let both = base.moved.iter().zip(&moved.moved);
         functions.zip(both).any(|(function, (before, after))| {
             let here = function.evaluate(&motion.state, &motion.given);
-            let there = here + size * function.state[place];
+            let there = here + size * function.state[index];
             Side::from_value(here + before) != Side::from_value(there + after)
         })
     }
 }
 
 /// Returns pairs of the accelerations of two remainders.
-fn pairs<'e>(a: &'e Remainder, b: &'e Remainder) -> impl Iterator<Item = (&'e f64, &'e f64)> {
+fn pair_accelerations<'e>(
+    a: &'e Remainder,
+    b: &'e Remainder,
+) -> impl Iterator<Item = (&'e f64, &'e f64)> {
     a.force.iter().zip(&b.force)
 }

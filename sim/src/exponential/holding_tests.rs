@@ -9,10 +9,10 @@ use crate::piecewise_linear::PiecewiseLinear;
 use super::{ExponentialIntegrator, Options, UnsupportedModel};
 
 /// Time between samples, s.
-const SAMPLE: f64 = 0.01;
+const SAMPLE_INTERVAL_S: f64 = 0.01;
 
 /// Mass in kg, friction in N, damping in N s/m and length in m.
-const VALUES: [f64; 4] = [2.0, 3.0, 4.0, 0.5];
+const PARAMETER_VALUES: [f64; 4] = [2.0, 3.0, 4.0, 0.5];
 
 /// Returns a mass of 2 kg with an input force and this friction, in which T = 3 N and c = 4 N s/m.
 fn block(friction: &str) -> Model {
@@ -30,12 +30,12 @@ fn block(friction: &str) -> Model {
 
 fn integrator(friction: &str) -> Result<ExponentialIntegrator, UnsupportedModel> {
     let exact = PiecewiseLinear::derive(&block(friction), &[]).expect("piecewise linear");
-    ExponentialIntegrator::new(exact.evaluator(&VALUES), SAMPLE, 1.0)
+    ExponentialIntegrator::new(exact.evaluator(&PARAMETER_VALUES), SAMPLE_INTERVAL_S, 1.0)
 }
 
 /// Returns sample times (s) and an input with steps.
 fn steps_of_force() -> (Vec<f64>, HeldInputs) {
-    let times = (0..=200).map(|k| f64::from(k) * SAMPLE);
+    let times = (0..=200).map(|k| f64::from(k) * SAMPLE_INTERVAL_S);
     let changes = vec![0.0, 0.3, 0.8, 1.2, 1.5];
     let inputs = HeldInputs::new(changes, vec![8.0, -1.0, -7.0, 2.0, 6.0], 1);
     (times.collect(), inputs.expect("inputs"))
@@ -70,7 +70,9 @@ fn friction_holds_with_damping_that_differs_by_direction() {
         "-T*above(dot(x)) - c*dot(x)*sign(dot(x))",
     ] {
         let exact = PiecewiseLinear::derive(&block(friction), &[]).expect("piecewise linear");
-        let mut propagator = exact.propagator_at(&VALUES).expect("a propagator");
+        let mut propagator = exact
+            .propagator_at(&PARAMETER_VALUES)
+            .expect("a propagator");
         let expected = propagator
             .simulate(&[0.0, 0.0], (0.0, 2.0), &times, &inputs, &mut |_| {})
             .expect("a motion");
@@ -82,7 +84,7 @@ fn friction_holds_with_damping_that_differs_by_direction() {
     }
 }
 
-/// The forces of both sides have the same direction.
+/// The forces on both sides have the same direction.
 #[test]
 fn friction_holds_with_forces_that_depend_on_input_and_position() {
     let (times, inputs) = steps_of_force();
@@ -103,13 +105,13 @@ fn friction_holds_with_forces_that_depend_on_input_and_position() {
 /// Returns positions computed with small steps that are implicit in the dry friction.
 fn step_implicitly(friction: &str, times: &[f64], inputs: &HeldInputs) -> Vec<f64> {
     const PARTS: u32 = 10_000;
-    let [mass, limit, damping, length] = VALUES;
-    let h = SAMPLE / f64::from(PARTS);
+    let [mass, limit, damping, length] = PARAMETER_VALUES;
+    let h = SAMPLE_INTERVAL_S / f64::from(PARTS);
     let (mut x, mut v) = (0.0_f64, 0.0_f64);
     let mut found = Vec::new();
     for t in times {
         found.push(x);
-        let u = inputs.last_sample(t + 0.5 * SAMPLE)[0];
+        let u = inputs.last_sample(t + 0.5 * SAMPLE_INTERVAL_S)[0];
         for _ in 0..PARTS {
             let (dry, viscous) = match friction {
                 text if text.contains("abs(dot") => (limit + 0.1 * u, damping * v.abs()),
@@ -125,7 +127,7 @@ fn step_implicitly(friction: &str, times: &[f64], inputs: &HeldInputs) -> Vec<f6
     found
 }
 
-/// The force of the second mass changes its share with the position.
+/// The share of the second mass in the force depends on the position.
 #[test]
 fn holding_forces_of_varying_direction_are_rejected() {
     let text = "[model]\nname = \"two\"\n[parameters]\n\
@@ -139,6 +141,7 @@ fn holding_forces_of_varying_direction_are_rejected() {
         .expect("valid")
         .model;
     let exact = PiecewiseLinear::derive(&model, &[]).expect("piecewise linear");
-    let found = ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0, 0.5]), SAMPLE, 1.0).err();
+    let found =
+        ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0, 0.5]), SAMPLE_INTERVAL_S, 1.0).err();
     assert_eq!(found, Some(UnsupportedModel::VaryingHoldingDirection));
 }

@@ -40,9 +40,9 @@ use std::collections::HashMap;
 use crate::inputs::HeldInputs;
 use eomgen_codegen::program::affine::AffineEvaluator;
 
-use crossing::first_crossing;
+use crossing::find_first_crossing;
 pub use parameter_derivatives::MovedParameters;
-use parameter_derivatives::regime_derivatives;
+use parameter_derivatives::compute_regime_derivatives;
 use prescribed_motions::PrescribedMotions;
 use regime::Regime;
 use regime_rates::is_held_in_varying_direction;
@@ -60,14 +60,14 @@ const MAX_TURN_RAD: f64 = 1.5;
 
 /// Minimum number of steps between two samples. Nonlinear forces are held over a step, so it must be short
 /// compared with the motion, which the samples resolve.
-const LEAST_STEPS: f64 = 4.0;
+const MIN_STEPS_PER_SAMPLE: f64 = 4.0;
 
 /// Maximum number of steps between two samples; a model that needs more is rejected.
-const MOST_STEPS: f64 = 256.0;
+const MAX_STEPS_PER_SAMPLE: f64 = 256.0;
 
 /// Largest relative deviation of an interval from a whole number of steps that is ignored. Rounded or jittering
 /// clocks of records cause such deviations.
-const JITTER: f64 = 1e-4;
+const MAX_CLOCK_JITTER: f64 = 1e-4;
 
 /// Message for a regime without matrices.
 const UNSUPPORTED_REGIME: &str =
@@ -100,8 +100,8 @@ impl ExponentialIntegrator {
             return Err(UnsupportedModel::VaryingHoldingDirection);
         }
         let turns = sample * regime::fastest_rate(&mut evaluator, &surfaces) / MAX_TURN_RAD;
-        let steps = turns.ceil().max(LEAST_STEPS) * refinement;
-        if steps.is_nan() || steps > MOST_STEPS {
+        let steps = turns.ceil().max(MIN_STEPS_PER_SAMPLE) * refinement;
+        if steps.is_nan() || steps > MAX_STEPS_PER_SAMPLE {
             return Err(UnsupportedModel::TooManySteps(steps));
         }
         Ok(Self {
@@ -118,8 +118,8 @@ impl ExponentialIntegrator {
             crossings: 0,
             evaluator,
             own: Vec::new(),
-            last_own: (Vec::new(), 0),
-            apart: RegimeDifference::default(),
+            last_linear_sides: (Vec::new(), 0),
+            regime_difference: RegimeDifference::default(),
             own_parameters: Vec::new(),
             moved: Vec::new(),
         })
@@ -147,7 +147,7 @@ impl ExponentialIntegrator {
     pub fn set_moved_parameters(&mut self, own: &[f64], moved: Vec<Vec<MovedParameters>>) {
         self.regimes.clear();
         self.known.clear();
-        self.last_own = (Vec::new(), 0);
+        self.last_linear_sides = (Vec::new(), 0);
         self.own_parameters = own.to_vec();
         self.moved = moved;
     }
@@ -177,7 +177,7 @@ impl ExponentialIntegrator {
         let mut motion = self.start(*begin, initial, inputs, &mut options)?;
         let own = initial.len();
         show(0, &motion.state[..own], options.tangents.as_deref());
-        for (place, end) in samples.iter().enumerate().skip(1) {
+        for (index, end) in samples.iter().enumerate().skip(1) {
             while motion.t < *end {
                 // Times of samples and of inputs may differ by rounding.
                 let near = motion.t + 1e-3 * self.step;
@@ -190,13 +190,13 @@ impl ExponentialIntegrator {
                 let at = (motion.t, middle);
                 self.prescribed
                     .set(inputs, at, &mut motion.state, &mut values);
-                self.interval(&mut motion, until, &values, &mut options)?;
+                self.simulate_interval(&mut motion, until, &values, &mut options)?;
                 motion.t = until;
             }
             if motion.state.iter().any(|x| !x.is_finite()) {
                 return Err("the state diverged".to_owned());
             }
-            show(place, &motion.state[..own], options.tangents.as_deref());
+            show(index, &motion.state[..own], options.tangents.as_deref());
         }
         Ok(())
     }
@@ -271,26 +271,26 @@ impl ExponentialIntegrator {
 
     /// Returns the index of the regime with these sides; creates the regime if necessary.
     fn regime(&mut self, sides: &[Side]) -> Result<usize, String> {
-        self.known_regime(sides)
+        self.find_or_create_regime(sides)
             .ok_or_else(|| UNSUPPORTED_REGIME.to_owned())
     }
 
-    fn known_regime(&mut self, sides: &[Side]) -> Option<usize> {
+    fn find_or_create_regime(&mut self, sides: &[Side]) -> Option<usize> {
         if let Some(known) = self.known.get(sides) {
             return *known;
         }
-        let place = self.new_regime(sides).map(|regime| {
+        let index = self.new_regime(sides).map(|regime| {
             self.regimes.push(regime);
             self.regimes.len() - 1
         });
-        self.known.insert(sides.to_vec(), place);
-        place
+        self.known.insert(sides.to_vec(), index);
+        index
     }
 
     fn new_regime(&mut self, sides: &[Side]) -> Option<Regime> {
         let mut regime = Regime::new(&mut self.evaluator, &self.surfaces, sides, self.step)?;
         if !self.moved.is_empty() {
-            regime.by_parameter = regime_derivatives(
+            regime.by_parameter = compute_regime_derivatives(
                 &mut self.evaluator,
                 &self.surfaces,
                 sides,
@@ -302,7 +302,7 @@ impl ExponentialIntegrator {
     }
 
     /// Simulates with constant inputs until a time, s.
-    fn interval(
+    fn simulate_interval(
         &mut self,
         motion: &mut Motion,
         until: f64,
@@ -318,19 +318,20 @@ impl ExponentialIntegrator {
         self.prepare(motion);
         if let Some(tangents) = &mut options.tangents {
             let at = (motion.t, &motion.state[..], inputs);
-            tangents.find_drives(&self.regimes[motion.regime], at);
+            tangents.update_drives(&self.regimes[motion.regime], at);
         }
         let begin = motion.t;
         let count = ((until - begin) / self.step).ceil().max(1.0);
         let rounded = ((until - begin) / self.step).round();
-        let whole = (rounded * self.step - (until - begin)).abs() < JITTER * (until - begin);
+        let whole =
+            (rounded * self.step - (until - begin)).abs() < MAX_CLOCK_JITTER * (until - begin);
         let count = if whole { rounded.max(1.0) } else { count };
         let length = (until - begin) / count;
-        for place in 1..=count as usize {
-            self.release(motion, begin + (place - 1) as f64 * length, options)?;
-            let end = begin + place as f64 * length;
-            if !(whole && self.whole_step(motion, end, options)?) {
-                self.parts(motion, length, end, inputs, options)?;
+        for index in 1..=count as usize {
+            self.release(motion, begin + (index - 1) as f64 * length, options)?;
+            let end = begin + index as f64 * length;
+            if !(whole && self.try_whole_step(motion, end, options)?) {
+                self.make_partial_steps(motion, length, end, inputs, options)?;
             }
         }
         self.advance_neighbours(motion, until, options)
@@ -367,7 +368,7 @@ impl ExponentialIntegrator {
     }
 
     /// Makes a whole step if it contains no event. Returns false otherwise.
-    fn whole_step(
+    fn try_whole_step(
         &mut self,
         motion: &mut Motion,
         end: f64,
@@ -383,7 +384,7 @@ impl ExponentialIntegrator {
             regime.step_force.add_product(held, &mut motion.next);
             let here = (motion.regime, &motion.sides[..]);
             let at = (end, &motion.next[..n], &motion.given[..]);
-            self.remainder_at(here, at, &mut **force, &mut motion.later)?;
+            self.compute_remainder(here, at, &mut **force, &mut motion.later)?;
             let pairs = motion.later.force.iter().zip(&motion.remainder.force);
             motion.change.clear();
             motion
@@ -397,17 +398,17 @@ impl ExponentialIntegrator {
         let regime = &self.regimes[motion.regime];
         let surfaces = motion.sides.len();
         let (function, rate) = motion.event_values.split_at(surfaces);
-        let crossed = (0..surfaces).any(|place| {
-            let later = motion.later.moved[place];
-            let slope = (later - motion.remainder.moved[place]) / self.step;
+        let crossed = (0..surfaces).any(|index| {
+            let later = motion.later.moved[index];
+            let slope = (later - motion.remainder.moved[index]) / self.step;
             let ends = (
-                (function[place], rate[place] + slope),
+                (function[index], rate[index] + slope),
                 (
-                    motion.next[n + place] + later,
-                    motion.next[n + surfaces + place] + slope,
+                    motion.next[n + index] + later,
+                    motion.next[n + surfaces + index] + slope,
                 ),
             );
-            first_crossing(motion.sides[place], ends, self.step).is_some()
+            find_first_crossing(motion.sides[index], ends, self.step).is_some()
         });
         let begin = (&motion.state[..], &motion.remainder);
         let ends = (begin, (&motion.next[..n], &motion.later));
@@ -420,10 +421,10 @@ impl ExponentialIntegrator {
             .copy_from_slice(&motion.next[n..n + 2 * surfaces]);
         if options.force.is_some() {
             std::mem::swap(&mut motion.remainder, &mut motion.later);
-            for place in 0..surfaces {
-                let row = &regime.functions[place].state[self.degrees..];
-                motion.event_values[place] += motion.remainder.moved[place];
-                motion.event_values[surfaces + place] += dot(row, &motion.remainder.force);
+            for index in 0..surfaces {
+                let row = &regime.functions[index].state[self.degrees..];
+                motion.event_values[index] += motion.remainder.moved[index];
+                motion.event_values[surfaces + index] += dot(row, &motion.remainder.force);
             }
         }
         if options.tangents.as_deref_mut().is_some_and(Tangents::step) {

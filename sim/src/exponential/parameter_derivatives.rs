@@ -5,7 +5,7 @@ use eomgen_codegen::program::affine::AffineEvaluator;
 use nalgebra::DMatrix;
 
 use super::kernels::Columns;
-use super::regime_rates::{DOUBLINGS, Rates, TERMS, flow_scale, held_rates};
+use super::regime_rates::{MAX_DOUBLINGS, Rates, TERMS, compute_held_rates, find_flow_scale};
 use super::surfaces::{Row, Side, Surfaces};
 use crate::balancing::scale_matrix;
 
@@ -40,7 +40,7 @@ type RegimeRows = (Rates, Vec<Row>);
 
 /// Computes the derivatives of a regime by each parameter. `base` are the parameters of the evaluator. Returns
 /// `None` if a derivative cannot be computed.
-pub(super) fn regime_derivatives(
+pub(super) fn compute_regime_derivatives(
     evaluator: &mut AffineEvaluator,
     surfaces: &Surfaces,
     sides: &[Side],
@@ -49,7 +49,7 @@ pub(super) fn regime_derivatives(
 ) -> Option<Vec<RegimeDerivative>> {
     let mut rows_at = |values: &[f64]| -> Option<RegimeRows> {
         evaluator.set_parameters(values);
-        let (rates, functions, _) = held_rates(evaluator, surfaces, sides)?;
+        let (rates, functions, _) = compute_held_rates(evaluator, surfaces, sides)?;
         rates.are_finite().then_some((rates, functions))
     };
     let own = rows_at(base)?;
@@ -63,7 +63,7 @@ pub(super) fn regime_derivatives(
         let [(a, from), (b, to), ..] = &ends[..] else {
             return None;
         };
-        Some(difference(&own.0, (a, b), to - from, step))
+        Some(compute_difference_quotient(&own.0, (a, b), to - from, step))
     });
     let derivatives = derivatives.collect();
     evaluator.set_parameters(base);
@@ -71,7 +71,7 @@ pub(super) fn regime_derivatives(
 }
 
 /// Returns the difference quotient of a regime's matrices over `span`, and its effect on tangent vectors.
-fn difference(
+fn compute_difference_quotient(
     own: &Rates,
     (a, b): (&RegimeRows, &RegimeRows),
     span: f64,
@@ -90,7 +90,7 @@ fn difference(
         given: quotient(&a.given, &b.given),
     });
     let (n, given) = (rates.state.nrows(), rates.given.ncols());
-    let doubled = flow_derivatives(&own.joined_matrix(), &rates.joined_matrix(), n, step);
+    let doubled = compute_flow_derivatives(&own.joined_matrix(), &rates.joined_matrix(), n, step);
     let doubled = doubled.iter().map(|of| {
         (
             Columns::from_entries(n, n, |r, c| of[(r, c)]),
@@ -108,13 +108,13 @@ fn difference(
 /// Returns the Fréchet derivatives of exp(W h) in the direction V, for h of 1, 2, 4 ... steps, by the series
 /// and by squaring (Higham, Functions of Matrices, 2008, section 10.6). The first `states` rows of W and V are
 /// rates, the others are 0.
-fn flow_derivatives(
+fn compute_flow_derivatives(
     whole: &DMatrix<f64>,
     change: &DMatrix<f64>,
     states: usize,
     step: f64,
 ) -> Vec<DMatrix<f64>> {
-    let scale = flow_scale(whole, states, step);
+    let scale = find_flow_scale(whole, states, step);
     let back: Vec<f64> = scale.iter().map(|factor| 1.0 / factor).collect();
     let (w, v) = (
         scale_matrix(whole, &scale) * step,
@@ -141,8 +141,8 @@ fn flow_derivatives(
     for _ in 0..squarings as usize {
         double(&mut flow, &mut derivative);
     }
-    let mut doubled = Vec::with_capacity(DOUBLINGS);
-    for _ in 0..DOUBLINGS {
+    let mut doubled = Vec::with_capacity(MAX_DOUBLINGS);
+    for _ in 0..MAX_DOUBLINGS {
         doubled.push(scale_matrix(&derivative, &back));
         double(&mut flow, &mut derivative);
     }

@@ -1,6 +1,6 @@
 //! Steps with events: they are made in parts, from event to event.
 
-use super::crossing::first_crossing;
+use super::crossing::find_first_crossing;
 use super::release::Release;
 use super::remainder::Remainder;
 use super::remainder_search::OFFSET_STEPS;
@@ -9,10 +9,10 @@ use super::tangents::{ReachedSurface, add_exponential_series};
 use super::types::{ExponentialIntegrator, Motion, Options};
 
 /// Number of events within a step after which the rest of the step is made without event location.
-const MOST_CROSSINGS: usize = 12;
+const MAX_EVENTS_PER_STEP: usize = 12;
 
 /// Relative error of a partial step of the motion.
-const ROUNDING: f64 = 1e-16;
+const PART_ROUNDING_FRACTION: f64 = 1e-16;
 
 /// Delay of a release after the holding force reaches its bound, in steps. The motion then leaves the surface
 /// by more than rounding.
@@ -45,7 +45,7 @@ const MIN_RETURN_RATE: f64 = 1e-9;
 
 impl ExponentialIntegrator {
     /// Makes a step in parts, from event to event.
-    pub(super) fn parts(
+    pub(super) fn make_partial_steps(
         &mut self,
         motion: &mut Motion,
         length: f64,
@@ -55,17 +55,17 @@ impl ExponentialIntegrator {
     ) -> Result<(), String> {
         let mut rest = length;
         self.advance_neighbours(motion, end - length, options)?;
-        for _ in 0..MOST_CROSSINGS {
+        for _ in 0..MAX_EVENTS_PER_STEP {
             self.evaluate_events(motion);
             let begin = (motion.event_values.clone(), motion.state.clone());
             let remainder = motion.remainder.clone();
-            self.part(motion, rest);
+            self.advance_state(motion, rest);
             let before = std::mem::take(&mut motion.event_values);
             if let Some(force) = &mut options.force {
                 self.find_remainder(motion, end, &mut **force)?;
             }
             self.evaluate_events(motion);
-            let first = self.first_event(motion, (&begin, &remainder), rest);
+            let first = self.find_first_event(motion, (&begin, &remainder), rest);
             motion.remainder = remainder;
             let Some(event) = first else {
                 return self.end_step(motion, rest, end, inputs, options);
@@ -75,7 +75,7 @@ impl ExponentialIntegrator {
             let tau = self.refine_time(motion, &event, rest, &begin.1);
             rest -= tau;
             let t = end - rest;
-            self.accompany(motion, tau, (t, true), inputs, options)?;
+            self.complete_part(motion, tau, (t, true), inputs, options)?;
             match event {
                 Event::Crossing { surface, slope, .. } => {
                     self.cross(motion, t, (surface, slope), options)?;
@@ -95,7 +95,7 @@ impl ExponentialIntegrator {
                 return Ok(());
             }
         }
-        self.part(motion, rest);
+        self.advance_state(motion, rest);
         self.end_step(motion, rest, end, inputs, options)?;
         // If the events follow each other too fast, the signs of the functions at the end decide the sides.
         let regime = &self.regimes[motion.regime];
@@ -116,7 +116,7 @@ impl ExponentialIntegrator {
     /// Returns the first event in a part of a step of this length, s; the motion is at the end of the part.
     /// `begin` contains the functions of the surfaces with their rates and the state at its start, and the
     /// nonlinear remainder.
-    fn first_event(
+    fn find_first_event(
         &self,
         motion: &Motion,
         (begin, remainder): (&(Vec<f64>, Vec<f64>), &Remainder),
@@ -131,7 +131,7 @@ impl ExponentialIntegrator {
                 (begin.0[surface], begin.0[rates] + slope),
                 (end[surface], end[rates] + slope),
             );
-            let tau = first_crossing(motion.sides[surface], ends, rest)?;
+            let tau = find_first_crossing(motion.sides[surface], ends, rest)?;
             Some(Event::Crossing {
                 surface,
                 slope,
@@ -149,11 +149,17 @@ impl ExponentialIntegrator {
     }
 
     /// Advances the state by a part of a step, s.
-    fn part(&self, motion: &mut Motion, tau: f64) {
+    fn advance_state(&self, motion: &mut Motion, tau: f64) {
         let regime = &self.regimes[motion.regime];
         let mut rates = vec![0.0; regime.matrix.rows];
         self.rates(motion, &mut rates);
-        add_exponential_series(&regime.matrix, &mut motion.state, &mut rates, tau, ROUNDING);
+        add_exponential_series(
+            &regime.matrix,
+            &mut motion.state,
+            &mut rates,
+            tau,
+            PART_ROUNDING_FRACTION,
+        );
     }
 
     /// Computes the rates at the current state.
@@ -177,14 +183,14 @@ impl ExponentialIntegrator {
                 (&regime.functions[*surface], moved, *slope)
             }
             Event::Release(release) => {
-                let borne = motion.remainder.borne.get(release.place);
-                let offset = borne.copied().unwrap_or(0.0);
-                let force = regime.held[release.place].force_to(release.to);
+                let holding_force_change = motion.remainder.holding_force_change.get(release.place);
+                let offset = holding_force_change.copied().unwrap_or(0.0);
+                let force = regime.held[release.place].force_relative_to(release.to);
                 (&force.value, offset, release.slope)
             }
         };
         let tau = event.tau();
-        self.part(motion, tau);
+        self.advance_state(motion, tau);
         let value = row.evaluate(&motion.state, &motion.given) + offset + slope * tau;
         let mut rates = vec![0.0; regime.matrix.rows];
         self.rates(motion, &mut rates);
@@ -198,7 +204,7 @@ impl ExponentialIntegrator {
             return tau;
         }
         motion.state.copy_from_slice(begin);
-        self.part(motion, better);
+        self.advance_state(motion, better);
         better
     }
 
@@ -211,14 +217,14 @@ impl ExponentialIntegrator {
         inputs: &[f64],
         options: &mut Options<'_, '_>,
     ) -> Result<(), String> {
-        self.accompany(motion, tau, (end, false), inputs, options)?;
+        self.complete_part(motion, tau, (end, false), inputs, options)?;
         self.prepare(motion);
         Ok(())
     }
 
     /// Corrects the nonlinear forces over a part of a step, and advances the tangent vectors. `t` is the end of
     /// the part; `on_surface` is true if a surface was reached there.
-    fn accompany(
+    fn complete_part(
         &mut self,
         motion: &mut Motion,
         tau: f64,
@@ -227,7 +233,7 @@ impl ExponentialIntegrator {
         options: &mut Options<'_, '_>,
     ) -> Result<(), String> {
         if options.force.is_some() {
-            self.correct(motion, tau, t, options)?;
+            self.correct_forces(motion, tau, t, options)?;
         }
         let Some(tangents) = options.tangents.as_deref_mut() else {
             return Ok(());
@@ -244,7 +250,7 @@ impl ExponentialIntegrator {
 
     /// Corrects the state at the end of a part for the change of the nonlinear forces, which were held at their
     /// initial values.
-    fn correct(
+    fn correct_forces(
         &mut self,
         motion: &mut Motion,
         tau: f64,
@@ -315,7 +321,7 @@ impl ExponentialIntegrator {
         }
         if let Some(tangents) = &mut options.tangents {
             let gradient = match &mut options.force {
-                Some(force) => self.gradient(motion, (surface, t), &mut **force, &rates),
+                Some(force) => self.compute_gradient(motion, (surface, t), &mut **force, &rates),
                 None => function,
             };
             let by_parameter = self.regimes[before].by_parameter.iter();

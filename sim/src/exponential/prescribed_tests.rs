@@ -72,9 +72,9 @@ fn spring_to_the_base_is_exact_with_its_derivative() {
         )
         .expect("a motion");
     for (t, (state, tangent)) in samples().iter().zip(found) {
-        let place = t.powi(3) - 6.0 / 9.0 * t + 6.0 / 27.0 * (3.0 * t).sin();
+        let index = t.powi(3) - 6.0 / 9.0 * t + 6.0 / 27.0 * (3.0 * t).sin();
         assert_eq!(state.len(), 2);
-        assert!((state[0] - place).abs() < 1e-11, "{t}: {state:?}");
+        assert!((state[0] - index).abs() < 1e-11, "{t}: {state:?}");
         assert!((tangent - (3.0 * t).cos()).abs() < 1e-11, "{t}: {tangent}");
     }
 }
@@ -100,10 +100,10 @@ fn friction_on_the_base_holds_until_its_acceleration_exceeds_the_bound() {
         .expect("a motion");
     // The base accelerates by 6 t.
     let slip = 0.5;
-    for (t, place) in samples().iter().zip(found) {
+    for (t, index) in samples().iter().zip(found) {
         let after = f64::max(t - slip, 0.0);
         let held = f64::min(*t, slip).powi(3);
         let wanted = held + 3.0 * slip * slip * after + 1.5 * after * after;
-        assert!((place - wanted).abs() < 1e-5, "{t}: {place} {wanted}");
+        assert!((index - wanted).abs() < 1e-5, "{t}: {index} {wanted}");
     }
 }

@@ -10,7 +10,9 @@ use crate::balancing::scale_matrix;
 
 use super::kernels::Columns;
 use super::parameter_derivatives::RegimeDerivative;
-use super::regime_rates::{DOUBLINGS, HeldRates, Rates, flow_scale, held_rates, state_scale};
+use super::regime_rates::{
+    HeldRates, MAX_DOUBLINGS, Rates, compute_held_rates, find_flow_scale, find_state_scale,
+};
 use super::surfaces::{Row, Side, Surfaces, dot};
 
 /// Matrices of one regime.
@@ -85,19 +87,19 @@ impl HeldSurface {
     ) -> Self {
         let above_high = force.subtract(difference);
         let holding = |value: Row| HoldingForce {
-            rate: along(&value, rates),
+            rate: compute_function_rate(&value, rates),
             value,
         };
         Self {
             surface,
             above_low: holding(force),
             above_high: holding(above_high),
-            across: across(&function.state),
+            across: find_shortest_change(&function.state),
         }
     }
 
     /// Returns the holding force relative to the force on a side.
-    pub fn force_to(&self, side: Side) -> &HoldingForce {
+    pub fn force_relative_to(&self, side: Side) -> &HoldingForce {
         match side {
             Side::Above => &self.above_high,
             Side::Below | Side::Held => &self.above_low,
@@ -106,7 +108,7 @@ impl HeldSurface {
 
     /// Returns the difference of the forces on both sides, and the share of the upper side in the holding
     /// force.
-    pub fn difference_and_share(&self, state: &[f64], inputs: &[f64]) -> (f64, f64) {
+    pub fn compute_difference_and_share(&self, state: &[f64], inputs: &[f64]) -> (f64, f64) {
         let [low, high] = [&self.above_low, &self.above_high]
             .map(|force| force.value.evaluate_with_inputs(state, inputs));
         let difference = low - high;
@@ -128,7 +130,7 @@ impl Regime {
         sides: &[Side],
         step: f64,
     ) -> Option<Self> {
-        let (rates, functions, held) = held_rates(evaluator, surfaces, sides)?;
+        let (rates, functions, held) = compute_held_rates(evaluator, surfaces, sides)?;
         let HeldRates {
             forces,
             factor,
@@ -144,20 +146,20 @@ impl Regime {
         let n = rates.state.nrows();
         let degrees = evaluator.degrees_of_freedom();
         let forced = evaluator.model_states() - degrees;
-        let borne = (
+        let holding_force_change = (
             factor.columns(degrees, forced).into_owned(),
             directions.rows(degrees, forced).into_owned(),
         );
         let given = rates.given.ncols();
         let columns = n + given + forced;
         let mut whole = rates.joined_matrix().resize(columns, columns, 0.0);
-        for place in 0..forced {
-            whole[(degrees + place, n + given + place)] = 1.0;
+        for index in 0..forced {
+            whole[(degrees + index, n + given + index)] = 1.0;
         }
-        let flow = exponential(&whole, n, step);
-        let mut doubled = Vec::with_capacity(DOUBLINGS);
+        let flow = compute_exponential(&whole, n, step);
+        let mut doubled = Vec::with_capacity(MAX_DOUBLINGS);
         let mut longer = flow.clone();
-        for _ in 0..DOUBLINGS {
+        for _ in 0..MAX_DOUBLINGS {
             doubled.push(DoubledStep {
                 state: Columns::from_entries(n, n, |r, c| longer[(r, c)]),
                 given: Columns::from_entries(n, given, |r, c| longer[(r, n + c)]),
@@ -165,7 +167,10 @@ impl Regime {
             });
             longer = &longer * &longer;
         }
-        let speeds: Vec<Row> = functions.iter().map(|row| along(row, &rates)).collect();
+        let speeds: Vec<Row> = functions
+            .iter()
+            .map(|row| compute_function_rate(row, &rates))
+            .collect();
         let below: Vec<&Row> = functions.iter().chain(&speeds).collect();
         let row_of = |row: usize, column: usize, own: Option<usize>| {
             if row < n {
@@ -173,7 +178,7 @@ impl Regime {
             }
             let function = below[row - n];
             let sum: f64 = (0..n).map(|k| function.state[k] * flow[(k, column)]).sum();
-            sum + own.map_or(0.0, |place| function.given[place])
+            sum + own.map_or(0.0, |index| function.given[index])
         };
         let rows = n + below.len();
         Some(Self {
@@ -188,7 +193,7 @@ impl Regime {
             functions,
             rates: speeds,
             held,
-            force_effects: borne,
+            force_effects: holding_force_change,
         })
     }
 }
@@ -224,13 +229,13 @@ impl Regime {
 }
 
 /// Returns the shortest change of the state that increases a function by one.
-fn across(function: &[f64]) -> Vec<f64> {
+fn find_shortest_change(function: &[f64]) -> Vec<f64> {
     let square = dot(function, function);
     function.iter().map(|entry| entry / square).collect()
 }
 
 /// Returns the rate of a function for these rates of the state.
-fn along(row: &Row, rates: &Rates) -> Row {
+fn compute_function_rate(row: &Row, rates: &Rates) -> Row {
     let times = |matrix: &DMatrix<f64>| -> Vec<f64> {
         let columns = matrix.column_iter();
         columns
@@ -245,8 +250,8 @@ fn along(row: &Row, rates: &Rates) -> Row {
 
 /// Returns exp(W h) of a matrix whose first `states` rows are rates; its other rows are 0. The matrix is
 /// balanced first because its norm determines the number of squarings.
-fn exponential(whole: &DMatrix<f64>, states: usize, step: f64) -> DMatrix<f64> {
-    let scale = flow_scale(whole, states, step);
+fn compute_exponential(whole: &DMatrix<f64>, states: usize, step: f64) -> DMatrix<f64> {
+    let scale = find_flow_scale(whole, states, step);
     let flow = (scale_matrix(whole, &scale) * step).exp();
     let back: Vec<f64> = scale.iter().map(|factor| 1.0 / factor).collect();
     scale_matrix(&flow, &back)
@@ -257,7 +262,7 @@ pub fn fastest_rate(evaluator: &mut AffineEvaluator, surfaces: &Surfaces) -> f64
     let count = surfaces.guards.len();
     let mut fastest: f64 = 0.0;
     for case in 0..count + 2 {
-        let side = |place: usize| match case == count + 1 || place == case {
+        let side = |index: usize| match case == count + 1 || index == case {
             true => Side::Above,
             false => Side::Below,
         };
@@ -266,7 +271,7 @@ pub fn fastest_rate(evaluator: &mut AffineEvaluator, surfaces: &Surfaces) -> f64
         let rates = Rates::new(&system);
         if rates.state.iter().all(|entry| entry.is_finite()) {
             // If the eigenvalue iteration does not converge, no step is short enough.
-            let balanced = scale_matrix(&rates.state, &state_scale(&rates.state));
+            let balanced = scale_matrix(&rates.state, &find_state_scale(&rates.state));
             let eigenvalues = qr_iteration::eigenvalues(&balanced);
             let sizes = eigenvalues.map(|all| all.iter().map(|e| e.norm()).fold(0.0, f64::max));
             fastest = fastest.max(sizes.unwrap_or(f64::INFINITY));

@@ -17,7 +17,7 @@ const MIN_RELATIVE_JUMP: f64 = 1e-9;
 pub(super) const TERMS: usize = 14;
 
 /// Maximum number of doublings of the steps of tangent vectors.
-pub(super) const DOUBLINGS: usize = 6;
+pub(super) const MAX_DOUBLINGS: usize = 6;
 
 /// Rates of a regime as matrices.
 #[derive(Clone)]
@@ -58,7 +58,7 @@ impl Rates {
 }
 
 /// Returns the rates with these sides, the surfaces' functions, and the data of holding surfaces.
-pub(super) fn held_rates(
+pub(super) fn compute_held_rates(
     evaluator: &mut AffineEvaluator,
     surfaces: &Surfaces,
     sides: &[Side],
@@ -66,7 +66,7 @@ pub(super) fn held_rates(
     let system = evaluator.system(&surfaces.guard_sides(sides, |_| 0.0));
     let mut rates = Rates::new(&system);
     let functions = surfaces.rows(&system);
-    let held = hold(evaluator, surfaces, sides, &functions, &mut rates)?;
+    let held = hold_on_surfaces(evaluator, surfaces, sides, &functions, &mut rates)?;
     Some((rates, functions, held))
 }
 
@@ -83,28 +83,28 @@ pub(super) struct HeldRates {
 }
 
 /// Reduces the rates to those on the holding surfaces of `sides`.
-fn hold(
+fn hold_on_surfaces(
     evaluator: &mut AffineEvaluator,
     surfaces: &Surfaces,
     sides: &[Side],
     functions: &[Row],
     rates: &mut Rates,
 ) -> Option<HeldRates> {
-    let places: Vec<usize> = (0..sides.len())
+    let indices: Vec<usize> = (0..sides.len())
         .filter(|place| sides[*place] == Side::Held)
         .collect();
     let n = rates.state.nrows();
-    let mut directions = DMatrix::zeros(n, places.len());
-    let mut differences = Vec::with_capacity(places.len());
-    for (column, held) in places.iter().enumerate() {
+    let mut directions = DMatrix::zeros(n, indices.len());
+    let mut differences = Vec::with_capacity(indices.len());
+    for (column, held) in indices.iter().enumerate() {
         let numbers = surfaces.guard_sides(sides, |place| f64::from(u8::from(place == *held)));
         let other = Rates::new(&evaluator.system(&numbers));
         let difference = SideDifference::new(rates, &other, &functions[*held]);
         directions.set_column(column, &difference.find_direction()?);
-        differences.push(difference.function_reduction());
+        differences.push(difference.compute_function_reduction());
     }
-    let rows = DMatrix::from_fn(places.len(), n, |r, c| functions[places[r]].state[c]);
-    let factor = match places.is_empty() {
+    let rows = DMatrix::from_fn(indices.len(), n, |r, c| functions[indices[r]].state[c]);
+    let factor = match indices.is_empty() {
         true => rows,
         false => -(&rows * &directions).try_inverse()? * rows,
     };
@@ -116,7 +116,7 @@ fn hold(
         state: of_state.row(place).iter().copied().collect(),
         given: of_given.row(place).iter().copied().collect(),
     };
-    let forces = places.iter().zip(differences).enumerate();
+    let forces = indices.iter().zip(differences).enumerate();
     Some(HeldRates {
         forces: forces
             .map(|(index, (place, difference))| (*place, row(index), difference))
@@ -162,7 +162,7 @@ struct SideDifference {
 
 impl SideDifference {
     fn new(below: &Rates, above: &Rates, function: &Row) -> Self {
-        let scale = state_scale(&below.state);
+        let scale = find_state_scale(&below.state);
         let states = scale.len();
         let scaled = |rates: &Rates| {
             let [states, given] = [&rates.state, &rates.given].map(DMatrix::ncols);
@@ -221,7 +221,7 @@ impl SideDifference {
 
     /// Returns the reduction of the function's rate by the difference: positive if this rate is lower
     /// above the surface than below.
-    fn function_reduction(&self) -> Row {
+    fn compute_function_reduction(&self) -> Row {
         let states = self.scale.len();
         let rates = -&self.function * &self.columns;
         let by_state = rates.iter().zip(&self.scale);
@@ -266,7 +266,7 @@ impl SideDifference {
 }
 
 /// Returns powers of two that scale states of different units to similar size.
-pub(super) fn state_scale(rates: &DMatrix<f64>) -> Vec<f64> {
+pub(super) fn find_state_scale(rates: &DMatrix<f64>) -> Vec<f64> {
     let one = vec![1.0; rates.nrows()];
     match rates.iter().all(|entry| entry.abs() < MAX_ENTRY_PER_S) {
         true => balance(rates, one),
@@ -275,9 +275,9 @@ pub(super) fn state_scale(rates: &DMatrix<f64>) -> Vec<f64> {
 }
 
 /// Returns powers of two that balance the matrix of [`Rates::joined_matrix`] for its exponential.
-pub(super) fn flow_scale(whole: &DMatrix<f64>, states: usize, step: f64) -> Vec<f64> {
+pub(super) fn find_flow_scale(whole: &DMatrix<f64>, states: usize, step: f64) -> Vec<f64> {
     let rates = whole.view((0, 0), (states, states)).into_owned();
-    let mut scale = state_scale(&rates);
+    let mut scale = find_state_scale(&rates);
     let largest = scale_matrix(&rates, &scale).amax().max(1.0 / step);
     for column in whole.column_iter().skip(states) {
         let entries = column.iter().zip(&scale);

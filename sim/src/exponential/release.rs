@@ -1,7 +1,7 @@
 //! Release of a motion by a surface: the time at which the holding force leaves the interval between the forces
 //! on both sides.
 
-use super::crossing::first_crossing;
+use super::crossing::find_first_crossing;
 use super::regime::HoldingForce;
 use super::remainder::Remainder;
 use super::remainder_search::OFFSET_STEPS;
@@ -35,10 +35,17 @@ impl ExponentialIntegrator {
     ) -> Option<Release> {
         let held = self.regimes[motion.regime].held.iter().enumerate();
         let releases = held.flat_map(|(place, held)| {
-            let borne = |remainder: &Remainder| remainder.borne.get(place).copied().unwrap_or(0.0);
-            let slope = (borne(end.1) - borne(begin.1)) / length;
+            let holding_force_change = |remainder: &Remainder| {
+                remainder
+                    .holding_force_change
+                    .get(place)
+                    .copied()
+                    .unwrap_or(0.0)
+            };
+            let slope = (holding_force_change(end.1) - holding_force_change(begin.1)) / length;
             let at = |(state, remainder): End<'_>, force: &HoldingForce| {
-                let value = force.value.evaluate(state, &motion.given) + borne(remainder);
+                let value =
+                    force.value.evaluate(state, &motion.given) + holding_force_change(remainder);
                 let forced = dot(&force.value.state[self.degrees..], &remainder.force);
                 (
                     value,
@@ -50,9 +57,9 @@ impl ExponentialIntegrator {
                     Side::Above => Side::Below,
                     Side::Below | Side::Held => Side::Above,
                 };
-                let force = held.force_to(to);
+                let force = held.force_relative_to(to);
                 let ends = (at(begin, force), at(end, force));
-                let tau = first_crossing(inside, ends, length)?;
+                let tau = find_first_crossing(inside, ends, length)?;
                 Some(Release {
                     place,
                     to,
@@ -92,13 +99,17 @@ impl ExponentialIntegrator {
         t: f64,
         options: &mut Options<'_, '_>,
     ) -> Result<(), String> {
-        let borne = motion.remainder.borne.iter().copied();
-        let borne = borne.chain(std::iter::repeat(0.0));
-        let held = self.regimes[motion.regime].held.iter().zip(borne);
+        let holding_force_change = motion.remainder.holding_force_change.iter().copied();
+        let holding_force_change = holding_force_change.chain(std::iter::repeat(0.0));
+        let held = self.regimes[motion.regime]
+            .held
+            .iter()
+            .zip(holding_force_change);
         let released: Vec<(usize, Side)> = held
-            .filter_map(|(held, borne)| {
-                let [low, high] = [&held.above_low, &held.above_high]
-                    .map(|force| force.value.evaluate(&motion.state, &motion.given) + borne);
+            .filter_map(|(held, holding_force_change)| {
+                let [low, high] = [&held.above_low, &held.above_high].map(|force| {
+                    force.value.evaluate(&motion.state, &motion.given) + holding_force_change
+                });
                 let side = match (low < 0.0, high > 0.0) {
                     (true, _) => Some(Side::Below),
                     (false, true) => Some(Side::Above),

@@ -25,7 +25,7 @@ pub struct Remainder {
     /// True if a surface may be displaced.
     pub moves: bool,
     /// Value added to the holding force of each holding surface, in the order of the regime.
-    pub borne: Vec<f64>,
+    pub holding_force_change: Vec<f64>,
     guards: Vec<f64>,
 }
 
@@ -83,7 +83,7 @@ impl RegimeDifference {
                 rows.map(|row| entry(a, row, column) - entry(b, row, column))
                     .collect()
             };
-            let columns = (0..columns).map(|place| (place, column(place)));
+            let columns = (0..columns).map(|index| (index, column(index)));
             columns
                 .filter(|(_, column)| column.iter().any(|entry| *entry != 0.0))
                 .collect()
@@ -101,9 +101,9 @@ impl RegimeDifference {
 
     pub fn add(&self, state: &[f64], given: &[f64], out: &mut [f64]) {
         for (columns, values) in [(&self.by_state, state), (&self.by_given, given)] {
-            for (place, column) in columns {
+            for (index, column) in columns {
                 let sums = out.iter_mut().zip(column);
-                sums.for_each(|(slot, entry)| *slot += values[*place] * entry);
+                sums.for_each(|(slot, entry)| *slot += values[*index] * entry);
             }
         }
     }

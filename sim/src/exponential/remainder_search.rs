@@ -20,11 +20,11 @@ impl ExponentialIntegrator {
     ) -> Result<(), String> {
         let here = (motion.regime, &motion.sides[..]);
         let at = (t, &motion.state[..], &motion.given[..]);
-        self.remainder_at(here, at, force, &mut motion.remainder)
+        self.compute_remainder(here, at, force, &mut motion.remainder)
     }
 
     /// Computes the nonlinear remainder at any state, relative to a regime with its sides.
-    pub(super) fn remainder_at(
+    pub(super) fn compute_remainder(
         &mut self,
         (here, sides): (usize, &[Side]),
         (t, state, given): (f64, &[f64], &[f64]),
@@ -34,8 +34,8 @@ impl ExponentialIntegrator {
         let functions = &self.regimes[here].functions;
         let force = (force, &self.prescribed);
         out.find(force, (&self.surfaces, functions), (t, state, given));
-        self.relate((here, sides), state, given, out)?;
-        self.regimes[here].subtract_held(&mut out.force, &mut out.borne);
+        self.convert_to_regime((here, sides), state, given, out)?;
+        self.regimes[here].subtract_held(&mut out.force, &mut out.holding_force_change);
         Ok(())
     }
 
@@ -59,11 +59,11 @@ impl ExponentialIntegrator {
         let near: Vec<f64> = near.map(|(x, rate)| x + tau * rate).collect();
         let here = (motion.regime, &motion.sides[..]);
         let at = (t + tau, &near[..], &motion.given[..]);
-        self.remainder_at(here, at, &mut **force, &mut motion.remainder)
+        self.compute_remainder(here, at, &mut **force, &mut motion.remainder)
     }
 
     /// Converts accelerations from the regime of the linear part at this state to the regime `here`.
-    fn relate(
+    fn convert_to_regime(
         &mut self,
         (here, sides): (usize, &[Side]),
         state: &[f64],
@@ -84,20 +84,21 @@ impl ExponentialIntegrator {
         if self.own == sides {
             return Ok(());
         }
-        if self.last_own.0 != self.own {
+        if self.last_linear_sides.0 != self.own {
             let own = self.own.clone();
-            self.last_own = (own.clone(), self.regime(&own)?);
+            self.last_linear_sides = (own.clone(), self.regime(&own)?);
         }
-        let pair = (self.last_own.1, here);
-        if self.apart.pair != pair {
-            self.apart = RegimeDifference::new(
+        let pair = (self.last_linear_sides.1, here);
+        if self.regime_difference.pair != pair {
+            self.regime_difference = RegimeDifference::new(
                 &self.regimes[pair.0],
                 &self.regimes[pair.1],
                 (self.states, self.degrees),
                 pair,
             );
         }
-        self.apart.add(state, given, &mut remainder.force);
+        self.regime_difference
+            .add(state, given, &mut remainder.force);
         Ok(())
     }
 }

@@ -13,7 +13,7 @@ pub struct Slopes {
     pub active: Vec<usize>,
     /// True for `here` and `there` if they have been computed.
     pub is_known: [bool; 2],
-    pub asked: usize,
+    pub call_count: usize,
     pub base: Remainder,
     pub moved: Remainder,
     pub rates: Vec<f64>,
@@ -38,7 +38,7 @@ impl Slopes {
     /// Marks the derivatives at the current state as unknown.
     pub fn forget_here(&mut self) {
         self.is_known = [false; 2];
-        self.asked = 0;
+        self.call_count = 0;
     }
 
     /// Uses the derivatives at the start of the step also at its end.
@@ -55,7 +55,7 @@ impl Slopes {
 
     /// Adds the acceleration of a tangent vector at the start of a step. If the derivatives there are unknown,
     /// those at the end are used; if both are unknown, nothing is added.
-    pub fn add_begin(&self, vector: &[f64], out: &mut [f64]) {
+    pub fn add_start_acceleration(&self, vector: &[f64], out: &mut [f64]) {
         let derivatives = match self.is_known {
             [true, _] => &self.here,
             [false, true] => &self.there,
@@ -65,7 +65,7 @@ impl Slopes {
     }
 
     /// Adds the acceleration of a tangent vector at the end of a step, times a factor.
-    pub fn add_end(&self, vector: &[f64], factor: f64, out: &mut [f64]) {
+    pub fn add_end_acceleration(&self, vector: &[f64], factor: f64, out: &mut [f64]) {
         self.add(&self.there, vector, factor, out);
     }
 

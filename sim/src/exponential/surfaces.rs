@@ -71,7 +71,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Returns the function of a guard.
-fn row(system: &AffineSystem, guard: usize) -> Row {
+fn guard_row(system: &AffineSystem, guard: usize) -> Row {
     let guards = &system.guards;
     let part = |block: &[f64]| {
         let width = block.len() / guards.rows.max(1);
@@ -97,8 +97,8 @@ impl Surfaces {
         let above = evaluator.system(&vec![1.0; count]);
         let mut surfaces: Vec<(Row, Vec<usize>)> = Vec::new();
         for guard in 0..count {
-            let function = row(&below, guard);
-            if function != row(&above, guard) {
+            let function = guard_row(&below, guard);
+            if function != guard_row(&above, guard) {
                 return None;
             }
             match surfaces.iter_mut().find(|(known, _)| *known == function) {
@@ -114,7 +114,10 @@ impl Surfaces {
 
     /// Returns the function of each surface.
     pub fn rows(&self, system: &AffineSystem) -> Vec<Row> {
-        let rows = self.guards.iter().map(|guards| row(system, guards[0]));
+        let rows = self
+            .guards
+            .iter()
+            .map(|guards| guard_row(system, guards[0]));
         rows.collect()
     }
 
@@ -122,11 +125,11 @@ impl Surfaces {
     /// surface.
     pub fn guard_sides(&self, sides: &[Side], held: impl Fn(usize) -> f64) -> Vec<f64> {
         let mut numbers = vec![0.0; self.count];
-        for (place, (guards, side)) in self.guards.iter().zip(sides).enumerate() {
+        for (index, (guards, side)) in self.guards.iter().zip(sides).enumerate() {
             let number = match side {
                 Side::Below => 0.0,
                 Side::Above => 1.0,
-                Side::Held => held(place),
+                Side::Held => held(index),
             };
             for guard in guards {
                 numbers[*guard] = number;

@@ -10,17 +10,17 @@ use super::surfaces::dot;
 
 /// Smallest rate of a function at a switch, relative to its usual rate. At smaller rates (grazing) the
 /// saltation quotient is not formed.
-const GRAZING: f64 = 1e-9;
+const MIN_RATE_FRACTION: f64 = 1e-9;
 
 /// Number of steps over which drives are held at the mean of both ends.
-const DRIVEN_STEPS: usize = 2;
+const MAX_DRIVEN_STEPS: usize = 2;
 
 /// Distance from a holding surface at which a model is evaluated on one side. It is a fraction of the change of
 /// the surface's function in one step by the difference of both sides.
-const OFFSET_IN_DIFFERENCES: f64 = 1e-6;
+const OFFSET_FRACTION: f64 = 1e-6;
 
 /// Relative error of a tangent vector after a part of a step.
-const PART_ERROR: f64 = 1e-9;
+const PART_ERROR_FRACTION: f64 = 1e-9;
 
 /// Differences of accelerations that drive tangent vectors.
 pub trait DrivingAccelerations {
@@ -135,14 +135,14 @@ impl<'d> Tangents<'d> {
         self.next = self.vectors.clone();
         self.from = at.1.to_vec();
         self.pending = 0;
-        self.find_drives(regime, at);
+        self.update_drives(regime, at);
     }
 
     /// Computes the driving accelerations at the current state, in a regime.
-    pub fn find_drives(&mut self, regime: &Regime, at: (f64, &[f64], &[f64])) {
+    pub fn update_drives(&mut self, regime: &Regime, at: (f64, &[f64], &[f64])) {
         if self.driven > 0 {
             let out = (&mut self.here[..], self.forced);
-            drives_in(regime, (&mut *self.drives, &self.prescribed), at, out);
+            compute_drives(regime, (&mut *self.drives, &self.prescribed), at, out);
         }
         self.on_surface = false;
     }
@@ -155,7 +155,7 @@ impl<'d> Tangents<'d> {
     /// Records a whole step of the motion. Returns true if the pending steps of the vectors must be made now.
     pub fn step(&mut self) -> bool {
         self.pending += 1;
-        (self.driven > 0 || self.slopes.is_some()) && self.pending >= DRIVEN_STEPS
+        (self.driven > 0 || self.slopes.is_some()) && self.pending >= MAX_DRIVEN_STEPS
     }
 
     /// Returns true if the motion has made steps that the vectors have not.
@@ -185,7 +185,7 @@ impl<'d> Tangents<'d> {
         if self.driven > 0 {
             let there = (&mut self.there[..], self.forced);
             let at = (t, state, &given[1..]);
-            drives_in(regime, (&mut *self.drives, &self.prescribed), at, there);
+            compute_drives(regime, (&mut *self.drives, &self.prescribed), at, there);
             for (a, b) in self.here.iter_mut().zip(&self.there) {
                 *a = if self.on_surface { *b } else { 0.5 * (*a + b) };
             }
@@ -194,7 +194,7 @@ impl<'d> Tangents<'d> {
         while self.pending > 0 {
             let doubling = (self.pending.ilog2() as usize).min(regime.doubled.len() - 1);
             self.pending -= 1 << doubling;
-            self.several(regime, doubling, given);
+            self.advance_doubled(regime, doubling, given);
         }
         self.from.copy_from_slice(state);
         std::mem::swap(&mut self.here, &mut self.there);
@@ -205,7 +205,7 @@ impl<'d> Tangents<'d> {
 
     /// Makes several steps at once. The drives are held. The forces that depend on the state are held and
     /// corrected at the end.
-    fn several(&mut self, regime: &Regime, doubling: usize, given: &[f64]) {
+    fn advance_doubled(&mut self, regime: &Regime, doubling: usize, given: &[f64]) {
         let forced = self.forced;
         let DoubledStep {
             state,
@@ -238,10 +238,10 @@ impl<'d> Tangents<'d> {
             let vectors = old.chunks_exact(self.stride);
             for (vector, next) in vectors.zip(new.chunks_exact_mut(self.stride)) {
                 self.felt.fill(0.0);
-                slopes.add_begin(vector, &mut self.felt);
+                slopes.add_start_acceleration(vector, &mut self.felt);
                 force.add_product(&self.felt, next);
                 self.felt.iter_mut().for_each(|felt| *felt *= -0.5);
-                slopes.add_end(next, 0.5, &mut self.felt);
+                slopes.add_end_acceleration(next, 0.5, &mut self.felt);
                 force.add_product(&self.felt, next);
             }
         }
@@ -252,9 +252,9 @@ impl<'d> Tangents<'d> {
     pub fn advance_part(&mut self, regime: &Regime, tau: f64, end: (f64, &[f64], &[f64])) {
         let (n, degrees, forced) = (self.states, self.degrees, self.forced);
         if self.on_surface {
-            self.find_drives(regime, end);
+            self.update_drives(regime, end);
         }
-        self.parameters_part(regime, tau, end.2);
+        self.advance_parameter_vectors(regime, tau, end.2);
         let driven = self.free + self.by_parameter;
         let mut rates = vec![0.0; regime.matrix.rows];
         for place in (0..self.free).chain(driven..self.count()) {
@@ -262,7 +262,7 @@ impl<'d> Tangents<'d> {
             rates.fill(0.0);
             regime.matrix.add_product(vector, &mut rates);
             if let Some(slopes) = &self.slopes {
-                slopes.add_begin(vector, &mut rates[degrees..degrees + forced]);
+                slopes.add_start_acceleration(vector, &mut rates[degrees..degrees + forced]);
             }
             if place >= driven {
                 let first = (place - driven) * forced;
@@ -272,9 +272,9 @@ impl<'d> Tangents<'d> {
                     .zip(drives)
                     .for_each(|(r, d)| *r += d);
             }
-            add_exponential_series(&regime.matrix, vector, &mut rates, tau, PART_ERROR);
+            add_exponential_series(&regime.matrix, vector, &mut rates, tau, PART_ERROR_FRACTION);
         }
-        self.find_drives(regime, end);
+        self.update_drives(regime, end);
         self.from.copy_from_slice(end.1);
         if let Some(slopes) = &mut self.slopes {
             slopes.shift_to_end();
@@ -283,7 +283,7 @@ impl<'d> Tangents<'d> {
 
     /// Advances the vectors of parameters by a part of a step, s, with the exponential series of the motion and
     /// of its derivative.
-    fn parameters_part(&mut self, regime: &Regime, tau: f64, inputs: &[f64]) {
+    fn advance_parameter_vectors(&mut self, regime: &Regime, tau: f64, inputs: &[f64]) {
         if self.by_parameter == 0 {
             return;
         }
@@ -336,7 +336,7 @@ impl<'d> Tangents<'d> {
         let ReachedSurface { gradient, rate, .. } = *reached;
         let terms = gradient.iter().zip(before);
         let size: f64 = terms.map(|(a, b)| (a * b).abs()).sum();
-        if rate.abs() <= GRAZING * size {
+        if rate.abs() <= MIN_RATE_FRACTION * size {
             return;
         }
         let free = std::iter::repeat_n(0.0, self.free);
@@ -353,7 +353,7 @@ impl<'d> Tangents<'d> {
 
 /// Computes the drives in a regime. On a holding surface, the accelerations are a convex combination of those
 /// on both sides, minus the reaction of the surface.
-fn drives_in(
+fn compute_drives(
     regime: &Regime,
     (drives, prescribed): (&mut dyn DrivingAccelerations, &PrescribedMotions),
     (t, state, inputs): (f64, &[f64], &[f64]),
@@ -370,10 +370,10 @@ fn drives_in(
     let mut below = state.to_vec();
     let shares: Vec<(&HeldSurface, f64, f64)> = (regime.held.iter())
         .map(|held| {
-            let (difference, share) = held.difference_and_share(state, inputs);
+            let (difference, share) = held.compute_difference_and_share(state, inputs);
             (
                 held,
-                OFFSET_IN_DIFFERENCES * regime.length * difference.abs(),
+                OFFSET_FRACTION * regime.length * difference.abs(),
                 share,
             )
         })

@@ -64,17 +64,17 @@ fn integration_matches_exact_motion_through_events() {
     // Deflections of the meshes, the carrier coordinate and the modes, between micrometres and millimetres. A
     // sensor of the rig resolves 0.7 um.
     for (sample, (a, b)) in found.iter().zip(&wanted.states).enumerate() {
-        for place in 0..7 {
-            let difference = (a[place] - b[place]).abs();
+        for index in 0..7 {
+            let difference = (a[index] - b[index]).abs();
             assert!(
                 difference < 2e-8,
-                "{place} at sample {sample}: {difference:e}"
+                "{index} at sample {sample}: {difference:e}"
             );
         }
     }
 }
 
-/// Such surfaces are zero in whole regions, in which the integrator would treat them as negative.
+/// The functions of nested surfaces are zero in whole regions. The integrator would treat them as negative.
 #[test]
 fn nested_surfaces_are_rejected() {
     let text = r#"
@@ -141,9 +141,9 @@ fn tangents_match_differences_of_neighbouring_motions() {
     integrator
         .simulate(&initial, &times, &inputs, options, &mut |_, _, tangents| {
             let tangents = tangents.expect("tangents");
-            for place in 0..14 {
-                let first = place * tangents.stride;
-                found[place * 14..(place + 1) * 14]
+            for index in 0..14 {
+                let first = index * tangents.stride;
+                found[index * 14..(index + 1) * 14]
                     .copy_from_slice(&tangents.vectors[first..first + 14]);
             }
         })
@@ -151,22 +151,22 @@ fn tangents_match_differences_of_neighbouring_motions() {
     let steps = [
         1e-9, 1e-9, 1e-9, 1e-8, 1e-8, 1e-8, 1e-8, 1e-6, 1e-6, 1e-6, 1e-5, 1e-5, 1e-5, 1e-5,
     ];
-    for place in 0..14 {
+    for index in 0..14 {
         let mut ends = Vec::new();
         for sign in [1.0, -1.0] {
             let mut moved = initial.clone();
-            moved[place] += sign * steps[place];
+            moved[index] += sign * steps[index];
             ends.push(run(&mut integrator, &moved, &times, &inputs)[59].clone());
         }
         let scale: f64 = (0..7)
-            .map(|k| found[place * 14 + k].abs())
+            .map(|k| found[index * 14 + k].abs())
             .fold(0.0, f64::max);
         for k in 0..7 {
-            let quotient = (ends[0][k] - ends[1][k]) / (2.0 * steps[place]);
-            let difference = (found[place * 14 + k] - quotient).abs();
+            let quotient = (ends[0][k] - ends[1][k]) / (2.0 * steps[index]);
+            let difference = (found[index * 14 + k] - quotient).abs();
             assert!(
                 difference < 1e-2 * scale,
-                "{k} by {place}: {difference:e} of {scale:e}"
+                "{k} by {index}: {difference:e} of {scale:e}"
             );
         }
     }
@@ -364,16 +364,16 @@ fn by_parameters(
     let sample = times[1] - times[0];
     let mut integrator = ExponentialIntegrator::new(exact.evaluator(values), sample, 1.0)
         .expect("can be integrated");
-    let ends = (0..values.len()).map(|place| {
+    let ends = (0..values.len()).map(|index| {
         let end = |change: f64| {
             let mut moved = values.to_vec();
-            moved[place] += change;
+            moved[index] += change;
             MovedParameters {
                 values: moved,
                 parameter_change: change,
             }
         };
-        let size = 1e-4 * values[place];
+        let size = 1e-4 * values[index];
         vec![end(-size), end(size)]
     });
     integrator.set_moved_parameters(values, ends.collect());
@@ -442,11 +442,11 @@ impact = { on = "alpha", value = "-d*dot(alpha)*above(alpha - beta - g)" }
                 .expect("a motion")
         };
         assert!(motion(&values).events.len() >= 5, "{name}");
-        for place in 0..values.len() {
-            let step = 1e-7 * values[place];
+        for index in 0..values.len() {
+            let step = 1e-7 * values[index];
             let [after, before] = [step, -step].map(|change| {
                 let mut moved = values.clone();
-                moved[place] += change;
+                moved[index] += change;
                 motion(&moved).states
             });
             // Impacts make neighbouring motions diverge, so later finite differences do not approximate
@@ -458,10 +458,10 @@ impact = { on = "alpha", value = "-d*dot(alpha)*above(alpha - beta - g)" }
                     .map(wanted)
                     .fold(0.0f64, |most, d| most.max(d.abs()));
                 for (sample, found) in found.iter().enumerate() {
-                    let difference = (found[place][state] - wanted(sample)).abs();
+                    let difference = (found[index][state] - wanted(sample)).abs();
                     assert!(
                         difference <= 5e-4 * scale,
-                        "{name}, state {state} by parameter {place} at sample {sample}: \
+                        "{name}, state {state} by parameter {index} at sample {sample}: \
                          {difference:e} of {scale:e}"
                     );
                 }

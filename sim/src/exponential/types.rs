@@ -35,8 +35,8 @@ pub struct ExponentialIntegrator {
     /// Sides of the linear part by its own surfaces, the last different sides with their regime, and the
     /// difference between that regime and the current one.
     pub(super) own: Vec<Side>,
-    pub(super) last_own: (Vec<Side>, usize),
-    pub(super) apart: RegimeDifference,
+    pub(super) last_linear_sides: (Vec<Side>, usize),
+    pub(super) regime_difference: RegimeDifference,
     /// Parameters of the evaluator, and changed parameters for difference quotients.
     pub(super) own_parameters: Vec<f64>,
     pub(super) moved: Vec<Vec<MovedParameters>>,

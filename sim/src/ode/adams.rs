@@ -17,14 +17,14 @@ use super::system::System;
 use super::watch::WatchedSystem;
 
 /// Target error of the next step, as a fraction of the allowed error.
-const AIM: f64 = 0.5;
+const TARGET_ERROR_FRACTION: f64 = 0.5;
 
 /// Number of rejections at one point after which the method discards its history.
-const REFUSALS: u32 = 3;
+const MAX_REJECTIONS: u32 = 3;
 
 /// Current state and history of the method.
 #[derive(Clone)]
-struct Stand {
+struct MultistepState {
     point: Point,
     history: History,
     /// Order of the predictor; the order of the corrector is higher by one.
@@ -32,39 +32,43 @@ struct Stand {
     /// True while step size and order grow after a start.
     is_starting: bool,
     /// Number of preceding steps of the same length.
-    even: usize,
+    equal_steps: usize,
 }
 
-impl Stand {
+impl MultistepState {
     fn new(point: Point) -> Self {
         Self {
             point,
             history: History::new(),
             order: 1,
             is_starting: true,
-            even: 0,
+            equal_steps: 0,
         }
     }
 
     /// Makes a step of `length` s from the current state.
-    fn attempt<S: System + ?Sized>(&self, watched: &WatchedSystem<'_, S>, length: f64) -> Attempt {
+    fn make_attempt<S: System + ?Sized>(
+        &self,
+        watched: &WatchedSystem<'_, S>,
+        length: f64,
+    ) -> Attempt {
         Attempt::new(watched, &self.point, &self.history, self.order, length)
     }
 }
 
 /// Steps of the method.
 pub struct Adams {
-    now: Stand,
-    before: Stand,
+    now: MultistepState,
+    before: MultistepState,
     /// Step from `before` to `now`; `None` if another method or a jump led to `now`.
     last: Option<Attempt>,
     /// Last trial step.
-    tried: Option<Attempt>,
+    last_trial: Option<Attempt>,
     /// Length of the next step, s.
     step: f64,
     magnitudes: Magnitudes,
     /// Number of rejected steps at the current point.
-    refusals: u32,
+    rejections: u32,
 }
 
 impl Stepper for Adams {
@@ -72,13 +76,13 @@ impl Stepper for Adams {
 
     fn new(start: Point, step: f64, magnitudes: Magnitudes) -> Self {
         Self {
-            before: Stand::new(start.clone()),
-            now: Stand::new(start),
+            before: MultistepState::new(start.clone()),
+            now: MultistepState::new(start),
             last: None,
-            tried: None,
+            last_trial: None,
             step,
             magnitudes,
-            refusals: 0,
+            rejections: 0,
         }
     }
 
@@ -96,12 +100,12 @@ impl Stepper for Adams {
 
     fn set_step(&mut self, step: f64) {
         self.step = step;
-        self.refusals = 0;
+        self.rejections = 0;
     }
 
     fn restart(&mut self, point: Point, step: f64) {
         self.last = None;
-        self.before = std::mem::replace(&mut self.now, Stand::new(point));
+        self.before = std::mem::replace(&mut self.now, MultistepState::new(point));
         self.set_step(step);
     }
 
@@ -116,7 +120,7 @@ impl Stepper for Adams {
     fn settle(&mut self, is_projected: bool) {
         self.magnitudes.raise(&self.now.point.y);
         if is_projected {
-            self.magnitudes.include_rounding_of_others();
+            self.magnitudes.include_projection_rounding();
         }
     }
 
@@ -125,17 +129,17 @@ impl Stepper for Adams {
         watched: &WatchedSystem<'_, S>,
         until: f64,
     ) -> Result<Outcome, SolveError> {
-        self.begin(watched)?;
+        self.evaluate_start(watched)?;
         let (length, is_cut) = self.now.point.choose_length(self.step, until);
         let mut outcome = Outcome {
             is_accepted: false,
             length,
         };
-        let attempt = self.now.attempt(watched, length);
+        let attempt = self.now.make_attempt(watched, length);
         let errors = attempt.estimate_errors(&self.now.history, &self.magnitudes);
         outcome.is_accepted = errors.same_order <= 1.0;
         if !outcome.is_accepted {
-            self.refuse(errors, length);
+            self.reject_step(errors, length);
             return Ok(outcome);
         }
         let step = self.step;
@@ -147,13 +151,13 @@ impl Stepper for Adams {
                 t: until,
                 y: self.now.point.y.clone(),
             };
-            self.now = Stand::new(point);
+            self.now = MultistepState::new(point);
             self.step = self.step.max(step);
         }
         Ok(outcome)
     }
 
-    fn take_back(&mut self) {
+    fn undo_step(&mut self) {
         std::mem::swap(&mut self.now, &mut self.before);
     }
 
@@ -163,30 +167,30 @@ impl Stepper for Adams {
         length: f64,
     ) -> Option<(Point, Vec<f64>)> {
         let length = self.now.point.exact_length(length);
-        self.begin(watched).ok()?;
-        let attempt = self.now.attempt(watched, length);
+        self.evaluate_start(watched).ok()?;
+        let attempt = self.now.make_attempt(watched, length);
         let end = attempt.end.clone();
         if end.y.iter().any(|y| !y.is_finite()) {
             return None;
         }
         let mut rates = vec![0.0; end.y.len()];
         watched.rates(end.t, &end.y, &mut rates);
-        self.tried = Some(attempt);
+        self.last_trial = Some(attempt);
         Some((end, rates))
     }
 
     fn end_trial(&mut self, point: Point) {
         let step = self.step;
         self.restart(point, step);
-        self.last = self.tried.take();
+        self.last = self.last_trial.take();
     }
 
-    fn interpolated<S: System + ?Sized>(
+    fn interpolate<S: System + ?Sized>(
         &mut self,
         _watched: &WatchedSystem<'_, S>,
         t: f64,
     ) -> Option<Vec<f64>> {
-        let Stand { point, history, .. } = &self.before;
+        let MultistepState { point, history, .. } = &self.before;
         let last = self.last.as_ref()?;
         let weights = history.weights(t - point.t);
         let mut y = point.y.clone();
@@ -198,12 +202,12 @@ impl Stepper for Adams {
         Some(y)
     }
 
-    fn inside<S: System + ?Sized>(
+    fn compute_state_at<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
         t: f64,
     ) -> Option<Vec<f64>> {
-        if let Some(state) = self.interpolated(watched, t) {
+        if let Some(state) = self.interpolate(watched, t) {
             return Some(state);
         }
         // The driver stepped over a surface: the history does not apply beyond it.
@@ -214,7 +218,7 @@ impl Stepper for Adams {
 
 impl Adams {
     /// Evaluates the rates at a start and limits the first step by these rates.
-    fn begin<S: System + ?Sized>(
+    fn evaluate_start<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
     ) -> Result<(), SolveError> {
@@ -231,24 +235,24 @@ impl Adams {
         }
         // Initial step of Shampine and Gordon; if it is rejected at order 1, it is corrected at once.
         self.step = self.step.min(0.25 / norm.sqrt());
-        self.now.history.begin(&rates);
+        self.now.history.evaluate_start(&rates);
         Ok(())
     }
 
     /// Shortens the step after a rejection, and lowers the order if a lower order has a similar error.
-    fn refuse(&mut self, errors: Errors, length: f64) {
-        self.refusals += 1;
-        self.now.even = 0;
+    fn reject_step(&mut self, errors: Errors, length: f64) {
+        self.rejections += 1;
+        self.now.equal_steps = 0;
         if self.now.order == 1 {
             // The error of order 1 is known well enough to compute the step size from it.
-            let factor = (AIM / errors.same_order).sqrt();
+            let factor = (TARGET_ERROR_FRACTION / errors.same_order).sqrt();
             let factor = if factor.is_finite() { factor } else { 0.0 };
             self.step = length * factor.clamp(1e-3, 0.5);
             return;
         }
         self.step = 0.5 * length;
         self.now.is_starting = false;
-        if self.refusals >= REFUSALS {
+        if self.rejections >= MAX_REJECTIONS {
             self.now.order = 1;
             self.now.is_starting = true;
         } else if errors.is_lower_enough {
@@ -273,16 +277,16 @@ impl Adams {
         now.point.clone_from(end);
         let is_even =
             (self.last.as_ref()).is_some_and(|last| last.weights.length == weights.length);
-        now.even = if is_even { before.even + 1 } else { 1 };
+        now.equal_steps = if is_even { before.equal_steps + 1 } else { 1 };
         now.is_starting = before.is_starting;
         now.order = *order;
-        self.refusals = 0;
-        self.choose(&attempt, errors);
+        self.rejections = 0;
+        self.select_next_step(&attempt, errors);
         self.last = Some(attempt);
     }
 
     /// Selects order and length of the next step after an accepted step.
-    fn choose(&mut self, attempt: &Attempt, errors: Errors) {
+    fn select_next_step(&mut self, attempt: &Attempt, errors: Errors) {
         let length = attempt.weights.length;
         let stand = &mut self.now;
         let order = stand.order;
@@ -296,7 +300,7 @@ impl Adams {
         if errors.is_lower_enough {
             stand.order -= 1;
             error = errors.lower_order;
-        } else if order < MAX_ORDER && stand.even > order {
+        } else if order < MAX_ORDER && stand.equal_steps > order {
             // Difference of the next higher order, which is known only after steps of equal length.
             let higher = stand.history.difference(order + 1);
             let higher = attempt.error_norm(order + 1, higher, &self.magnitudes);
@@ -309,7 +313,7 @@ impl Adams {
             }
         }
         let exponent = (stand.order + 1) as f64;
-        let factor = (AIM / error).powf(1.0 / exponent);
+        let factor = (TARGET_ERROR_FRACTION / error).powf(1.0 / exponent);
         self.step = if factor >= 2.0 {
             2.0 * length
         } else if factor >= 1.0 {

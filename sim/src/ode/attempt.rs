@@ -63,7 +63,7 @@ impl Attempt {
         let same = self.error_norm(self.order, self.difference.iter().copied(), magnitudes);
         let mut difference = self.difference.clone();
         let mut at_order = |order: usize| {
-            let continued = history.continued_difference(&self.weights, order);
+            let continued = history.extrapolate_difference(&self.weights, order);
             for (entry, continued) in difference.iter_mut().zip(continued) {
                 *entry += continued;
             }

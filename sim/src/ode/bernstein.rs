@@ -5,7 +5,7 @@ use eomgen_codegen::program::evaluator::{DEGREE, Enclosure};
 use nalgebra::{SMatrix, SVector};
 
 /// Fractions of a step at which the dense output is evaluated for the conversion: Chebyshev points.
-const PARTS: [f64; 6] = [
+const SAMPLE_FRACTIONS: [f64; 6] = [
     0.017_037_086_855_465_856,
     0.146_446_609_406_726_24,
     0.370_590_477_448_739_6,
@@ -15,17 +15,17 @@ const PARTS: [f64; 6] = [
 ];
 
 /// Number of control points of a state. The degree is that of the dense output in `dormand_prince`.
-const POINTS: usize = DEGREE + 1;
+const CONTROL_POINT_COUNT: usize = DEGREE + 1;
 
 /// Number of inner control points.
-const INNER: usize = PARTS.len();
+const INNER_POINT_COUNT: usize = SAMPLE_FRACTIONS.len();
 
-type Controls = [f64; POINTS];
+type Controls = [f64; CONTROL_POINT_COUNT];
 
 /// Conversion of dense output to Bernstein form.
 pub struct BernsteinBasis {
-    /// Matrix from the values at [`PARTS`], relative to the chord, to the inner control points.
-    inner: SMatrix<f64, INNER, INNER>,
+    /// Matrix from the values at [`SAMPLE_FRACTIONS`], relative to the chord, to the inner control points.
+    inner: SMatrix<f64, INNER_POINT_COUNT, INNER_POINT_COUNT>,
     /// Control points of the factors in the nested form of `slopes`.
     nested: [Controls; DEGREE],
 }
@@ -43,13 +43,14 @@ pub struct Piece {
 impl BernsteinBasis {
     /// Computes the matrices of the conversion.
     pub fn new() -> Self {
-        let basis =
-            SMatrix::<f64, INNER, INNER>::from_fn(|row, column| bernstein(column + 1, PARTS[row]));
+        let basis = SMatrix::<f64, INNER_POINT_COUNT, INNER_POINT_COUNT>::from_fn(|row, column| {
+            evaluate_basis(column + 1, SAMPLE_FRACTIONS[row])
+        });
         // Interpolation at distinct points is unique, so the matrix has an inverse.
         let inner = basis.try_inverse();
         Self {
             inner: inner.unwrap_or_else(SMatrix::zeros),
-            nested: std::array::from_fn(nested_factor),
+            nested: std::array::from_fn(expand_nested_factor),
         }
     }
 
@@ -57,7 +58,7 @@ impl BernsteinBasis {
     /// nested form start + s (c_0 + (1 - s) (c_1 + s (c_2 + ...))).
     pub fn convert(&self, (start, end): (&[f64], &[f64]), nested: &[Vec<f64>; DEGREE]) -> Piece {
         let controls = start.iter().zip(end).enumerate().map(|(entry, (a, b))| {
-            let mut points = [0.0; POINTS];
+            let mut points = [0.0; CONTROL_POINT_COUNT];
             for (factor, coefficients) in self.nested.iter().zip(nested) {
                 let coefficient = coefficients[entry];
                 let terms = points.iter_mut().zip(factor);
@@ -81,22 +82,22 @@ impl BernsteinBasis {
         (start, end): (&[f64], &[f64]),
         mut interpolate: impl FnMut(f64) -> Option<Vec<f64>>,
     ) -> Option<Piece> {
-        let mut values = vec![SVector::<f64, INNER>::zeros(); start.len()];
-        for (place, part) in PARTS.into_iter().enumerate() {
+        let mut values = vec![SVector::<f64, INNER_POINT_COUNT>::zeros(); start.len()];
+        for (index, part) in SAMPLE_FRACTIONS.into_iter().enumerate() {
             let state = interpolate(part)?;
             let entries = values.iter_mut().zip(state).zip(start.iter().zip(end));
             for ((values, entry), (a, b)) in entries {
-                values[place] = entry - (a + part * (b - a));
+                values[index] = entry - (a + part * (b - a));
             }
         }
         let ends = start.iter().zip(end);
         let controls = values.iter().zip(ends).map(|(values, (a, b))| {
             let inner = self.inner * values;
-            std::array::from_fn(|place| match place {
+            std::array::from_fn(|index| match index {
                 0 => *a,
                 DEGREE => *b,
                 // The control points of the chord are equally spaced.
-                _ => a + (b - a) * place as f64 / DEGREE as f64 + inner[place - 1],
+                _ => a + (b - a) * index as f64 / DEGREE as f64 + inner[index - 1],
             })
         });
         Some(Piece {
@@ -121,7 +122,7 @@ impl Piece {
 
     /// Returns the start of the piece as a piece with constant state.
     pub fn start(&self) -> Self {
-        let at_start = |points: &Controls| [points[0]; POINTS];
+        let at_start = |points: &Controls| [points[0]; CONTROL_POINT_COUNT];
         Self {
             from: self.from,
             to: self.from,
@@ -141,11 +142,11 @@ impl Piece {
         for controls in &self.controls {
             let mut points = *controls;
             let (mut left, mut right) = (points, points);
-            for level in 0..POINTS {
+            for level in 0..CONTROL_POINT_COUNT {
                 left[level] = points[0];
                 right[DEGREE - level] = points[DEGREE - level];
-                for place in 0..DEGREE - level {
-                    points[place] = 0.5 * (points[place] + points[place + 1]);
+                for index in 0..DEGREE - level {
+                    points[index] = 0.5 * (points[index] + points[index + 1]);
                 }
             }
             first.controls.push(left);
@@ -164,11 +165,11 @@ impl Piece {
 }
 
 /// Returns the control points of s^a (1 - s)^b, the factor of a coefficient in the nested form.
-fn nested_factor(coefficient: usize) -> Controls {
+fn expand_nested_factor(coefficient: usize) -> Controls {
     let degree = coefficient + 1;
     let (a, more) = (coefficient / 2 + 1, DEGREE - degree);
-    std::array::from_fn(|place| match place.checked_sub(a) {
-        Some(rest) if rest <= more => binomial(more, rest) / binomial(DEGREE, place),
+    std::array::from_fn(|index| match index.checked_sub(a) {
+        Some(rest) if rest <= more => binomial(more, rest) / binomial(DEGREE, index),
         _ => 0.0,
     })
 }
@@ -177,9 +178,9 @@ fn binomial(n: usize, k: usize) -> f64 {
     (0..k).fold(1.0, |choices, j| choices * (n - j) as f64 / (j + 1) as f64)
 }
 
-/// Returns the Bernstein basis polynomial number `place` of degree [`DEGREE`] at the fraction `part`.
-fn bernstein(place: usize, part: f64) -> f64 {
-    binomial(DEGREE, place) * part.powi(place as i32) * (1.0 - part).powi((DEGREE - place) as i32)
+/// Returns the Bernstein basis polynomial number `index` of degree [`DEGREE`] at the fraction `part`.
+fn evaluate_basis(index: usize, part: f64) -> f64 {
+    binomial(DEGREE, index) * part.powi(index as i32) * (1.0 - part).powi((DEGREE - index) as i32)
 }
 
 #[cfg(test)]
@@ -203,8 +204,8 @@ mod tests {
         let value = |s: f64| {
             let nested = coefficients.iter().enumerate().rev();
             start
-                + nested.fold(0.0, |value, (place, coefficient)| {
-                    let factor = if place % 2 == 0 { s } else { 1.0 - s };
+                + nested.fold(0.0, |value, (index, coefficient)| {
+                    let factor = if index % 2 == 0 { s } else { 1.0 - s };
                     factor * (value + coefficient)
                 })
         };

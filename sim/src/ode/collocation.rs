@@ -15,25 +15,25 @@ use super::system::System;
 use super::watch::WatchedSystem;
 
 /// Maximum number of Newton iterations in a step.
-pub const MAX_ITERATIONS: u32 = 7;
+pub const MAX_NEWTON_ITERATIONS: u32 = 7;
 
 /// Tolerance of the stages, as a fraction of the tolerance of the step.
-const STAGES: f64 = 0.03;
+const STAGE_TOLERANCE_FRACTION: f64 = 0.03;
 
 /// Smallest tolerance of the stages, in units of the last place.
-const ROUNDING: f64 = 10.0;
+const MIN_STAGE_ROUNDINGS: f64 = 10.0;
 
 /// Iterations end at a change below this fraction of the tolerance of the stages.
-const SMALL: f64 = 0.3;
+const SMALL_CHANGE_FRACTION: f64 = 0.3;
 
 /// Ratio of successive changes above which the iteration counts as divergent.
-const DIVERGES: f64 = 0.99;
+const MAX_CONTRACTION: f64 = 0.99;
 
 /// Real eigenvalue of A^-1.
-const REAL: f64 = 3.637_834_252_744_496;
+const REAL_EIGENVALUE: f64 = 3.637_834_252_744_496;
 
 /// Real and imaginary part of the complex pair of eigenvalues of A^-1.
-const PAIR: (f64, f64) = (2.681_082_873_627_752_3, 3.050_430_199_247_410_5);
+const COMPLEX_EIGENVALUE: (f64, f64) = (2.681_082_873_627_752_3, 3.050_430_199_247_410_5);
 
 /// Eigenvectors of A in columns; real and imaginary part for the complex pair.
 const T: [[f64; 3]; 3] = [
@@ -70,13 +70,13 @@ const T_INVERSE: [[f64; 3]; 3] = [
 ];
 
 /// Returns the times of the stages, as fractions of the step.
-fn nodes() -> [f64; 3] {
+fn compute_nodes() -> [f64; 3] {
     let root = 6.0_f64.sqrt();
     [(4.0 - root) / 10.0, (4.0 + root) / 10.0, 1.0]
 }
 
 /// Returns the weights of the stages in the error estimate.
-fn weights_of_error() -> [f64; 3] {
+fn compute_error_weights() -> [f64; 3] {
     let root = 6.0_f64.sqrt();
     [
         -(13.0 + 7.0 * root) / 3.0,
@@ -86,22 +86,23 @@ fn weights_of_error() -> [f64; 3] {
 }
 
 /// LU factors of the linear systems for one step size and one Jacobian.
-pub struct Factors {
+pub struct LinearFactors {
     /// Step size, s.
     pub length: f64,
     real: LU<f64, Dyn, Dyn>,
     pair: LU<Complex<f64>, Dyn, Dyn>,
 }
 
-impl Factors {
+impl LinearFactors {
     /// Factorises the linear systems for a Jacobian and steps of `length` s.
     pub fn new(jacobian: &DMatrix<f64>, length: f64) -> Self {
         let states = jacobian.nrows();
         let mut real = -jacobian;
         let mut pair = jacobian.map(|entry| Complex::new(-entry, 0.0));
-        for place in 0..states {
-            real[(place, place)] += REAL / length;
-            pair[(place, place)] += Complex::new(PAIR.0, PAIR.1) / length;
+        for index in 0..states {
+            real[(index, index)] += REAL_EIGENVALUE / length;
+            pair[(index, index)] +=
+                Complex::new(COMPLEX_EIGENVALUE.0, COMPLEX_EIGENVALUE.1) / length;
         }
         Self {
             length,
@@ -129,23 +130,24 @@ impl Stages {
     pub fn solve<S: System + ?Sized>(
         watched: &WatchedSystem<'_, S>,
         start: &Point,
-        factors: &Factors,
+        factors: &LinearFactors,
         before: Option<&Self>,
         magnitudes: &Magnitudes,
     ) -> Option<Self> {
         let (length, states) = (factors.length, start.y.len());
         let mut z = match before {
-            Some(before) => nodes().map(|node| before.beyond(node * length)),
+            Some(before) => compute_nodes().map(|node| before.extrapolate(node * length)),
             None => [(); 3].map(|()| DVector::zeros(states)),
         };
-        let mut w = transformed(&T_INVERSE, &z);
+        let mut w = transform(&T_INVERSE, &z);
         let tolerance = magnitudes.tolerance();
-        let enough = STAGES.min(tolerance.sqrt());
-        let enough = enough.max(ROUNDING * f64::EPSILON / tolerance);
+        let enough = STAGE_TOLERANCE_FRACTION.min(tolerance.sqrt());
+        let enough = enough.max(MIN_STAGE_ROUNDINGS * f64::EPSILON / tolerance);
         let (mut last_change, mut contraction) = (0.0, 0.0);
-        for iterations in 1..=MAX_ITERATIONS {
-            let rates = rates_of(watched, start, length, &z);
-            let Some(change) = change(factors, &w, &transformed(&T_INVERSE, &rates)) else {
+        for iterations in 1..=MAX_NEWTON_ITERATIONS {
+            let rates = evaluate_stage_rates(watched, start, length, &z);
+            let Some(change) = solve_newton_change(factors, &w, &transform(&T_INVERSE, &rates))
+            else {
                 break;
             };
             let sizes = change.each_ref().map(|part| {
@@ -159,14 +161,14 @@ impl Stages {
             for (w, change) in w.iter_mut().zip(&change) {
                 *w += change;
             }
-            z = transformed(&T, &w);
+            z = transform(&T, &w);
             let is_first = iterations == 1;
             if !is_first {
                 contraction = size / last_change;
             }
             // After such a small change, further changes are negligible, whatever their ratio.
-            let is_small = size <= SMALL * enough;
-            if !is_small && contraction >= DIVERGES {
+            let is_small = size <= SMALL_CHANGE_FRACTION * enough;
+            if !is_small && contraction >= MAX_CONTRACTION {
                 break;
             }
             // After one change, the remaining error is unknown.
@@ -179,7 +181,7 @@ impl Stages {
                     contraction,
                 });
             }
-            let more = (MAX_ITERATIONS - iterations) as i32;
+            let more = (MAX_NEWTON_ITERATIONS - iterations) as i32;
             if !is_first && left * contraction.powi(more - 1) > enough {
                 break;
             }
@@ -196,24 +198,24 @@ impl Stages {
     /// Returns the state at a time `after` the start of the step, s, from the polynomial of order 3
     /// through the start and the stages.
     pub fn interpolate(&self, start: &[f64], after: f64) -> Vec<f64> {
-        let difference = self.difference(after / self.length);
+        let difference = self.interpolate_difference(after / self.length);
         start.iter().zip(&difference).map(|(y, z)| y + z).collect()
     }
 
     /// Returns the difference from the end of the step, extrapolated to `after` s beyond it.
-    fn beyond(&self, after: f64) -> DVector<f64> {
-        self.difference(1.0 + after / self.length) - &self.z[2]
+    fn extrapolate(&self, after: f64) -> DVector<f64> {
+        self.interpolate_difference(1.0 + after / self.length) - &self.z[2]
     }
 
     /// Returns the difference from the start at a fraction of the step: a Lagrange polynomial, zero at 0.
-    fn difference(&self, part: f64) -> DVector<f64> {
-        let nodes = nodes();
+    fn interpolate_difference(&self, part: f64) -> DVector<f64> {
+        let nodes = compute_nodes();
         let mut sum = DVector::zeros(self.z[0].len());
-        for (place, z) in self.z.iter().enumerate() {
-            let mut factor = part / nodes[place];
+        for (index, z) in self.z.iter().enumerate() {
+            let mut factor = part / nodes[index];
             for (other, node) in nodes.iter().enumerate() {
-                if other != place {
-                    factor *= (part - node) / (nodes[place] - node);
+                if other != index {
+                    factor *= (part - node) / (nodes[index] - node);
                 }
             }
             sum.axpy(factor, z, 1.0);
@@ -231,19 +233,19 @@ impl Stages {
         magnitudes: &Magnitudes,
     ) -> f64 {
         let apart = 0.5 * (self.length + before.length);
-        let change = (self.third_derivative() - before.third_derivative()) / apart;
-        let error = change * (LARGEST_BETWEEN_NODES / 24.0 * self.length.powi(4));
+        let change = (self.compute_third_derivative() - before.compute_third_derivative()) / apart;
+        let error = change * (MAX_NODE_POLYNOMIAL / 24.0 * self.length.powi(4));
         magnitudes.norm(error.iter().copied(), &start.y)
     }
 
     /// Returns the third derivative of the polynomial through the start and the stages.
-    fn third_derivative(&self) -> DVector<f64> {
-        let nodes = nodes();
+    fn compute_third_derivative(&self) -> DVector<f64> {
+        let nodes = compute_nodes();
         let mut sum = DVector::zeros(self.z[0].len());
-        for (place, z) in self.z.iter().enumerate() {
-            let others = (0..3).filter(|other| *other != place);
-            let product: f64 = others.map(|other| nodes[place] - nodes[other]).product();
-            sum.axpy(6.0 / (nodes[place] * product * self.length.powi(3)), z, 1.0);
+        for (index, z) in self.z.iter().enumerate() {
+            let others = (0..3).filter(|other| *other != index);
+            let product: f64 = others.map(|other| nodes[index] - nodes[other]).product();
+            sum.axpy(6.0 / (nodes[index] * product * self.length.powi(3)), z, 1.0);
         }
         sum
     }
@@ -256,11 +258,11 @@ impl Stages {
         watched: &WatchedSystem<'_, S>,
         start: &Point,
         rates: &[f64],
-        (factors, magnitudes): (&Factors, &Magnitudes),
+        (factors, magnitudes): (&LinearFactors, &Magnitudes),
         is_doubted: bool,
     ) -> f64 {
         let mut combined = DVector::zeros(start.y.len());
-        for (weight, z) in weights_of_error().into_iter().zip(&self.z) {
+        for (weight, z) in compute_error_weights().into_iter().zip(&self.z) {
             combined.axpy(weight / self.length, z, 1.0);
         }
         let filtered = |rates: &[f64]| {
@@ -284,16 +286,16 @@ impl Stages {
 
 /// Maximum of |s (s - c_1) (s - c_2) (s - 1)| for 0 < s < 1, where c_1, c_2 and 1 are the nodes. The
 /// interpolation error is proportional to it.
-const LARGEST_BETWEEN_NODES: f64 = 0.01826;
+const MAX_NODE_POLYNOMIAL: f64 = 0.01826;
 
 /// Returns the rates at the stages.
-fn rates_of<S: System + ?Sized>(
+fn evaluate_stage_rates<S: System + ?Sized>(
     watched: &WatchedSystem<'_, S>,
     start: &Point,
     length: f64,
     z: &[DVector<f64>; 3],
 ) -> [DVector<f64>; 3] {
-    let nodes = nodes();
+    let nodes = compute_nodes();
     let mut rates = vec![0.0; start.y.len()];
     std::array::from_fn(|stage| {
         let y: Vec<f64> = start.y.iter().zip(&z[stage]).map(|(y, z)| y + z).collect();
@@ -303,17 +305,19 @@ fn rates_of<S: System + ?Sized>(
 }
 
 /// Returns the Newton change of W, given W and T^-1 F; `None` if a linear system is singular.
-fn change(
-    factors: &Factors,
+fn solve_newton_change(
+    factors: &LinearFactors,
     w: &[DVector<f64>; 3],
     rates: &[DVector<f64>; 3],
 ) -> Option<[DVector<f64>; 3]> {
     let h = factors.length;
-    let first = factors.real.solve(&(&rates[0] - &w[0] * (REAL / h)))?;
-    let eigenvalue = Complex::new(PAIR.0, PAIR.1) / h;
-    let pair = DVector::from_fn(w[1].len(), |place, _| {
-        let of_rates = Complex::new(rates[1][place], rates[2][place]);
-        of_rates - eigenvalue * Complex::new(w[1][place], w[2][place])
+    let first = factors
+        .real
+        .solve(&(&rates[0] - &w[0] * (REAL_EIGENVALUE / h)))?;
+    let eigenvalue = Complex::new(COMPLEX_EIGENVALUE.0, COMPLEX_EIGENVALUE.1) / h;
+    let pair = DVector::from_fn(w[1].len(), |index, _| {
+        let of_rates = Complex::new(rates[1][index], rates[2][index]);
+        of_rates - eigenvalue * Complex::new(w[1][index], w[2][index])
     });
     let pair = factors.pair.solve(&pair)?;
     Some([
@@ -324,7 +328,7 @@ fn change(
 }
 
 /// Returns the product of a matrix with three vectors.
-fn transformed(matrix: &[[f64; 3]; 3], vectors: &[DVector<f64>; 3]) -> [DVector<f64>; 3] {
+fn transform(matrix: &[[f64; 3]; 3], vectors: &[DVector<f64>; 3]) -> [DVector<f64>; 3] {
     matrix.map(|row| {
         let mut sum = DVector::zeros(vectors[0].len());
         for (factor, vector) in row.into_iter().zip(vectors) {
@@ -341,8 +345,8 @@ mod tests {
     use super::*;
 
     /// Computes the coefficients of the method from its nodes: integrals of the Lagrange polynomials.
-    fn coefficients() -> Matrix3<f64> {
-        let nodes = nodes();
+    fn compute_coefficients() -> Matrix3<f64> {
+        let nodes = compute_nodes();
         let powers = Matrix3::from_fn(|row, column| nodes[row].powi(column as i32));
         let integrals = Matrix3::from_fn(|row, column| {
             nodes[row].powi(column as i32 + 1) / f64::from(column as u32 + 1)
@@ -355,22 +359,22 @@ mod tests {
         let t = Matrix3::from_fn(|row, column| T[row][column]);
         let inverse = Matrix3::from_fn(|row, column| T_INVERSE[row][column]);
         assert!((t * inverse - Matrix3::identity()).abs().max() < 1e-14);
-        let of_inverse = coefficients().try_inverse().expect("not singular");
-        let (a, b) = PAIR;
-        let expected = Matrix3::new(REAL, 0.0, 0.0, 0.0, a, -b, 0.0, b, a);
+        let of_inverse = compute_coefficients().try_inverse().expect("not singular");
+        let (a, b) = COMPLEX_EIGENVALUE;
+        let expected = Matrix3::new(REAL_EIGENVALUE, 0.0, 0.0, 0.0, a, -b, 0.0, b, a);
         assert!((inverse * of_inverse * t - expected).abs().max() < 1e-13);
     }
 
     #[test]
     fn interpolation_error_constant_is_its_maximum() {
-        let [a, b, c] = nodes();
+        let [a, b, c] = compute_nodes();
         let values = (0..=10_000).map(|i| {
             let s = f64::from(i) / 1e4;
             (s * (s - a) * (s - b) * (s - c)).abs()
         });
         let largest = values.fold(0.0, f64::max);
         assert!(
-            (largest / LARGEST_BETWEEN_NODES - 1.0).abs() < 0.01,
+            (largest / MAX_NODE_POLYNOMIAL - 1.0).abs() < 0.01,
             "{largest}"
         );
     }
@@ -379,9 +383,9 @@ mod tests {
     fn error_estimate_vanishes_for_cubic_polynomials() {
         // For y = s^p and h = 1, the rates at the start are 0 if p > 1. The estimate compares the step with a
         // formula of order 3.
-        let weights = Vector3::from(weights_of_error());
+        let weights = Vector3::from(compute_error_weights());
         for power in 2..=3 {
-            let stages = Vector3::from(nodes()).map(|node| node.powi(power));
+            let stages = Vector3::from(compute_nodes()).map(|node| node.powi(power));
             assert!(weights.dot(&stages).abs() < 1e-14, "{power}");
         }
     }

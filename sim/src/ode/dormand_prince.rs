@@ -10,10 +10,10 @@ use super::system::System;
 use super::watch::WatchedSystem;
 
 /// Safety factor of the step size that the error estimate proposes.
-const SAFETY: f64 = 0.9;
+const SAFETY_FACTOR: f64 = 0.9;
 
 /// Smallest and largest ratio of successive step sizes.
-const FACTORS: (f64, f64) = (0.333, 6.0);
+const STEP_RATIO_RANGE: (f64, f64) = (0.333, 6.0);
 
 /// Largest last term of the dense output, in tolerances, below which it is used without a test in the middle of
 /// the step. In 41 693 steps of random smooth machines, 0.12 % had an interpolation error above ten tolerances.
@@ -26,7 +26,7 @@ const MAX_LAST_TERM: f64 = 40.0;
 const MAX_INTERIOR_ERROR: f64 = 4.0;
 
 /// Order of the local error.
-const ORDER: f64 = 8.0;
+const LOCAL_ERROR_ORDER: f64 = 8.0;
 
 /// Steps of the method.
 pub struct DormandPrince853 {
@@ -38,18 +38,18 @@ pub struct DormandPrince853 {
     /// Length of the next step, s.
     step: f64,
     magnitudes: Magnitudes,
-    known: Known,
+    known: KnownSlopes,
     /// True if the last trial was rejected; the next step then does not grow.
     is_rejected: bool,
     /// True if the dense output of the last step has been computed.
     has_interior: bool,
     /// Two steps of half the length that replace the last step for dense output, if its own dense output is not
     /// accurate enough.
-    halves: Vec<Half>,
+    halves: Vec<HalfStep>,
 }
 
 /// Half of a step with its dense output.
-struct Half {
+struct HalfStep {
     start: Point,
     length: f64,
     interior: Interior,
@@ -57,7 +57,7 @@ struct Half {
 
 /// Slopes that have been computed.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Known {
+enum KnownSlopes {
     Nothing,
     /// Slope at `here`, which is the start of a step.
     Start,
@@ -77,7 +77,7 @@ impl Stepper for DormandPrince853 {
             here: start,
             step,
             magnitudes,
-            known: Known::Nothing,
+            known: KnownSlopes::Nothing,
             is_rejected: false,
             has_interior: false,
             halves: Vec::new(),
@@ -103,8 +103,8 @@ impl Stepper for DormandPrince853 {
     fn restart(&mut self, point: Point, step: f64) {
         self.last = std::mem::replace(&mut self.here, point);
         self.step = step;
-        self.known = Known::Nothing;
-        self.forget_interior();
+        self.known = KnownSlopes::Nothing;
+        self.discard_dense_output();
     }
 
     fn magnitudes(&self) -> &Magnitudes {
@@ -118,7 +118,7 @@ impl Stepper for DormandPrince853 {
     fn settle(&mut self, is_projected: bool) {
         self.magnitudes.raise(&self.here.y);
         if is_projected {
-            self.magnitudes.include_rounding_of_others();
+            self.magnitudes.include_projection_rounding();
         }
     }
 
@@ -144,10 +144,10 @@ impl Stepper for DormandPrince853 {
             true => self.slopes.error(&self.magnitudes, length, &end.y),
             false => f64::NAN,
         };
-        let factor = SAFETY * error.powf(-1.0 / ORDER);
+        let factor = SAFETY_FACTOR * error.powf(-1.0 / LOCAL_ERROR_ORDER);
         if error.is_nan() || error > 1.0 {
             // The step shrinks by the largest factor if the error is NaN.
-            self.step = length * factor.max(FACTORS.0).min(SAFETY);
+            self.step = length * factor.max(STEP_RATIO_RANGE.0).min(SAFETY_FACTOR);
             self.is_rejected = true;
             self.last.y = end.y;
             return Ok(outcome);
@@ -155,27 +155,27 @@ impl Stepper for DormandPrince853 {
         let most = if std::mem::take(&mut self.is_rejected) {
             1.0
         } else {
-            FACTORS.1
+            STEP_RATIO_RANGE.1
         };
-        let next = length * factor.clamp(FACTORS.0, most);
+        let next = length * factor.clamp(STEP_RATIO_RANGE.0, most);
         // A step that was cut short does not shorten the next one.
         self.step = if is_cut { next.max(self.step) } else { next };
         self.slopes.end(watched, &end);
         self.last = std::mem::replace(&mut self.here, end);
         self.known = match is_cut {
-            true => Known::StepBeforeJump,
-            false => Known::Step,
+            true => KnownSlopes::StepBeforeJump,
+            false => KnownSlopes::Step,
         };
         outcome.is_accepted = true;
         Ok(outcome)
     }
 
-    fn take_back(&mut self) {
+    fn undo_step(&mut self) {
         std::mem::swap(&mut self.last, &mut self.here);
-        self.forget_interior();
+        self.discard_dense_output();
         self.known = match self.known {
-            Known::Step | Known::StepBeforeJump => Known::Start,
-            Known::Nothing | Known::Start => Known::Nothing,
+            KnownSlopes::Step | KnownSlopes::StepBeforeJump => KnownSlopes::Start,
+            KnownSlopes::Nothing | KnownSlopes::Start => KnownSlopes::Nothing,
         };
     }
 
@@ -198,16 +198,16 @@ impl Stepper for DormandPrince853 {
 
     fn end_trial(&mut self, point: Point) {
         self.last = std::mem::replace(&mut self.here, point);
-        self.known = Known::StepBeforeJump;
-        self.forget_interior();
+        self.known = KnownSlopes::StepBeforeJump;
+        self.discard_dense_output();
     }
 
-    fn interpolated<S: System + ?Sized>(
+    fn interpolate<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
         t: f64,
     ) -> Option<Vec<f64>> {
-        if !matches!(self.known, Known::Step | Known::StepBeforeJump) {
+        if !matches!(self.known, KnownSlopes::Step | KnownSlopes::StepBeforeJump) {
             return None;
         }
         if let Some(half) = self.halves.iter().rev().find(|half| half.start.t <= t) {
@@ -216,7 +216,7 @@ impl Stepper for DormandPrince853 {
         }
         let (begin, end) = (self.last.t, self.here.t);
         let part = ((t - begin) / (end - begin)).clamp(0.0, 1.0);
-        self.find_interior(watched);
+        self.compute_dense_output(watched);
         Some(self.slopes.interior().interpolate(part, &self.last.y))
     }
 
@@ -225,37 +225,38 @@ impl Stepper for DormandPrince853 {
         watched: &WatchedSystem<'_, S>,
         basis: &BernsteinBasis,
     ) -> Option<Piece> {
-        if !matches!(self.known, Known::Step | Known::StepBeforeJump) {
+        if !matches!(self.known, KnownSlopes::Step | KnownSlopes::StepBeforeJump) {
             return None;
         }
-        self.find_interior(watched);
+        self.compute_dense_output(watched);
         let coefficients = self.slopes.interior().coefficients();
         Some(basis.convert((&self.last.y, &self.here.y), coefficients))
     }
 
-    fn tells_interior<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) -> bool {
-        self.middle_error(watched).is_some_and(|(errors, middle)| {
-            self.magnitudes.norm(errors.into_iter(), &middle) <= 1.0
-        })
-    }
-
-    fn tells_smooth_interior<S: System + ?Sized>(
+    fn has_accurate_interior<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
     ) -> bool {
-        self.find_interior(watched);
+        self.estimate_middle_error(watched)
+            .is_some_and(|(errors, middle)| {
+                self.magnitudes.norm(errors.into_iter(), &middle) <= 1.0
+            })
+    }
+
+    fn has_smooth_interior<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) -> bool {
+        self.compute_dense_output(watched);
         let last = self.slopes.interior().last_term();
         if self.magnitudes.max_norm(&last, &self.here.y) <= MAX_LAST_TERM {
             return true;
         }
-        let Some((errors, middle)) = self.middle_error(watched) else {
+        let Some((errors, middle)) = self.estimate_middle_error(watched) else {
             return false;
         };
         let error = self.magnitudes.max_norm(&errors, &middle);
-        error <= MAX_INTERIOR_ERROR || self.divide(watched, middle)
+        error <= MAX_INTERIOR_ERROR || self.divide_step(watched, middle)
     }
 
-    fn inside<S: System + ?Sized>(
+    fn compute_state_at<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
         t: f64,
@@ -267,18 +268,18 @@ impl Stepper for DormandPrince853 {
 
 impl DormandPrince853 {
     /// Computes the dense output of the last step unless it is known.
-    fn find_interior<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) {
+    fn compute_dense_output<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) {
         if !self.has_interior {
             let length = self.here.t - self.last.t;
             let ends = (&self.last, &self.here);
-            self.slopes.find_interior(watched, length, ends);
+            self.slopes.compute_dense_output(watched, length, ends);
             self.has_interior = true;
         }
     }
 
     /// Replaces the last step by two halves with dense output, given the state in its middle. Returns false if
     /// one of the halves does not meet the tolerance.
-    fn divide<S: System + ?Sized>(
+    fn divide_step<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
         middle: Vec<f64>,
@@ -299,8 +300,8 @@ impl DormandPrince853 {
             };
             let end = Point { t, y };
             slopes.end(watched, &end);
-            slopes.find_interior(watched, length, (&start, &end));
-            self.halves.push(Half {
+            slopes.compute_dense_output(watched, length, (&start, &end));
+            self.halves.push(HalfStep {
                 start,
                 length,
                 interior: slopes.interior().clone(),
@@ -309,33 +310,38 @@ impl DormandPrince853 {
         true
     }
 
-    fn forget_interior(&mut self) {
+    fn discard_dense_output(&mut self) {
         self.has_interior = false;
         self.halves.clear();
     }
 
     /// Returns the error of the dense output in the middle of the last step, and the state there by a step of
     /// half the length.
-    fn middle_error<S: System + ?Sized>(
+    fn estimate_middle_error<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
     ) -> Option<(Vec<f64>, Vec<f64>)> {
         let (begin, half) = (self.last.t, 0.5 * (self.here.t - self.last.t));
         let middle = make_step(watched, &self.last, half)?.y;
-        let told = self.interpolated(watched, begin + half)?;
-        let errors = told.iter().zip(&middle).map(|(told, y)| told - y);
+        let interpolated = self.interpolate(watched, begin + half)?;
+        let errors = interpolated
+            .iter()
+            .zip(&middle)
+            .map(|(interpolated, y)| interpolated - y);
         Some((errors.collect(), middle))
     }
 
     /// Computes the slope at the start of a step.
     fn begin<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) {
         match self.known {
-            Known::Start => {}
-            Known::Step => self.slopes.follow(),
-            Known::Nothing | Known::StepBeforeJump => self.slopes.begin(watched, &self.here),
+            KnownSlopes::Start => {}
+            KnownSlopes::Step => self.slopes.follow(),
+            KnownSlopes::Nothing | KnownSlopes::StepBeforeJump => {
+                self.slopes.begin(watched, &self.here)
+            }
         }
-        self.known = Known::Start;
-        self.forget_interior();
+        self.known = KnownSlopes::Start;
+        self.discard_dense_output();
     }
 }
 
@@ -417,12 +423,12 @@ mod tests {
                 length,
                 Magnitudes::new(&start.y, &[1.0], 1e-1),
             );
-            assert!(stepper.interpolated(&watched, 0.0).is_none());
+            assert!(stepper.interpolate(&watched, 0.0).is_none());
             let outcome = stepper.advance(&watched, 10.0).expect("a step");
             assert!(outcome.is_accepted && outcome.length == length);
             let errors = (0..=20).map(|part| {
                 let t = 0.05 * f64::from(part) * length;
-                (stepper.interpolated(&watched, t).expect("a state")[0] - t.sin().exp()).abs()
+                (stepper.interpolate(&watched, t).expect("a state")[0] - t.sin().exp()).abs()
             });
             errors.fold(0.0, f64::max)
         };
@@ -433,15 +439,15 @@ mod tests {
 
     #[test]
     fn interpolated_samples_of_smooth_motion_rarely_exceed_ten_tolerances() {
-        let (mut before, mut after, mut told) = (0, 0, 0);
-        for place in 0..400 {
+        let (mut before, mut after, mut interpolated_count) = (0, 0, 0);
+        for index in 0..400 {
             let start = Point {
-                t: 0.02 * f64::from(place),
+                t: 0.02 * f64::from(index),
                 y: vec![1.0],
             };
             let scale = start.t.sin().exp();
             let watched = WatchedSystem::new(&Growth, (start.t, &start.y));
-            let tolerance = 10.0_f64.powi(-(4 + place % 6));
+            let tolerance = 10.0_f64.powi(-(4 + index % 6));
             let magnitudes = Magnitudes::new(&start.y, &[1.0], tolerance);
             let mut stepper = DormandPrince853::new(start.clone(), 4.0, magnitudes);
             while !stepper
@@ -453,22 +459,22 @@ mod tests {
             let error = |stepper: &mut DormandPrince853| {
                 let errors = (1..20).map(|part| {
                     let t = start.t + 0.05 * f64::from(part) * length;
-                    let state = stepper.interpolated(&watched, t).expect("a state")[0];
+                    let state = stepper.interpolate(&watched, t).expect("a state")[0];
                     let right = t.sin().exp() / scale;
                     (state - right).abs() / (tolerance * (1.0 + right))
                 });
                 errors.fold(0.0, f64::max)
             };
             before += usize::from(error(&mut stepper) > 10.0);
-            if !stepper.tells_smooth_interior(&watched) {
+            if !stepper.has_smooth_interior(&watched) {
                 continue;
             }
-            told += 1;
+            interpolated_count += 1;
             let error = error(&mut stepper);
             after += usize::from(error > 10.0);
-            assert!(error < 15.0, "{place}: {error} tolerances");
+            assert!(error < 15.0, "{index}: {error} tolerances");
         }
-        assert!(told > 380, "{told} interiors");
+        assert!(interpolated_count > 380, "{interpolated_count} steps");
         assert!(before > 20 && after <= 1, "{before} of 400, then {after}");
     }
 

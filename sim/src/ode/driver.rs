@@ -10,28 +10,28 @@ use super::events::{Event, Jump, SurfaceMode};
 use super::resolution::Resolution;
 use super::settings::Settings;
 use super::stepper::{Outcome, Point, Stepper, rejection_error};
-use super::stiffness::Pace;
+use super::stiffness::StepRate;
 use super::system::{Interior, System};
 use super::trajectory::Trajectory;
 use super::watch::WatchedSystem;
 
 /// Maximum number of times that a step is shortened to resolve the switching functions. Finer changes of these
 /// functions count as rounding.
-const MOST_SHORTENED: u32 = 12;
+const MAX_SHORTENINGS: u32 = 12;
 
 /// Smallest factor by which a step is shortened; also the factor after a step that leaves the domain of the
 /// rates.
-pub(super) const SHORTENED: f64 = 0.2;
+pub(super) const SHORTENING_FACTOR: f64 = 0.2;
 
 /// Number of samples in a step above which the dense output is tested.
-const MANY: usize = 2;
+const MAX_UNTESTED_SAMPLES: usize = 2;
 
 /// Length of the first step after a jump of inputs or of the state, relative to the time to the next output. In
 /// a much longer step, interpolated states would have the rounding error of its end.
 const MAX_STEP_OVER_OUTPUT: f64 = 10.0;
 
 /// Action after a step with an acceptable error.
-pub(super) enum Accepted {
+pub(super) enum StepVerdict {
     /// The motion continues from the end of the step.
     Continues,
     /// The step was undone and is repeated with a shorter length.
@@ -67,7 +67,7 @@ pub(super) struct Run<M> {
 struct PendingStep {
     begin: f64,
     /// True if states inside the step are interpolated.
-    is_interior_told: bool,
+    is_interpolated: bool,
     /// Time up to which an observer has seen the step, s.
     observed: f64,
 }
@@ -100,7 +100,7 @@ impl<M: Stepper> Run<M> {
     pub fn restart(&mut self, point: Point) {
         let step = self.stepper.step();
         if self.pending.take().is_some() {
-            self.stepper.take_back();
+            self.stepper.undo_step();
         }
         self.projected = None;
         self.follows_jump = true;
@@ -129,7 +129,7 @@ pub(super) struct Driver<'a, S: System + ?Sized, M: Stepper> {
     may_pass: bool,
     /// Latest end of the current step, s.
     pub(super) until: f64,
-    pub(super) pace: Pace,
+    pub(super) pace: StepRate,
     /// The last approaches to switching surfaces.
     pub(super) approaches: VecDeque<Approach>,
     pub(super) basis: BernsteinBasis,
@@ -154,14 +154,14 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
             end: span.end,
             may_pass: span.may_pass,
             until: span.end,
-            pace: Pace::new(t),
+            pace: StepRate::new(t),
             approaches: VecDeque::new(),
             basis: BernsteinBasis::new(),
             trajectory,
         }
     }
 
-    /// Starts a motion: modes and samples at its first point.
+    /// Starts a motion: determines the modes and stores the samples at its first point.
     pub fn start(&mut self) {
         self.update_root_bands();
         self.watched.fix_sides(true);
@@ -173,7 +173,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
     ///
     /// # Errors
     /// See [`SolveError`]; the run keeps its last point.
-    pub fn go_to_the_end(
+    pub fn run_to_end(
         &mut self,
         system: &S,
         progress: &mut dyn FnMut(f64),
@@ -182,7 +182,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         while self.run.stepper.current_point().t < self.end {
             self.advance(system)?;
             progress(self.run.stepper.current_point().t.min(self.end));
-            self.look_at_the_pace(system)?;
+            self.check_stiffness(system)?;
         }
         Ok(())
     }
@@ -196,7 +196,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
             return self.take_inner_samples(pending, self.end.next_up());
         }
         self.run.pending = None;
-        self.accept_with(pending)
+        self.accept_pending(pending)
     }
 
     /// Returns the point at the end of the call, s.
@@ -227,7 +227,9 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
     fn advance(&mut self, system: &S) -> Result<(), SolveError> {
         let begin = self.run.stepper.current_point().t;
         let next = system.next_breakpoint(begin).filter(|next| *next > begin);
-        let farthest = next.unwrap_or(f64::INFINITY).min(self.jump_limit(begin));
+        let farthest = next
+            .unwrap_or(f64::INFINITY)
+            .min(self.find_jump_limit(begin));
         let until = farthest.min(self.end);
         self.until = if self.may_pass { farthest } else { until };
         self.watched.limit_time(next.unwrap_or(f64::INFINITY));
@@ -235,22 +237,22 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         loop {
             self.limit_step();
             self.watched.restore_sides();
-            self.set_roundings();
-            if self.step_is_too_short() {
-                return self.cross_at_once();
+            self.update_roundings();
+            if self.is_step_too_short() {
+                return self.cross_close_surface();
             }
             let outcome = self.make_controlled_step(self.until)?;
             if outcome.is_accepted {
                 let passes = self.run.stepper.current_point().t > self.end;
-                match self.look_at(outcome.length, shortened < MOST_SHORTENED) {
-                    Accepted::Shortened => shortened += 1,
-                    Accepted::Crossed(_) if passes => {
-                        self.refuse_passage(outcome.length);
+                match self.examine_step(outcome.length, shortened < MAX_SHORTENINGS) {
+                    StepVerdict::Shortened => shortened += 1,
+                    StepVerdict::Crossed(_) if passes => {
+                        self.reject_pending(outcome.length);
                         self.until = until;
                     }
-                    Accepted::Crossed(crossing) => return self.cross(&crossing, outcome.length),
-                    Accepted::Continues if passes => return self.suspend_step(begin),
-                    Accepted::Continues => return self.accept(begin),
+                    StepVerdict::Crossed(crossing) => return self.cross(&crossing, outcome.length),
+                    StepVerdict::Continues if passes => return self.suspend_step(begin),
+                    StepVerdict::Continues => return self.accept(begin),
                 }
             }
             if self.watched.non_finite_state().is_some() {
@@ -261,7 +263,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
     }
 
     /// Returns the latest end (s) of a step from `begin` that follows a jump.
-    fn jump_limit(&self, begin: f64) -> f64 {
+    fn find_jump_limit(&self, begin: f64) -> f64 {
         let output = self.next_sample().map_or(self.end, |t| t.min(self.end));
         match self.run.follows_jump && output > begin {
             true => begin + MAX_STEP_OVER_OUTPUT * (output - begin),
@@ -277,7 +279,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
     }
 
     /// Sets the rounding of the next step at rest, or resets it if the motion is no longer at rest.
-    fn set_roundings(&mut self) {
+    fn update_roundings(&mut self) {
         let is_at_rest =
             |mode: &SurfaceMode| matches!(mode, SurfaceMode::Held | SurfaceMode::Closed);
         let is_resting = self.run.modes.iter().any(is_at_rest);
@@ -311,12 +313,12 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         let (stepper, watched) = (&mut self.run.stepper, self.watched);
         let mut is_accurate = None;
         let mut inside = |t, interior| match interior {
-            Interior::Interpolated => stepper.interpolated(watched, t),
-            Interior::Recomputed => stepper.inside(watched, t),
+            Interior::Interpolated => stepper.interpolate(watched, t),
+            Interior::Recomputed => stepper.compute_state_at(watched, t),
             Interior::Accurate => {
-                match *is_accurate.get_or_insert_with(|| stepper.tells_smooth_interior(watched)) {
-                    true => stepper.interpolated(watched, t),
-                    false => stepper.inside(watched, t),
+                match *is_accurate.get_or_insert_with(|| stepper.has_smooth_interior(watched)) {
+                    true => stepper.interpolate(watched, t),
+                    false => stepper.compute_state_at(watched, t),
                 }
             }
         };
@@ -327,17 +329,17 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
     /// Tries a step that ends at `until` at the latest.
     pub(super) fn make_controlled_step(&mut self, until: f64) -> Result<Outcome, SolveError> {
         self.check_steps()?;
-        self.watched.forget_trials();
+        self.watched.clear_trial_errors();
         let mut outcome = self.run.stepper.advance(self.watched, until)?;
         if !outcome.is_accepted && self.watched.release_sides() {
             // The rates of the near side may be undefined beyond a surface.
-            self.watched.forget_trials();
+            self.watched.clear_trial_errors();
             self.run.stepper.set_step(outcome.length);
             outcome = self.run.stepper.advance(self.watched, until)?;
         }
         if outcome.is_accepted && self.watched.non_finite_state().is_some() {
             // The step ends where the rates are undefined, which the motion cannot reach.
-            self.refuse(outcome.length);
+            self.reject_step(outcome.length);
             outcome.is_accepted = false;
         } else if !outcome.is_accepted {
             self.trajectory.statistics.rejected_steps += 1;
@@ -346,9 +348,9 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
     }
 
     /// Undoes an accepted step of `length` s, to repeat it with a shorter one.
-    pub(super) fn refuse(&mut self, length: f64) {
-        self.run.stepper.take_back();
-        self.run.stepper.set_step(SHORTENED * length);
+    pub(super) fn reject_step(&mut self, length: f64) {
+        self.run.stepper.undo_step();
+        self.run.stepper.set_step(SHORTENING_FACTOR * length);
         self.trajectory.statistics.rejected_steps += 1;
     }
 
@@ -366,22 +368,22 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         let mut is_corrected: Vec<bool> = moved.iter().map(|change| *change != 0.0).collect();
         self.watched.mark_corrected(&mut is_corrected);
         let magnitudes = self.run.stepper.magnitudes_mut();
-        magnitudes.note_correction(&is_corrected, &here);
+        magnitudes.mark_corrections(&is_corrected, &here);
         let is_near = magnitudes.allow(moved.into_iter(), &here);
         self.run.projected = Some(y);
         is_near
     }
 
-    /// Returns the state at `t` (s) inside the last step. It is interpolated if `is_told` is true and the step
+    /// Returns the state at `t` (s) inside the last step. It is interpolated if `may_interpolate` is true and the step
     /// crossed no surface.
-    fn inside(&mut self, t: f64, is_told: bool) -> Result<Vec<f64>, SolveError> {
-        if is_told && let Some(state) = self.run.stepper.interpolated(self.watched, t) {
+    fn compute_state_at(&mut self, t: f64, may_interpolate: bool) -> Result<Vec<f64>, SolveError> {
+        if may_interpolate && let Some(state) = self.run.stepper.interpolate(self.watched, t) {
             return Ok(state);
         }
         self.check_steps()?;
         self.trajectory.statistics.trial_steps += 1;
-        self.watched.forget_trials();
-        let state = self.run.stepper.inside(self.watched, t);
+        self.watched.clear_trial_errors();
+        let state = self.run.stepper.compute_state_at(self.watched, t);
         state.ok_or_else(|| {
             let start = self.run.stepper.step_start();
             rejection_error(self.watched, start, t - start.t)
@@ -389,8 +391,8 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
     }
 
     /// Undoes an accepted step of `length` s that extends beyond the end of the call.
-    fn refuse_passage(&mut self, length: f64) {
-        self.run.stepper.take_back();
+    fn reject_pending(&mut self, length: f64) {
+        self.run.stepper.undo_step();
         self.run.stepper.set_step(length);
         self.trajectory.statistics.rejected_steps += 1;
     }
@@ -401,7 +403,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         check_finite(begin, &self.run.stepper.current_point().y)?;
         let pending = PendingStep {
             begin,
-            is_interior_told: self.tells_interior(),
+            is_interpolated: self.has_accurate_interior(),
             observed: begin,
         };
         self.run.pending = Some(pending);
@@ -412,21 +414,21 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
     pub(super) fn accept(&mut self, begin: f64) -> Result<(), SolveError> {
         check_finite(begin, &self.run.stepper.current_point().y)?;
         let t = self.run.stepper.current_point().t;
-        let is_interior_told = self.is_interior_told(t);
-        self.accept_with(PendingStep {
+        let is_interpolated = self.is_interpolated(t);
+        self.accept_pending(PendingStep {
             begin,
-            is_interior_told,
+            is_interpolated,
             observed: begin,
         })
     }
 
     /// Stores the samples inside a step, replaces its end by the projected state, and enters the regime at the
     /// end.
-    fn accept_with(&mut self, step: PendingStep) -> Result<(), SolveError> {
+    fn accept_pending(&mut self, step: PendingStep) -> Result<(), SolveError> {
         self.run.stepper.settle(self.run.projected.is_some());
         self.run.follows_jump = false;
         self.trajectory.statistics.steps += 1;
-        self.watched.forget_later_trials();
+        self.watched.clear_later_errors();
         let end = self.run.stepper.current_point().clone();
         self.observe_step(step, &end)?;
         let t = end.t;
@@ -452,7 +454,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
 
     /// Returns the state at a time (s) inside the last step.
     fn state_inside(&mut self, step: PendingStep, t: f64) -> Result<Vec<f64>, SolveError> {
-        let mut state = self.inside(t, step.is_interior_told)?;
+        let mut state = self.compute_state_at(t, step.is_interpolated)?;
         self.watched.project(t, &mut state);
         check_finite(step.begin, &state)?;
         Ok(state)
@@ -498,17 +500,21 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
     /// Returns true if samples inside the last step, which ends at `t` (s), are interpolated. Near switching
     /// surfaces states must be accurate to rounding. The dense output is tested only if there are many samples,
     /// because a test takes as long as a sample without interpolation.
-    fn is_interior_told(&mut self, t: f64) -> bool {
-        let least = if self.watched.has_guards() { MANY } else { 0 };
+    fn is_interpolated(&mut self, t: f64) -> bool {
+        let least = if self.watched.has_guards() {
+            MAX_UNTESTED_SAMPLES
+        } else {
+            0
+        };
         let last = self.samples.get(self.taken + least);
-        last.is_some_and(|sample| *sample < t) && self.tells_interior()
+        last.is_some_and(|sample| *sample < t) && self.has_accurate_interior()
     }
 
-    fn tells_interior(&mut self) -> bool {
-        self.watched.forget_trials();
+    fn has_accurate_interior(&mut self) -> bool {
+        self.watched.clear_trial_errors();
         match self.watched.has_guards() {
-            true => self.run.stepper.tells_interior(self.watched),
-            false => self.run.stepper.tells_smooth_interior(self.watched),
+            true => self.run.stepper.has_accurate_interior(self.watched),
+            false => self.run.stepper.has_smooth_interior(self.watched),
         }
     }
 

@@ -11,7 +11,7 @@ use eomgen_model_spec::interval::Interval;
 use super::bernstein::Piece;
 
 /// Negative values up to this fraction of the largest value in a step count as rounding.
-const ROUNDING: f64 = 1e-12;
+const ROUNDING_FRACTION: f64 = 1e-12;
 
 /// Negative values up to this multiple of the width of the bounds at a single state count as rounding. The
 /// rounding of a state grows by this factor in the control points of the dense output.
@@ -24,7 +24,7 @@ const MAX_HALVINGS: i32 = 40;
 const MAX_PIECES: usize = 500;
 
 /// Switching functions of a step, as the search evaluates and bounds them.
-pub trait Functions {
+pub trait SwitchingFunctions {
     /// Returns the switching functions at state `y`, at a fraction `part` of the step.
     fn evaluate(&mut self, part: f64, y: &[f64]) -> Vec<f64>;
 
@@ -44,7 +44,7 @@ pub struct Crossing {
 }
 
 /// Piece to be examined, with the functions at its ends and those that may be negative in it.
-struct Task {
+struct SearchPiece {
     piece: Piece,
     start: Vec<f64>,
     end: Vec<f64>,
@@ -58,13 +58,13 @@ pub fn find_crossing(
     (piece, length): (Piece, f64),
     (sides, mut bounds): (&[f64], Vec<Enclosure>),
     (start, end): (Vec<f64>, Vec<f64>),
-    functions: &mut impl Functions,
+    functions: &mut impl SwitchingFunctions,
     undecided: &mut Vec<usize>,
 ) -> Option<Crossing> {
     let least = |guard: usize, bounds: &[Enclosure], (start, end): (&[f64], &[f64]), duration| {
         let side = sides[guard];
         let bound = bounds[guard].multiply(Enclosure::constant(side));
-        lower_bound(bound, (side * start[guard], side * end[guard]), duration)
+        compute_lower_bound(bound, (side * start[guard], side * end[guard]), duration)
     };
     let guards = (0..sides.len()).filter(|guard| sides[*guard] != 0.0);
     let guards: Vec<usize> = guards
@@ -78,10 +78,10 @@ pub fn find_crossing(
     let negligible: Vec<f64> = ends
         .map(|((a, b), bound)| {
             let rounding = MAX_ROUNDING_GROWTH * (bound.value().high - bound.value().low);
-            ROUNDING * a.abs().max(b.abs()) + rounding
+            ROUNDING_FRACTION * a.abs().max(b.abs()) + rounding
         })
         .collect();
-    let mut tasks = vec![Task {
+    let mut tasks = vec![SearchPiece {
         piece,
         start,
         end,
@@ -122,13 +122,13 @@ pub fn find_crossing(
         }
         let [first, second] = task.piece.halves();
         let middle = functions.evaluate(first.to, &first.end_state());
-        tasks.push(Task {
+        tasks.push(SearchPiece {
             piece: second,
             start: middle.clone(),
             end: task.end,
             guards: task.guards.clone(),
         });
-        tasks.push(Task {
+        tasks.push(SearchPiece {
             piece: first,
             start: task.start,
             end: middle,
@@ -140,7 +140,7 @@ pub fn find_crossing(
 
 /// Returns a lower bound of a function with these bounds over a `duration` in s and with these values at its
 /// ends.
-fn lower_bound(bounds: Enclosure, (start, end): (f64, f64), duration: f64) -> f64 {
+fn compute_lower_bound(bounds: Enclosure, (start, end): (f64, f64), duration: f64) -> f64 {
     let Interval {
         low: falling,
         high: rising,
@@ -172,7 +172,7 @@ mod tests {
         evaluations: usize,
     }
 
-    impl Functions for Disc {
+    impl SwitchingFunctions for Disc {
         fn evaluate(&mut self, _: f64, y: &[f64]) -> Vec<f64> {
             self.evaluations += 1;
             vec![y[0].hypot(y[1]) - self.radius]

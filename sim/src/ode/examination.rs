@@ -3,53 +3,53 @@
 use eomgen_codegen::program::evaluator::Enclosure;
 
 use super::bernstein::Piece;
-use super::driver::{Accepted, Driver, SHORTENED};
-use super::event_search::{Crossing, Functions, find_crossing};
+use super::driver::{Driver, SHORTENED, StepVerdict};
+use super::event_search::{Crossing, SwitchingFunctions, find_crossing};
 use super::grazing::find_passed_surface;
-use super::resolution::PARTS;
+use super::resolution::SAMPLE_FRACTIONS;
 use super::stepper::Stepper;
 use super::system::System;
 use super::watch::WatchedSystem;
 
 /// Length of the shortest step that is examined, relative to the time. In shorter steps, rounding makes times
 /// equal.
-const SHORTEST_SEEN: f64 = 1e-12;
+const MIN_EXAMINED_FRACTION: f64 = 1e-12;
 
 impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Examines an accepted step of `length` s. If `may_shorten`, the step may be undone and shortened first.
-    pub(super) fn look_at(&mut self, length: f64, may_shorten: bool) -> Accepted {
+    pub(super) fn examine_step(&mut self, length: f64, may_shorten: bool) -> StepVerdict {
         let found = self.find_crossing_inside(length, may_shorten);
         match found {
-            Accepted::Continues => {}
-            Accepted::Shortened | Accepted::Crossed(_) => return found,
+            StepVerdict::Continues => {}
+            StepVerdict::Shortened | StepVerdict::Crossed(_) => return found,
         }
         if !self.project() && may_shorten {
-            self.refuse(length);
-            return Accepted::Shortened;
+            self.reject_step(length);
+            return StepVerdict::Shortened;
         }
-        Accepted::Continues
+        StepVerdict::Continues
     }
 
     /// Searches the last step, of `length` s, for crossings. Functions with bounds are searched by interval
     /// arithmetic, the others by samples.
-    fn find_crossing_inside(&mut self, length: f64, may_shorten: bool) -> Accepted {
+    fn find_crossing_inside(&mut self, length: f64, may_shorten: bool) -> StepVerdict {
         let (start, end) = (
             self.run.stepper.step_start().clone(),
             self.run.stepper.current_point().clone(),
         );
-        let is_short = end.t - start.t <= SHORTEST_SEEN * end.t.abs();
+        let is_short = end.t - start.t <= MIN_EXAMINED_FRACTION * end.t.abs();
         if !self.watched.has_guards() {
-            return Accepted::Continues;
+            return StepVerdict::Continues;
         }
         if is_short {
             return self.find_change_over_step();
         }
         let Some(piece) = self.run.stepper.interior(self.watched, &self.basis) else {
-            return Accepted::Continues;
+            return StepVerdict::Continues;
         };
         let mut sampled: Vec<f64> = self.watched.sides();
         let mut bounded = sampled.clone();
-        let mut step = Step {
+        let mut step = SearchedStep {
             watched: self.watched,
             times: (start.t, end.t),
             state: Vec::new(),
@@ -73,35 +73,35 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         }
         let by_samples = match sampled.iter().any(|side| *side != 0.0) {
             true => self.find_sampled_crossing(&sampled, length, may_shorten),
-            false => Accepted::Continues,
+            false => StepVerdict::Continues,
         };
         match (found, by_samples) {
-            (_, Accepted::Shortened) => Accepted::Shortened,
-            (Some(bounded), Accepted::Crossed(sampled)) => {
+            (_, StepVerdict::Shortened) => StepVerdict::Shortened,
+            (Some(bounded), StepVerdict::Crossed(sampled)) => {
                 let roots = [&bounded, &sampled].map(|crossing| self.find_interior_root(crossing));
-                Accepted::Crossed(if roots[1] < roots[0] {
+                StepVerdict::Crossed(if roots[1] < roots[0] {
                     sampled
                 } else {
                     bounded
                 })
             }
-            (Some(crossing), Accepted::Continues) => Accepted::Crossed(crossing),
-            (None, Accepted::Crossed(crossing)) => Accepted::Crossed(crossing),
+            (Some(crossing), StepVerdict::Continues) => StepVerdict::Crossed(crossing),
+            (None, StepVerdict::Crossed(crossing)) => StepVerdict::Crossed(crossing),
             // The end of the step may be beyond a surface by rounding.
-            (None, Accepted::Continues) => self.find_change_over_step(),
+            (None, StepVerdict::Continues) => self.find_change_over_step(),
         }
     }
 
     /// Finds the surfaces that separate the ends of the last step.
-    fn find_change_over_step(&self) -> Accepted {
+    fn find_change_over_step(&self) -> StepVerdict {
         let end = self.run.stepper.current_point();
         let values = self.watched.evaluate_guards_before(end.t, &end.y);
         let guards =
             (0..values.len()).filter(|guard| self.watched.is_beyond(*guard, values[*guard]));
         let guards: Vec<usize> = guards.collect();
         match guards.is_empty() {
-            true => Accepted::Continues,
-            false => Accepted::Crossed(Crossing {
+            true => StepVerdict::Continues,
+            false => StepVerdict::Crossed(Crossing {
                 near: 0.0,
                 beyond: 1.0,
                 guards,
@@ -110,30 +110,35 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     }
 
     /// Searches for crossings of functions without bounds, whose `sides` are not 0.
-    fn find_sampled_crossing(&mut self, sides: &[f64], length: f64, may_shorten: bool) -> Accepted {
+    fn find_sampled_crossing(
+        &mut self,
+        sides: &[f64],
+        length: f64,
+        may_shorten: bool,
+    ) -> StepVerdict {
         let Some(values) = self.sample_guards() else {
-            return Accepted::Continues;
+            return StepVerdict::Continues;
         };
         if may_shorten && self.shorten_unresolved(&values, sides, length) {
-            return Accepted::Shortened;
+            return StepVerdict::Shortened;
         }
         if let Some(crossing) = find_sign_change(&values, sides) {
-            return Accepted::Crossed(crossing);
+            return StepVerdict::Crossed(crossing);
         }
         let trials = &mut self.trajectory.statistics.trial_steps;
         let step = (self.watched, &mut self.run.stepper);
         if let Some((guard, passed)) = find_passed_surface(step, sides, &values, trials) {
-            return Accepted::Crossed(Crossing {
+            return StepVerdict::Crossed(Crossing {
                 near: 0.0,
                 beyond: passed / length,
                 guards: vec![guard],
             });
         }
         self.run.resolution.settle(&values);
-        Accepted::Continues
+        StepVerdict::Continues
     }
 
-    /// Evaluates the switching functions at [`PARTS`] of the last step. Returns `None` if the method provides
+    /// Evaluates the switching functions at [`SAMPLE_FRACTIONS`] of the last step. Returns `None` if the method provides
     /// no interpolation.
     fn sample_guards(&mut self) -> Option<[Vec<f64>; 5]> {
         let (start, end) = (
@@ -141,12 +146,12 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             self.run.stepper.current_point().clone(),
         );
         let mut values: [Vec<f64>; 5] = Default::default();
-        for (part, values) in PARTS.into_iter().zip(&mut values) {
+        for (part, values) in SAMPLE_FRACTIONS.into_iter().zip(&mut values) {
             let t = start.t + part * (end.t - start.t);
             let state = match part {
                 0.0 => start.y.clone(),
                 1.0 => end.y.clone(),
-                _ => self.run.stepper.interpolated(self.watched, t)?,
+                _ => self.run.stepper.interpolate(self.watched, t)?,
             };
             *values = self.watched.evaluate_guards_before(t, &state);
         }
@@ -157,18 +162,21 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// otherwise limits the next step so that it resolves them. Returns true if the step was undone.
     fn shorten_unresolved(&mut self, values: &[Vec<f64>; 5], sides: &[f64], length: f64) -> bool {
         let side = |guard: usize| sides[guard];
-        let mut longest = self.run.resolution.longest(values, side, &[]);
+        let mut longest = self.run.resolution.find_growth_factor(values, side, &[]);
         if longest < 1.0 {
             let start = self.run.stepper.step_start();
             let roundings = self.watched.guard_roundings(start.t, &start.y);
-            longest = self.run.resolution.longest(values, side, &roundings);
+            longest = self
+                .run
+                .resolution
+                .find_growth_factor(values, side, &roundings);
         }
         let is_resolved = longest >= 1.0;
         if is_resolved {
             let step = self.run.stepper.step();
             self.run.stepper.set_step(step.min(longest * length));
         } else {
-            self.run.stepper.take_back();
+            self.run.stepper.undo_step();
             self.run.stepper.set_step(longest.max(SHORTENED) * length);
             self.trajectory.statistics.rejected_steps += 1;
         }
@@ -178,28 +186,28 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 
 /// Returns the first sign change among samples of the functions whose `sides` are not 0.
 fn find_sign_change(values: &[Vec<f64>; 5], sides: &[f64]) -> Option<Crossing> {
-    let beyond = |place: usize| {
+    let beyond = |index: usize| {
         let guards = 0..sides.len();
-        let beyond = guards.filter(|guard| sides[*guard] * values[place][*guard] < 0.0);
+        let beyond = guards.filter(|guard| sides[*guard] * values[index][*guard] < 0.0);
         beyond.collect::<Vec<usize>>()
     };
-    let place = (1..PARTS.len()).find(|place| !beyond(*place).is_empty())?;
+    let index = (1..SAMPLE_FRACTIONS.len()).find(|index| !beyond(*index).is_empty())?;
     Some(Crossing {
-        near: PARTS[place - 1],
-        beyond: PARTS[place],
-        guards: beyond(place),
+        near: SAMPLE_FRACTIONS[index - 1],
+        beyond: SAMPLE_FRACTIONS[index],
+        guards: beyond(index),
     })
 }
 
 /// Last step, whose dense output is searched.
-struct Step<'a, S: System + ?Sized> {
+struct SearchedStep<'a, S: System + ?Sized> {
     watched: &'a WatchedSystem<'a, S>,
     /// Start and end, s.
     times: (f64, f64),
     state: Vec<Enclosure>,
 }
 
-impl<S: System + ?Sized> Step<'_, S> {
+impl<S: System + ?Sized> SearchedStep<'_, S> {
     fn time(&self, part: f64) -> f64 {
         match part {
             1.0 => self.times.1,
@@ -208,7 +216,7 @@ impl<S: System + ?Sized> Step<'_, S> {
     }
 }
 
-impl<S: System + ?Sized> Functions for Step<'_, S> {
+impl<S: System + ?Sized> SwitchingFunctions for SearchedStep<'_, S> {
     fn evaluate(&mut self, part: f64, y: &[f64]) -> Vec<f64> {
         self.watched.evaluate_guards_before(self.time(part), y)
     }

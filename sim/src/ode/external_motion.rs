@@ -3,7 +3,7 @@
 use super::events::SurfaceMode;
 use super::point::Point;
 use super::system::System;
-use super::watch::{Record, WatchedSystem};
+use super::watch::{WatchState, WatchedSystem};
 
 /// Value of a switching function beyond its surface at which its event function changes sign, relative to the
 /// largest value so far. Therefore event functions are not 0 after their event.
@@ -13,7 +13,7 @@ const HYSTERESIS_FRACTION: f64 = 1e-10;
 const MIN_HYSTERESIS: f64 = 1e-20;
 
 /// Growth factor of the time back from a surface in the search for a point on its near side.
-const GROWTH: f64 = 4.0;
+const BACKTRACK_GROWTH: f64 = 4.0;
 
 /// Drift from constraints and holding surfaces at the end of a step, relative to the largest value of a state
 /// and in tolerances. A larger drift causes an event that corrects the state.
@@ -23,11 +23,11 @@ const MAX_DRIFT_TOLERANCES: f64 = 100.0;
 /// At an event one of the event functions changes sign, and the caller calls [`ExternalMotion::apply_event`].
 pub struct ExternalMotion<S> {
     system: S,
-    record: Record,
+    record: WatchState,
     /// Last point at which no surface had been crossed without its event.
     near: Point,
     /// Largest magnitude of each switching function.
-    reaches: Vec<f64>,
+    guard_sizes: Vec<f64>,
     /// Largest magnitude of each state.
     sizes: Vec<f64>,
     tolerance: f64,
@@ -46,13 +46,13 @@ impl<S: System> ExternalMotion<S> {
         };
         let mut motion = Self {
             near: Point { t, y: y.to_vec() },
-            reaches: vec![0.0; system.guard_count()],
+            guard_sizes: vec![0.0; system.guard_count()],
             sizes: system.typical_sizes(),
             system,
             record,
             tolerance,
         };
-        motion.note_sizes(t, y);
+        motion.update_sizes(t, y);
         motion
     }
 
@@ -128,7 +128,7 @@ impl<S: System> ExternalMotion<S> {
             return false;
         }
         self.near = Point { t, y: y.to_vec() };
-        self.note_sizes(t, y);
+        self.update_sizes(t, y);
         let most = MAX_DRIFT_TOLERANCES * self.tolerance;
         has_drifted(y, &projected, &self.sizes, most) || self.modes() != before
     }
@@ -161,7 +161,7 @@ impl<S: System> ExternalMotion<S> {
             settle_modes(watched, t, y);
         });
         self.near = Point { t, y: y.to_vec() };
-        self.note_sizes(t, y);
+        self.update_sizes(t, y);
         arrived != y
     }
 
@@ -176,13 +176,13 @@ impl<S: System> ExternalMotion<S> {
     fn hysteresis(&self, guard: usize) -> f64 {
         match self.system.is_distance(guard) {
             true => MIN_HYSTERESIS,
-            false => (HYSTERESIS_FRACTION * self.reaches[guard]).max(MIN_HYSTERESIS),
+            false => (HYSTERESIS_FRACTION * self.guard_sizes[guard]).max(MIN_HYSTERESIS),
         }
     }
 
-    fn note_sizes(&mut self, t: f64, y: &[f64]) {
+    fn update_sizes(&mut self, t: f64, y: &[f64]) {
         let guards = self.with_watched(|watched| watched.evaluate_guards(t, y));
-        let functions = self.reaches.iter_mut().zip(&guards);
+        let functions = self.guard_sizes.iter_mut().zip(&guards);
         for (size, value) in functions.chain(self.sizes.iter_mut().zip(y)) {
             // NaN is not stored: a comparison with NaN is false.
             if value.abs() > *size && value.is_finite() {
@@ -237,7 +237,7 @@ fn find_near_point<S: System>(
         if watched.lowest_guard(passed, candidate.t, &candidate.y) >= 0.0 {
             return candidate;
         }
-        back *= GROWTH;
+        back *= BACKTRACK_GROWTH;
     }
     last
 }

@@ -8,23 +8,23 @@
 //! Computers and Mathematics with Applications 39, 2000), with the polynomial of the interpolant instead of a
 //! parabola. The search misses functions with more than one turning point in a step.
 
-use super::resolution::PARTS;
+use super::resolution::SAMPLE_FRACTIONS;
 use super::stepper::{Point, Stepper};
 use super::system::System;
 use super::watch::WatchedSystem;
 
 /// The search evaluates a predicted minimum if it is below this fraction of the lowest known value.
-const WORTH_A_LOOK: f64 = 0.5;
+const MAX_MINIMUM_FRACTION: f64 = 0.5;
 
 /// Bound on the error of a parabola through three equally spaced values, as a fraction of the third difference.
-const DOUBT: f64 = 0.1;
+const PARABOLA_ERROR_FRACTION: f64 = 0.1;
 
 /// Rounding of a switching function, as a fraction of its highest value in the step. Smaller
 /// negative values count as positive.
-const ROUNDING: f64 = 1e-12;
+const ROUNDING_FRACTION: f64 = 1e-12;
 
 /// Maximum number of evaluations of one switching function in one step. The search converges in two or three.
-const MOST_LOOKS: u32 = 8;
+const MAX_EVALUATIONS: u32 = 8;
 
 /// A time in a step, as a fraction of its length, and the switching function at this time, positive on the side
 /// of the start.
@@ -37,7 +37,7 @@ struct Sample {
 /// Returns the first switching function found beyond its surface inside the last accepted step, and the time of
 /// this crossing since the start of the step, s.
 ///
-/// `sides` are 0 for ignored functions, and `values` are the functions at [`PARTS`] of the step. `trials`
+/// `sides` are 0 for ignored functions, and `values` are the functions at [`SAMPLE_FRACTIONS`] of the step. `trials`
 /// counts the states that the stepper computes. A state that overflows or leaves the domain of the rates counts
 /// as beyond the surface.
 pub fn find_passed_surface<S: System + ?Sized, M: Stepper>(
@@ -50,24 +50,26 @@ pub fn find_passed_surface<S: System + ?Sized, M: Stepper>(
     let mut after = |length: f64| {
         *trials += 1;
         let t = begin + length;
-        let y = stepper.inside(watched, t)?;
+        let y = stepper.compute_state_at(watched, t)?;
         Some(Point { t, y })
     };
     let samples = |guard: usize, side: f64| {
-        let value = |place: usize| side * values[place][guard];
-        let lowest = (1..PARTS.len()).fold(0, |lowest, place| match value(place) < value(lowest) {
-            true => place,
-            false => lowest,
+        let value = |index: usize| side * values[index][guard];
+        let lowest = (1..SAMPLE_FRACTIONS.len()).fold(0, |lowest, index| {
+            match value(index) < value(lowest) {
+                true => index,
+                false => lowest,
+            }
         });
-        let middle = lowest.clamp(1, PARTS.len() - 2);
+        let middle = lowest.clamp(1, SAMPLE_FRACTIONS.len() - 2);
         let third = |from: usize| {
             (value(from + 3) - value(from) - 3.0 * (value(from + 2) - value(from + 1))).abs()
         };
-        let samples = [middle - 1, middle, middle + 1].map(|place| Sample {
-            at: PARTS[place],
-            value: value(place),
+        let samples = [middle - 1, middle, middle + 1].map(|index| Sample {
+            at: SAMPLE_FRACTIONS[index],
+            value: value(index),
         });
-        (samples, DOUBT * third(0).max(third(1)))
+        (samples, PARABOLA_ERROR_FRACTION * third(0).max(third(1)))
     };
     search(watched, end - begin, sides, samples, &mut after)
 }
@@ -91,14 +93,14 @@ fn search<S: System + ?Sized>(
             .map(|sample| sample.value)
             .into_iter()
             .fold(0.0, f64::max);
-        let negligible = ROUNDING * highest;
+        let negligible = ROUNDING_FRACTION * highest;
         let mut look = |at: f64| {
-            watched.forget_trials();
+            watched.clear_trial_errors();
             let point = after(at * length)?;
             let value = side * watched.evaluate_guards(point.t, &point.y)[guard];
             (value >= -negligible).then_some(value)
         };
-        if let Some(at) = beyond(samples, doubt, &mut look) {
+        if let Some(at) = find_time_beyond(samples, doubt, &mut look) {
             return Some((guard, at * length));
         }
     }
@@ -107,24 +109,24 @@ fn search<S: System + ?Sized>(
 
 /// Returns a time at which the function of `samples` is beyond the surface. `look` evaluates the
 /// function and returns `None` beyond the surface; `doubt` is the error of the first parabola.
-fn beyond(
+fn find_time_beyond(
     mut samples: [Sample; 3],
     doubt: f64,
     look: &mut impl FnMut(f64) -> Option<f64>,
 ) -> Option<f64> {
-    for _ in 0..MOST_LOOKS {
-        let at = next_look(&samples, doubt)?;
+    for _ in 0..MAX_EVALUATIONS {
+        let at = predict_minimum(&samples, doubt)?;
         let Some(value) = look(at) else {
             return Some(at);
         };
-        samples = around(samples, Sample { at, value });
+        samples = select_neighbours(samples, Sample { at, value });
     }
     None
 }
 
 /// Returns the time of the predicted minimum if it may be negative. `doubt` is the error of the
 /// parabola through the samples.
-fn next_look(samples: &[Sample; 3], doubt: f64) -> Option<f64> {
+fn predict_minimum(samples: &[Sample; 3], doubt: f64) -> Option<f64> {
     let [a, b, c] = *samples;
     let lowest = a.value.min(b.value).min(c.value);
     if lowest < 0.0 {
@@ -140,11 +142,11 @@ fn next_look(samples: &[Sample; 3], doubt: f64) -> Option<f64> {
     let at = 0.5 * (a.at + b.at - before / curvature);
     let is_inside = a.at < at && at < c.at && at != b.at;
     let value = a.value + (at - a.at) * (before + (at - b.at) * curvature);
-    (is_inside && value < (WORTH_A_LOOK * lowest).max(doubt)).then_some(at)
+    (is_inside && value < (MAX_MINIMUM_FRACTION * lowest).max(doubt)).then_some(at)
 }
 
 /// Returns the lowest of the four samples and its two neighbours.
-fn around(samples: [Sample; 3], new: Sample) -> [Sample; 3] {
+fn select_neighbours(samples: [Sample; 3], new: Sample) -> [Sample; 3] {
     let [a, b, c] = samples;
     if new.at == b.at {
         return [a, new, c];
@@ -168,7 +170,7 @@ mod tests {
             at,
             value: function(at),
         });
-        let found = beyond(samples, 0.0, &mut |at| {
+        let found = find_time_beyond(samples, 0.0, &mut |at| {
             looks += 1;
             Some(function(at)).filter(|value| *value >= 0.0)
         });

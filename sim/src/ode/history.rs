@@ -18,7 +18,7 @@
 pub const MAX_ORDER: usize = 12;
 
 /// Number of stored differences: two more than the highest order, for the decision about a higher order.
-const DIFFERENCES: usize = MAX_ORDER + 2;
+const DIFFERENCE_COUNT: usize = MAX_ORDER + 2;
 
 /// Rates at the last points.
 #[derive(Clone)]
@@ -33,8 +33,8 @@ pub struct History {
 pub struct Weights {
     /// Length of the step, s.
     pub length: f64,
-    beta: [f64; DIFFERENCES],
-    g: [f64; DIFFERENCES],
+    beta: [f64; DIFFERENCE_COUNT],
+    g: [f64; DIFFERENCE_COUNT],
 }
 
 impl Weights {
@@ -56,8 +56,8 @@ impl History {
     /// Creates an empty history.
     pub fn new() -> Self {
         Self {
-            ages: Vec::with_capacity(DIFFERENCES),
-            differences: Vec::with_capacity(DIFFERENCES),
+            ages: Vec::with_capacity(DIFFERENCE_COUNT),
+            differences: Vec::with_capacity(DIFFERENCE_COUNT),
         }
     }
 
@@ -81,15 +81,15 @@ impl History {
 
     /// Returns the coefficients of a step of `length` s.
     pub fn weights(&self, length: f64) -> Weights {
-        let mut beta = [0.0; DIFFERENCES];
-        let mut g = [0.0; DIFFERENCES];
+        let mut beta = [0.0; DIFFERENCE_COUNT];
+        let mut g = [0.0; DIFFERENCE_COUNT];
         // Row j of the scheme: entry q is c_(j,q+1), so g_j = c_(j,1).
-        let mut row: [f64; DIFFERENCES + 1] = std::array::from_fn(|q| 1.0 / (q + 1) as f64);
+        let mut row: [f64; DIFFERENCE_COUNT + 1] = std::array::from_fn(|q| 1.0 / (q + 1) as f64);
         let mut product = 1.0;
         for (j, (beta, g)) in beta.iter_mut().zip(&mut g).enumerate() {
             if let Some(age) = j.checked_sub(1).and_then(|before| self.ages.get(before)) {
                 let reach = length + age;
-                for q in 0..DIFFERENCES - j {
+                for q in 0..DIFFERENCE_COUNT - j {
                     row[q] -= row[q + 1] * (length / reach);
                 }
                 product *= self.ages.get(j).map_or(0.0, |age| reach / age);
@@ -106,7 +106,7 @@ impl History {
     pub fn predict(&self, weights: &Weights, order: usize, y: &mut [f64]) {
         for (j, difference) in self.differences.iter().enumerate().take(order) {
             let factor = weights.length * weights.g[j] * weights.beta[j];
-            add(factor, difference, y);
+            add_multiple(factor, difference, y);
         }
     }
 
@@ -114,12 +114,12 @@ impl History {
     /// extrapolation of the earlier rates.
     pub fn write_prediction_difference(&self, weights: &Weights, order: usize, rates: &mut [f64]) {
         for (j, difference) in self.differences.iter().enumerate().take(order) {
-            add(-weights.beta[j], difference, rates);
+            add_multiple(-weights.beta[j], difference, rates);
         }
     }
 
     /// Returns the entries of beta_j Phi_j; zeros if unknown.
-    pub fn continued_difference(&self, weights: &Weights, j: usize) -> impl Iterator<Item = f64> {
+    pub fn extrapolate_difference(&self, weights: &Weights, j: usize) -> impl Iterator<Item = f64> {
         let beta = weights.beta.get(j).copied().unwrap_or(0.0);
         self.difference(j).map(move |difference| beta * difference)
     }
@@ -142,16 +142,16 @@ impl History {
     /// Sets this history to `before` extended by a step with these weights to a point with these rates. Keeps
     /// the differences for a step of the next higher order.
     pub fn follow(&mut self, before: &Self, weights: &Weights, order: usize, rates: &[f64]) {
-        let points = (before.points() + 1).min(order + 2).min(DIFFERENCES);
+        let points = (before.points() + 1).min(order + 2).min(DIFFERENCE_COUNT);
         self.ages.clear();
         self.ages.push(0.0);
         let older = before.ages.iter().take(points - 1);
         self.ages.extend(older.map(|age| age + weights.length));
         self.differences.resize_with(points, Vec::new);
         let mut difference = rates.to_vec();
-        for (j, place) in self.differences.iter_mut().enumerate() {
-            place.clone_from(&difference);
-            let continued = before.continued_difference(weights, j);
+        for (j, index) in self.differences.iter_mut().enumerate() {
+            index.clone_from(&difference);
+            let continued = before.extrapolate_difference(weights, j);
             for (difference, continued) in difference.iter_mut().zip(continued) {
                 *difference -= continued;
             }
@@ -160,7 +160,7 @@ impl History {
 }
 
 /// Adds factor x to y.
-fn add(factor: f64, x: &[f64], y: &mut [f64]) {
+fn add_multiple(factor: f64, x: &[f64], y: &mut [f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y += factor * x;
     }
@@ -172,7 +172,7 @@ mod tests {
 
     /// Integrates y' = f(t) from 0 with steps of different lengths and a fixed `order`, from exact initial
     /// values.
-    fn integral(f: impl Fn(f64) -> f64, exact: impl Fn(f64) -> f64, order: usize) -> (f64, f64) {
+    fn integrate(f: impl Fn(f64) -> f64, exact: impl Fn(f64) -> f64, order: usize) -> (f64, f64) {
         let mut history = History::new();
         history.begin(&[f(0.0)]);
         let (mut t, mut y) = (0.0, exact(0.0));
@@ -201,12 +201,12 @@ mod tests {
         for order in 1..=MAX_ORDER {
             let power = order as i32;
             let exact = |t: f64| t.powi(power + 1) / f64::from(power + 1);
-            let (t, y) = integral(|t| t.powi(power), exact, order);
+            let (t, y) = integrate(|t| t.powi(power), exact, order);
             // Rounding in differences of `order` neighbouring values: a few digits for the highest order.
             assert!((y / exact(t) - 1.0).abs() < 1e-11, "order {order}: {y}");
             // The method is not exact for the next degree, so the test detects a wrong order.
             let exact = |t: f64| t.powi(power + 2) / f64::from(power + 2);
-            let (t, y) = integral(|t| t.powi(power + 1), exact, order);
+            let (t, y) = integrate(|t| t.powi(power + 1), exact, order);
             assert!((y / exact(t) - 1.0).abs() > 1e-13, "order {order}: {y}");
         }
     }

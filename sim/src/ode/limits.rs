@@ -11,26 +11,26 @@ use super::system::System;
 const SWITCHES_AVERAGED: usize = 256;
 
 /// Number of approaches to a surface after which the steps of an explicit method are checked for stiffness.
-const APPROACHES: usize = 64;
+const CHECKED_APPROACHES: usize = 64;
 
-/// Largest number of crossings among [`APPROACHES`] that counts as overshoot due to stiffness. In 120 machines
+/// Largest number of crossings among [`CHECKED_APPROACHES`] that counts as overshoot due to stiffness. In 120 machines
 /// of the study `grazing`, 56 or more approaches crossed the surface in every window. In flows through orifices
 /// that settle, 16 or fewer crossed it in 222 of 230 windows.
-const MOST_CROSSED: usize = 32;
+const MAX_CROSSED_APPROACHES: usize = 32;
 
 /// Lower bound of the time in [`Driver::shortest_step`], as a fraction of the span.
-const SMALLEST_TIME: f64 = 1e-6;
+const MIN_TIME_FRACTION: f64 = 1e-6;
 
 impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Returns true if the next step would not change the time.
-    pub(super) fn step_is_too_short(&self) -> bool {
+    pub(super) fn is_step_too_short(&self) -> bool {
         self.run.stepper.step() <= self.shortest_step()
     }
 
     /// Returns the shortest step that changes the time, s.
     pub(super) fn shortest_step(&self) -> f64 {
         let t = self.run.stepper.current_point().t.abs();
-        f64::EPSILON * t.max(SMALLEST_TIME * self.end.abs())
+        f64::EPSILON * t.max(MIN_TIME_FRACTION * self.end.abs())
     }
 
     pub(super) fn check_switch_rate(&mut self, t: f64, guard: usize) -> Result<(), SolveError> {
@@ -42,9 +42,9 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let first = self.run.recent.pop_front().map_or(t, |(first, _)| first);
         if (t - first) * rate < SWITCHES_AVERAGED as f64 {
             if self.run.recent.iter().all(|(_, other)| *other == guard) {
-                return Err(self.staying_error((first, t), guard));
+                return Err(self.create_staying_error((first, t), guard));
             }
-            let guard = self.rarest();
+            let guard = self.find_rarest_guard();
             return Err(SolveError::TooManySwitches { t, guard, rate });
         }
         Ok(())
@@ -53,7 +53,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Returns the error for a motion that stayed near a surface over a time span (s). If the rates are
     /// continuous at the surface, steps of an explicit method overshot it. If they jump, the rates on both
     /// sides point towards it.
-    fn staying_error(&self, (first, t): (f64, f64), guard: usize) -> SolveError {
+    fn create_staying_error(&self, (first, t): (f64, f64), guard: usize) -> SolveError {
         let sticking = SolveError::Sticking { t: first, guard };
         if !M::IS_EXPLICIT {
             return sticking;
@@ -77,7 +77,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Returns the least frequent switching function among those with at least a quarter of the recent
     /// switches, or the most frequent one if there are none. A surface that sticks and releases between the
     /// switches of another surface does not chatter.
-    fn rarest(&self) -> usize {
+    fn find_rarest_guard(&self) -> usize {
         let mut counts = vec![0; self.run.modes.len()];
         for (_, guard) in &self.run.recent {
             counts[*guard] += 1;
@@ -93,7 +93,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 
     pub(super) fn check_steps(&self) -> Result<(), SolveError> {
         let steps = self.settings.max_steps;
-        if self.steps() < steps {
+        if self.count_steps() < steps {
             return Ok(());
         }
         let Point { t, y } = self.run.stepper.current_point();
@@ -117,13 +117,13 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if !M::IS_EXPLICIT || !can_change {
             return Ok(());
         }
-        let (t, steps) = (self.run.stepper.current_point().t, self.steps());
+        let (t, steps) = (self.run.stepper.current_point().t, self.count_steps());
         self.approaches.push_back(Approach {
             t,
             steps,
             has_crossed,
         });
-        if self.approaches.len() <= APPROACHES {
+        if self.approaches.len() <= CHECKED_APPROACHES {
             return Ok(());
         }
         let Some(first) = self.approaches.pop_front() else {
@@ -135,26 +135,26 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let Some(guard) = guard else {
             return Ok(());
         };
-        if crossed > MOST_CROSSED || needed < allowed as f64 {
+        if crossed > MAX_CROSSED_APPROACHES || needed < allowed as f64 {
             return Ok(());
         }
         Err(SolveError::StiffAtSurface {
             t,
             guard,
-            within: (t - first.t) / APPROACHES as f64,
+            within: (t - first.t) / CHECKED_APPROACHES as f64,
             steps: needed,
         })
     }
 
     /// Returns the number of steps tried so far.
-    fn steps(&self) -> u64 {
+    fn count_steps(&self) -> u64 {
         let work = &self.trajectory.statistics;
         work.steps + work.rejected_steps + work.trial_steps
     }
 
     /// Returns an error if the system is stiff and the step limit will be exceeded; see
     /// [`super::stiffness`].
-    pub(super) fn look_at_the_pace(&mut self, system: &S) -> Result<(), SolveError> {
+    pub(super) fn check_stiffness(&mut self, system: &S) -> Result<(), SolveError> {
         if !M::IS_EXPLICIT {
             return Ok(());
         }
@@ -163,7 +163,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             t: *t,
             y,
             step: self.run.stepper.step(),
-            steps: (self.steps(), self.settings.max_steps),
+            steps: (self.count_steps(), self.settings.max_steps),
             max_steps_if_stiff: self.settings.max_steps_if_stiff,
             end: self.end,
         };

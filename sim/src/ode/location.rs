@@ -27,16 +27,16 @@ const MIN_SHORTEST_STEPS: f64 = 2.0;
 const MAX_ROUNDINGS: f64 = 64.0;
 
 /// Growth factor of this distance until a point is beyond the surface.
-const GROWTH: f64 = 4.0;
+const DISTANCE_GROWTH: f64 = 4.0;
 
 /// Fraction of the distance to a surface with singular rates that a step covers.
-const APPROACH: f64 = 0.999;
+const APPROACH_FRACTION: f64 = 0.999;
 
 /// Fraction of a step used to compute the slope of a switching function.
-const SLOPE_PART: f64 = 1e-5;
+const SLOPE_STEP_FRACTION: f64 = 1e-5;
 
 /// Result of a location.
-pub(super) enum Located {
+pub(super) enum LocatedEvent {
     /// Points on the near side of a surface and just beyond it. The first one is `None` if it is the start of
     /// the step.
     Crossed(Option<Point>, Point),
@@ -62,7 +62,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             let y = match after {
                 after if after <= 0.0 => stepper.step_start().y.clone(),
                 after if after >= length => stepper.current_point().y.clone(),
-                after => stepper.interpolated(watched, begin + after)?,
+                after => stepper.interpolate(watched, begin + after)?,
             };
             Some(watched.lowest_guard(&crossing.guards, begin + after, &y))
         };
@@ -109,7 +109,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         crossing: &Crossing,
         guess: f64,
         length: f64,
-    ) -> Result<Located, SolveError> {
+    ) -> Result<LocatedEvent, SolveError> {
         let (mut near, mut beyond) = (crossing.near * length, crossing.beyond * length);
         if guess < near {
             (near, beyond) = (0.0, near);
@@ -119,25 +119,25 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             .iter()
             .any(|guard| self.watched.is_singular(*guard));
         if is_singular && guess > MAX_ROUNDINGS * self.shortest_step() {
-            return Ok(self.approach(&crossing.guards, guess));
+            return Ok(self.approach_surface(&crossing.guards, guess));
         }
         let mut after = guess;
         for _ in 0..MAX_STEPS {
             self.check_steps()?;
             self.trajectory.statistics.trial_steps += 1;
-            self.watched.forget_trials();
+            self.watched.clear_trial_errors();
             let line = match after > self.shortest_step() {
                 true => (self.run.stepper.trial(self.watched, after))
                     .map(|(point, rates)| Line { point, rates }),
                 false => Some(self.line_here()),
             };
             let Some(line) = line else {
-                return Ok(Located::Failed);
+                return Ok(LocatedEvent::Failed);
             };
-            let value = line.lowest(self, &crossing.guards, 0.0);
-            let part = SLOPE_PART * if after > 0.0 { after } else { length };
-            let rise = line.lowest(self, &crossing.guards, part)
-                - line.lowest(self, &crossing.guards, -part);
+            let value = line.evaluate_lowest(self, &crossing.guards, 0.0);
+            let part = SLOPE_STEP_FRACTION * if after > 0.0 { after } else { length };
+            let rise = line.evaluate_lowest(self, &crossing.guards, part)
+                - line.evaluate_lowest(self, &crossing.guards, -part);
             let slope = rise / (2.0 * part);
             match value >= 0.0 {
                 true => near = near.max(after),
@@ -148,7 +148,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             let is_near = slope < 0.0 && newton.abs() <= longest.max(MIN_DISTANCE * length);
             if is_near || beyond - near <= longest {
                 let offset = if is_near { newton } else { 0.0 };
-                return Ok(self.cross_on(line, (offset, slope), length, &crossing.guards));
+                return Ok(self.cross_on_line(line, (offset, slope), length, &crossing.guards));
             }
             let next = after + newton;
             after = match slope < 0.0 && near < next && next < beyond {
@@ -156,7 +156,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 false => 0.5 * (near + beyond),
             };
         }
-        Ok(Located::Failed)
+        Ok(LocatedEvent::Failed)
     }
 
     fn line_here(&self) -> Line {
@@ -174,11 +174,11 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let shortest = self.shortest_step();
         let mut distance = MIN_SHORTEST_STEPS * shortest;
         while distance <= MAX_ROUNDINGS * shortest {
-            let beyond = line.at(distance);
+            let beyond = line.point_at(distance);
             if self.watched.lowest_guard(&guards, beyond.t, &beyond.y) < 0.0 {
                 return Some(beyond);
             }
-            distance *= GROWTH;
+            distance *= DISTANCE_GROWTH;
         }
         None
     }
@@ -187,57 +187,60 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// the end of the domain of the rates, no trial evaluated them beyond it.
     pub(super) fn evaluate_ahead(&self) {
         let mut line = self.line_here();
-        let Point { t, y } = line.at(MIN_SHORTEST_STEPS * self.shortest_step());
+        let Point { t, y } = line.point_at(MIN_SHORTEST_STEPS * self.shortest_step());
         self.watched.rates(t, &y, &mut line.rates);
     }
 
     /// Finds points on both sides of the surfaces of `guards` on a line, around an `offset` (s) from its point,
     /// in a step of `length` s. `slope` (per s) is the rate of the lowest guard there.
-    fn cross_on(
+    fn cross_on_line(
         &mut self,
         line: Line,
         (offset, slope): (f64, f64),
         length: f64,
         guards: &[usize],
-    ) -> Located {
+    ) -> LocatedEvent {
         let begin = self.run.stepper.current_point().t;
         let shortest = self.shortest_step();
         let mut distance = (MIN_DISTANCE * length).max(MIN_SHORTEST_STEPS * shortest);
-        let longest = GROWTH * (MAX_EXTRAPOLATION * length).max(distance);
-        let lowest = |point: &Point| self.watched.lowest_guard(guards, point.t, &point.y);
+        let longest = DISTANCE_GROWTH * (MAX_EXTRAPOLATION * length).max(distance);
+        let lowest_guard = |point: &Point| self.watched.lowest_guard(guards, point.t, &point.y);
         let mut found = None;
         while distance <= longest {
-            let at = |offset: f64| {
-                let Point { t, y } = line.at(offset);
+            let limited_point = |offset: f64| {
+                let Point { t, y } = line.point_at(offset);
                 let t = t.min(self.until);
                 Point { t, y }
             };
-            let (near, beyond) = (at(offset - distance), at(offset + distance));
-            if lowest(&beyond) < 0.0 && beyond.t > begin {
+            let (near, beyond) = (
+                limited_point(offset - distance),
+                limited_point(offset + distance),
+            );
+            if lowest_guard(&beyond) < 0.0 && beyond.t > begin {
                 // Rounding may move the point on the near side by more than the distance.
-                let is_near = near.t <= begin || lowest(&near) >= 0.0;
+                let is_near = near.t <= begin || lowest_guard(&near) >= 0.0;
                 found = Some((Some(near).filter(|near| near.t > begin), beyond));
                 if is_near {
                     break;
                 }
             }
-            distance *= GROWTH;
+            distance *= DISTANCE_GROWTH;
         }
         if let Some((near, beyond)) = found {
-            return Located::Crossed(near, beyond);
+            return LocatedEvent::Crossed(near, beyond);
         }
         let roundings = self.watched.guard_roundings(line.point.t, &line.point.y);
         let here = self.run.stepper.current_point();
         let within = |guard: &usize| {
             let value = self.watched.lowest_guard(&[*guard], here.t, &here.y);
-            value <= GROWTH * roundings[*guard]
+            value <= DISTANCE_GROWTH * roundings[*guard]
         };
         let slow: Vec<usize> = guards.iter().copied().filter(within).collect();
         if slow.is_empty() {
-            return Located::Touched(line.point);
+            return LocatedEvent::Touched(line.point);
         }
         let rounding = slow.iter().map(|guard| roundings[*guard]);
-        let until_beyond = GROWTH * rounding.fold(0.0, f64::max) / slope.abs();
+        let until_beyond = DISTANCE_GROWTH * rounding.fold(0.0, f64::max) / slope.abs();
         let first = line.point.t - begin + until_beyond;
         self.cross_slowly((first, length), &slow, line.point)
     }
@@ -250,16 +253,16 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         (first, length): (f64, f64),
         guards: &[usize],
         touched: Point,
-    ) -> Located {
+    ) -> LocatedEvent {
         let (mut near, mut after) = (0.0, first.max(self.shortest_step()).min(length));
         while let Some((side, beyond)) = self.try_step(after, guards) {
             match side {
                 TrialSide::Beyond => {
-                    return self.end_beyond((near, after), (guards, beyond), length);
+                    return self.find_first_beyond((near, after), (guards, beyond), length);
                 }
                 TrialSide::Near if after < length => {
                     near = after;
-                    after = (GROWTH * after).min(length);
+                    after = (DISTANCE_GROWTH * after).min(length);
                 }
                 TrialSide::Near | TrialSide::BeyondOthers => break,
             }
@@ -269,17 +272,17 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             // The dense output must belong to this step, so the trial is repeated.
             self.run.stepper.trial(self.watched, back);
         }
-        Located::Touched(touched)
+        LocatedEvent::Touched(touched)
     }
 
     /// Returns the first point beyond surfaces that steps of `near` s do not reach and steps of `after` s
     /// cross. The rates of the near side do not apply beyond this point.
-    fn end_beyond(
+    fn find_first_beyond(
         &mut self,
         (mut near, mut after): (f64, f64),
         (guards, mut beyond): (&[usize], Point),
         length: f64,
-    ) -> Located {
+    ) -> LocatedEvent {
         let shortest = (MIN_DISTANCE * length).max(MIN_SHORTEST_STEPS * self.shortest_step());
         let mut is_last = true;
         while after - near > shortest {
@@ -299,7 +302,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             // The dense output must belong to this step, so the trial is repeated.
             self.run.stepper.trial(self.watched, after);
         }
-        Located::Crossed(None, beyond)
+        LocatedEvent::Crossed(None, beyond)
     }
 
     /// Tries a step of `after` s and returns its end, and the side of the surfaces of `guards` on which it
@@ -317,13 +320,20 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     }
 
     /// Steps to a point before a surface with singular rates, which is `after` s from the current point.
-    fn approach(&mut self, guards: &[usize], after: f64) -> Located {
+    fn approach_surface(&mut self, guards: &[usize], after: f64) -> LocatedEvent {
         self.trajectory.statistics.trial_steps += 1;
-        let trial = self.run.stepper.trial(self.watched, APPROACH * after);
+        let trial = self
+            .run
+            .stepper
+            .trial(self.watched, APPROACH_FRACTION * after);
         let near =
             trial.filter(|(point, _)| self.watched.lowest_guard(guards, point.t, &point.y) >= 0.0);
-        self.run.stepper.set_step(2.0 * (1.0 - APPROACH) * after);
-        near.map_or(Located::Failed, |(point, _)| Located::Touched(point))
+        self.run
+            .stepper
+            .set_step(2.0 * (1.0 - APPROACH_FRACTION) * after);
+        near.map_or(LocatedEvent::Failed, |(point, _)| {
+            LocatedEvent::Touched(point)
+        })
     }
 }
 
@@ -343,7 +353,7 @@ struct Line {
 
 impl Line {
     /// Returns the point at an `offset` in s.
-    fn at(&self, offset: f64) -> Point {
+    fn point_at(&self, offset: f64) -> Point {
         let entries = self.point.y.iter().zip(&self.rates);
         Point {
             t: self.point.t + offset,
@@ -352,13 +362,13 @@ impl Line {
     }
 
     /// Returns the value of the lowest of `guards` at an `offset` in s; each is positive on its near side.
-    fn lowest<S: System + ?Sized, M: Stepper>(
+    fn evaluate_lowest<S: System + ?Sized, M: Stepper>(
         &self,
         driver: &Driver<'_, S, M>,
         guards: &[usize],
         offset: f64,
     ) -> f64 {
-        let point = self.at(offset);
+        let point = self.point_at(offset);
         driver.watched.lowest_guard(guards, point.t, &point.y)
     }
 }

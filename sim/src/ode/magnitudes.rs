@@ -8,11 +8,11 @@ pub const ROUNDING_FACTOR: f64 = 10.0;
 
 /// Largest change by a projection onto invariants, in allowed errors of a step, that is consistent with the
 /// error estimate.
-const MOST_STRAYED: f64 = 100.0;
+const MAX_PROJECTION_ERRORS: f64 = 100.0;
 
 /// Rounding of a projection, in units of the last place of the largest corrected state, relative to typical
 /// sizes.
-const ROUNDING_OF_OTHERS: f64 = 1000.0;
+const PROJECTION_ROUNDINGS: f64 = 1000.0;
 
 /// Largest magnitude of each component so far, and the relative tolerance.
 pub struct Magnitudes {
@@ -24,7 +24,7 @@ pub struct Magnitudes {
     /// True for components that projections onto constraints correct, also by less than their rounding.
     is_corrected: Vec<bool>,
     /// Largest magnitude of a corrected component so far, relative to its typical size.
-    most: f64,
+    largest_corrected: f64,
     tolerance: f64,
     /// Rounding error of each component in a step, which the error control ignores.
     roundings: Vec<f64>,
@@ -46,7 +46,7 @@ impl Magnitudes {
             smallest,
             typical_sizes: typical_sizes.to_vec(),
             is_corrected: vec![false; y.len()],
-            most: 0.0,
+            largest_corrected: 0.0,
             tolerance,
             roundings: vec![0.0; y.len()],
         }
@@ -63,7 +63,7 @@ impl Magnitudes {
             smallest: self.smallest.clone(),
             typical_sizes: self.typical_sizes.clone(),
             is_corrected: self.is_corrected.clone(),
-            most: self.most,
+            largest_corrected: self.largest_corrected,
             tolerance: self.tolerance,
             roundings: self.roundings.clone(),
         }
@@ -86,29 +86,30 @@ impl Magnitudes {
         for (largest, y) in self.largest.iter_mut().zip(y) {
             *largest = largest.max(y.abs());
         }
-        self.raise_most(y);
+        self.raise_largest_corrected(y);
     }
 
-    fn raise_most(&mut self, y: &[f64]) {
+    fn raise_largest_corrected(&mut self, y: &[f64]) {
         let sizes = y.iter().zip(&self.typical_sizes).zip(&self.is_corrected);
         let corrected = sizes.filter(|(_, is_corrected)| **is_corrected);
         let relative = corrected.map(|((y, size), _)| y.abs() / size);
-        self.most = relative.fold(self.most, f64::max);
+        self.largest_corrected = relative.fold(self.largest_corrected, f64::max);
     }
 
     /// Marks the components of a state `y` that a projection onto constraints changes.
-    pub fn note_correction(&mut self, changed: &[bool], y: &[f64]) {
+    pub fn mark_corrections(&mut self, changed: &[bool], y: &[f64]) {
         for (is_corrected, is_changed) in self.is_corrected.iter_mut().zip(changed) {
             *is_corrected |= is_changed;
         }
-        self.raise_most(y);
+        self.raise_largest_corrected(y);
     }
 
     /// Adds the rounding of projections onto constraints: each corrected component has the rounding error of
     /// the largest one. The error control ignores this rounding.
-    pub fn include_rounding_of_others(&mut self) {
+    pub fn include_projection_rounding(&mut self) {
         // `largest` is not raised: below a tolerance of 2e-13 it would grow with every call.
-        let rounding = ROUNDING_OF_OTHERS * f64::EPSILON / self.tolerance * self.most;
+        let rounding =
+            PROJECTION_ROUNDINGS * f64::EPSILON / self.tolerance * self.largest_corrected;
         let sizes = self.typical_sizes.iter().zip(&self.is_corrected);
         let entries = self.largest.iter_mut().zip(sizes);
         for (largest, (size, _)) in entries.filter(|(_, (_, is_corrected))| **is_corrected) {
@@ -119,10 +120,10 @@ impl Magnitudes {
     /// Returns true if all changes of a state `y` by a projection are consistent with the error estimate.
     /// Rounding of other components is ignored for a state that has not moved.
     pub fn allow(&self, changes: impl Iterator<Item = f64>, y: &[f64]) -> bool {
-        let rounding = ROUNDING_OF_OTHERS * f64::EPSILON * self.most;
+        let rounding = PROJECTION_ROUNDINGS * f64::EPSILON * self.largest_corrected;
         let allowed = self.allowed(y).zip(&self.typical_sizes);
         changes.zip(allowed).all(|(change, (allowed, size))| {
-            change.abs() <= MOST_STRAYED * allowed + rounding * size
+            change.abs() <= MAX_PROJECTION_ERRORS * allowed + rounding * size
         })
     }
 
@@ -140,7 +141,13 @@ impl Magnitudes {
     pub fn max_norm(&self, errors: &[f64], y: &[f64]) -> f64 {
         let errors = errors.iter().zip(self.allowed(y));
         let relative = errors.map(|(error, allowed)| (error / allowed).abs());
-        relative.fold(0.0, |most, error| if error <= most { most } else { error })
+        relative.fold(0.0, |largest_corrected, error| {
+            if error <= largest_corrected {
+                largest_corrected
+            } else {
+                error
+            }
+        })
     }
 
     /// Returns the root mean square of the errors at `y`, each as a multiple of its tolerance.
@@ -166,9 +173,9 @@ mod tests {
     #[test]
     fn components_without_corrections_leave_the_others_unchanged() {
         let mut magnitudes = Magnitudes::new(&[1.0, 1e10], &[1.0, 1.0], 1e-9);
-        magnitudes.note_correction(&[true, false], &[1.0, 1e10]);
+        magnitudes.mark_corrections(&[true, false], &[1.0, 1e10]);
         magnitudes.raise(&[1.0, 1e10]);
-        magnitudes.include_rounding_of_others();
+        magnitudes.include_projection_rounding();
         assert_eq!(magnitudes.largest, [1.0, 1e10]);
         assert!(!magnitudes.allow([1e-5, 0.0].into_iter(), &[1.0, 1e10]));
     }
@@ -177,11 +184,11 @@ mod tests {
     fn rounding_of_others_does_not_grow_from_step_to_step() {
         for tolerance in [1e-9, 1e-13, 1e-14] {
             let mut magnitudes = Magnitudes::new(&[100.0, 1e-3], &[1.0, 1.0], tolerance);
-            magnitudes.note_correction(&[true, true], &[100.0, 1e-3]);
+            magnitudes.mark_corrections(&[true, true], &[100.0, 1e-3]);
             let mut floors = Vec::new();
             for _ in 0..50 {
                 magnitudes.raise(&[100.0, 1e-3]);
-                magnitudes.include_rounding_of_others();
+                magnitudes.include_projection_rounding();
                 floors.push(magnitudes.largest.clone());
             }
             assert_eq!(floors[0], floors[49], "{tolerance:e}");

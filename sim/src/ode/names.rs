@@ -85,25 +85,26 @@ impl Names<'_> {
                         String::new(),
                     ),
                 };
-                format!("{STICKING} {reason}; {cure}{SMOOTH_LAW}")
+                format!("{STICKING_CAUSE} {reason}; {cure}{SMOOTH_LAW_REMEDY}")
             }
-            Some(SurfaceKind::HeldSpeed) => format!("{RESTARTING}; {SMOOTH_LAW}"),
-            Some(SurfaceKind::Function | SurfaceKind::Distance) => CHATTERING.to_owned(),
+            Some(SurfaceKind::HeldSpeed) => format!("{RESTARTING_CAUSE}; {SMOOTH_LAW_REMEDY}"),
+            Some(SurfaceKind::Function | SurfaceKind::Distance) => CHATTERING_CAUSE.to_owned(),
             None => "replace the jump by a steep smooth function".to_owned(),
         }
     }
 }
 
 /// Cause: sticking under dry friction.
-const STICKING: &str = "it sticks, as a body at rest under dry friction, which is not supported";
+const STICKING_CAUSE: &str =
+    "it sticks, as a body at rest under dry friction, which is not supported";
 
 /// Cause: sticking that begins and ends too often.
-const RESTARTING: &str = "it comes to rest and starts again without end";
+const RESTARTING_CAUSE: &str = "it comes to rest and starts again without end";
 
 /// Remedy: a smooth friction law.
-const SMOOTH_LAW: &str =
+const SMOOTH_LAW_REMEDY: &str =
     "write a smooth law, such as tanh(v/v_0) with a small speed v_0 instead of sign(v)";
 
 /// Cause: chattering at a force that jumps at a position.
-const CHATTERING: &str = "it chatters, because the forces on both sides lead back to it. Replace the \
+const CHATTERING_CAUSE: &str = "it chatters, because the forces on both sides lead back to it. Replace the \
     jump by a continuous force over a small distance, such as a stiff spring";

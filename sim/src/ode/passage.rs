@@ -3,29 +3,29 @@
 use super::driver::Driver;
 use super::error::SolveError;
 use super::event_search::Crossing;
-use super::location::Located;
+use super::location::LocatedEvent;
 use super::stepper::{Point, Stepper, rejection_error};
 use super::system::System;
 
 /// Factor by which a step is shortened that does not reach its surface.
-const SHORTENED: f64 = 0.25;
+const SHORTENING_FACTOR: f64 = 0.25;
 
 impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Shortens the last step, of `length` s, to end at the first surface that it crosses, and applies the
     /// event.
     pub(super) fn cross(&mut self, crossing: &Crossing, length: f64) -> Result<(), SolveError> {
         let guess = self.find_interior_root(crossing);
-        self.run.stepper.take_back();
+        self.run.stepper.undo_step();
         let start = self.run.stepper.current_point().clone();
         let (located, guards) = self.locate_first(crossing, guess, length)?;
         let guard = guards.first().copied();
-        let has_crossed = matches!(located, Located::Crossed(..));
+        let has_crossed = matches!(located, LocatedEvent::Crossed(..));
         let recorded = self.trajectory.events.len();
         match located {
-            Located::Crossed(near, mut beyond) => {
+            LocatedEvent::Crossed(near, mut beyond) => {
                 let crossed = self.crossed_guards(&beyond);
                 if let Some(mut near) = near {
-                    let allowed = self.allowed(&near.y);
+                    let allowed = self.allowed_errors(&near.y);
                     let surfaces = (&guards[..], &allowed[..]);
                     self.watched.project_before(surfaces, near.t, &mut near.y);
                     self.end_step(near)?;
@@ -36,9 +36,9 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 self.project();
                 self.accept(near.t)?;
             }
-            Located::Touched(point) if point.t > start.t => self.end_step(point)?,
-            Located::Touched(_) | Located::Failed => {
-                self.run.stepper.restart(start, SHORTENED * length);
+            LocatedEvent::Touched(point) if point.t > start.t => self.end_step(point)?,
+            LocatedEvent::Touched(_) | LocatedEvent::Failed => {
+                self.run.stepper.restart(start, SHORTENING_FACTOR * length);
             }
         }
         // Approaches to a surface without an event must make progress, too.
@@ -54,7 +54,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     ///
     /// # Errors
     /// The reason why steps are too short, if there is no surface.
-    pub(super) fn cross_at_once(&mut self) -> Result<(), SolveError> {
+    pub(super) fn cross_close_surface(&mut self) -> Result<(), SolveError> {
         let near = self.run.stepper.current_point().clone();
         let step = self.run.stepper.step();
         let Some(mut beyond) = self.find_point_beyond() else {
@@ -63,7 +63,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         };
         let crossed = self.crossed_guards(&beyond);
         self.apply_event(&crossed, &near, &mut beyond);
-        self.run.stepper.restart(beyond, step / SHORTENED);
+        self.run.stepper.restart(beyond, step / SHORTENING_FACTOR);
         self.project();
         self.accept(near.t)
     }
@@ -83,11 +83,13 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         crossing: &Crossing,
         guess: f64,
         length: f64,
-    ) -> Result<(Located, Vec<usize>), SolveError> {
+    ) -> Result<(LocatedEvent, Vec<usize>), SolveError> {
         let mut located = self.locate(crossing, guess, length)?;
         let mut guards = crossing.guards.clone();
         for _ in 0..self.watched.sides().len() {
-            let (Located::Crossed(Some(reached), _) | Located::Touched(reached)) = &located else {
+            let (LocatedEvent::Crossed(Some(reached), _) | LocatedEvent::Touched(reached)) =
+                &located
+            else {
                 break;
             };
             let mut passed = self.crossed_guards(reached);
@@ -112,14 +114,14 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     }
 
     /// Returns the error allowed to each state.
-    fn allowed(&self, y: &[f64]) -> Vec<f64> {
-        self.run.stepper.magnitudes().allowed(y).collect()
+    fn allowed_errors(&self, y: &[f64]) -> Vec<f64> {
+        self.run.stepper.magnitudes().allowed_errors(y).collect()
     }
 
     /// Applies the event at the crossed surfaces between `start` and `point`, and records the surfaces that
     /// reversed the motion with a jump.
     fn apply_event(&mut self, crossed: &[usize], start: &Point, point: &mut Point) {
-        let allowed = self.allowed(&point.y);
+        let allowed = self.allowed_errors(&point.y);
         let surfaces = (crossed, &allowed[..]);
         self.watched
             .project_beyond(surfaces, &start.y, point.t, &mut point.y);

@@ -2,7 +2,7 @@
 
 /// Relative changes of a step size, by rounding of its end time, that are corrected. Smaller changes are below
 /// the error of a step. With larger ones, a rejected step would not shrink to 0.9 of its length.
-const COUNTED_ROUNDINGS: std::ops::Range<f64> = 1e-11..0.1;
+const CORRECTED_ROUNDINGS: std::ops::Range<f64> = 1e-11..0.1;
 
 /// A state and its time.
 #[derive(Clone, Debug)]
@@ -29,7 +29,7 @@ impl Point {
     /// differently, by more for larger times.
     pub fn exact_length(&self, length: f64) -> f64 {
         let exact = (self.t + length) - self.t;
-        match COUNTED_ROUNDINGS.contains(&((exact - length) / length).abs()) {
+        match CORRECTED_ROUNDINGS.contains(&((exact - length) / length).abs()) {
             true => exact,
             false => length,
         }

@@ -7,7 +7,7 @@
 
 use nalgebra::DMatrix;
 
-use super::collocation::{Factors, MAX_ITERATIONS, Stages};
+use super::collocation::{LinearFactors, MAX_NEWTON_ITERATIONS, Stages};
 use super::error::SolveError;
 use super::magnitudes::Magnitudes;
 use super::stepper::{Outcome, Point, Stepper, split_step};
@@ -15,21 +15,21 @@ use super::system::System;
 use super::watch::WatchedSystem;
 
 /// Safety factor of the step size that the error estimate proposes.
-const SAFETY: f64 = 0.9;
+const SAFETY_FACTOR: f64 = 0.9;
 
 /// Largest and smallest ratio of successive step sizes.
-const GROWTH: (f64, f64) = (8.0, 0.2);
+const STEP_RATIO_RANGE: (f64, f64) = (8.0, 0.2);
 
 /// Smallest growth of the step size that is worth a new LU factorisation; for less growth the step size stays
 /// the same.
-const WORTH_NEW_FACTORS: f64 = 1.2;
+const MIN_USEFUL_GROWTH: f64 = 1.2;
 
 /// Contraction of Newton's method below which the next step uses the same Jacobian.
-const GOOD_JACOBIAN: f64 = 1e-3;
+const MAX_REUSE_CONTRACTION: f64 = 1e-3;
 
 /// Size and error of the step before the last one, for the prediction of the next step size.
 #[derive(Clone, Copy)]
-struct Accepted {
+struct AcceptedStep {
     length: f64,
     error: f64,
 }
@@ -46,14 +46,14 @@ pub struct Radau {
     step: f64,
     magnitudes: Magnitudes,
     jacobian: Option<DMatrix<f64>>,
-    factors: Option<Factors>,
+    factors: Option<LinearFactors>,
     /// Stages of the last step, if it ends at `here`.
     stages: Option<Stages>,
     /// Stages of the last trial.
-    tried: Option<Stages>,
-    accepted: Option<Accepted>,
+    last_trial: Option<Stages>,
+    accepted: Option<AcceptedStep>,
     /// True if the last trial was rejected.
-    is_refused: bool,
+    is_rejected: bool,
     /// True if the right-hand side may have jumped at the start of the next step.
     is_starting: bool,
 }
@@ -71,9 +71,9 @@ impl Stepper for Radau {
             jacobian: None,
             factors: None,
             stages: None,
-            tried: None,
+            last_trial: None,
             accepted: None,
-            is_refused: false,
+            is_rejected: false,
             is_starting: true,
         }
     }
@@ -96,7 +96,7 @@ impl Stepper for Radau {
 
     fn restart(&mut self, point: Point, step: f64) {
         self.last = std::mem::replace(&mut self.here, point);
-        self.forget();
+        self.discard_history();
         self.step = step;
     }
 
@@ -117,7 +117,7 @@ impl Stepper for Radau {
     fn settle(&mut self, is_projected: bool) {
         self.magnitudes.raise(&self.here.y);
         if is_projected {
-            self.magnitudes.include_rounding_of_others();
+            self.magnitudes.include_projection_rounding();
         }
     }
 
@@ -127,13 +127,13 @@ impl Stepper for Radau {
         until: f64,
     ) -> Result<Outcome, SolveError> {
         if std::mem::take(&mut self.is_starting) {
-            self.begin(watched);
+            self.limit_first_step(watched);
         }
         let (length, is_cut) = self.here.choose_length(self.step, until);
         let jacobian = (self.jacobian).get_or_insert_with(|| jacobian(watched, &self.here));
         let factors = match self.factors.take() {
             Some(factors) if factors.length == length => factors,
-            _ => Factors::new(jacobian, length),
+            _ => LinearFactors::new(jacobian, length),
         };
         let (here, before) = (&self.here, self.stages.as_ref());
         let solved = Stages::solve(watched, here, &factors, before, &self.magnitudes);
@@ -144,13 +144,13 @@ impl Stepper for Radau {
         let stages = match solved {
             Some(stages) => stages,
             None => {
-                self.refuse(0.5 * length);
+                self.reject_step(0.5 * length);
                 return Ok(outcome(false));
             }
         };
         let rates = self.rates.take();
         let rates = rates.unwrap_or_else(|| rates_at(watched, &self.here));
-        let is_doubted = self.is_refused || self.accepted.is_none();
+        let is_doubted = self.is_rejected || self.accepted.is_none();
         let by = (&factors, &self.magnitudes);
         let error = stages.estimate_error(watched, &self.here, &rates, by, is_doubted);
         let inside = (self.stages.as_ref()).map_or(0.0, |before| {
@@ -158,36 +158,36 @@ impl Stepper for Radau {
         });
         let error = error.max(inside);
         if error.is_nan() || error >= 1.0 {
-            let next = length * proposed(error, stages.iterations);
+            let next = length * propose_growth(error, stages.iterations);
             self.rates = Some(rates);
-            self.refuse(next.min(SAFETY * length));
+            self.reject_step(next.min(SAFETY_FACTOR * length));
             return Ok(outcome(false));
         }
         let end = Point {
             t: if is_cut { until } else { self.here.t + length },
             y: stages.end_state(&self.here.y),
         };
-        let next = length * self.growth(length, error, stages.iterations);
+        let next = length * self.predict_growth(length, error, stages.iterations);
         // A step that was cut short does not shorten the next one.
         self.step = if is_cut { next.max(self.step) } else { next };
         self.last = std::mem::replace(&mut self.here, end);
-        if stages.contraction > GOOD_JACOBIAN {
+        if stages.contraction > MAX_REUSE_CONTRACTION {
             self.jacobian = None;
-        } else if (1.0..=WORTH_NEW_FACTORS).contains(&(self.step / length)) {
+        } else if (1.0..=MIN_USEFUL_GROWTH).contains(&(self.step / length)) {
             self.step = length;
             self.factors = Some(factors);
         }
         self.stages = Some(stages);
         let error = error.max(1e-2);
-        self.accepted = Some(Accepted { length, error });
-        self.is_refused = false;
+        self.accepted = Some(AcceptedStep { length, error });
+        self.is_rejected = false;
         self.is_starting = is_cut;
         Ok(outcome(true))
     }
 
-    fn take_back(&mut self) {
+    fn undo_step(&mut self) {
         std::mem::swap(&mut self.last, &mut self.here);
-        self.forget();
+        self.discard_history();
     }
 
     fn trial<S: System + ?Sized>(
@@ -197,27 +197,27 @@ impl Stepper for Radau {
     ) -> Option<(Point, Vec<f64>)> {
         let length = self.here.exact_length(length);
         let jacobian = (self.jacobian).get_or_insert_with(|| jacobian(watched, &self.here));
-        let factors = Factors::new(jacobian, length);
-        self.tried = Stages::solve(watched, &self.here, &factors, None, &self.magnitudes);
-        let end = match &self.tried {
+        let factors = LinearFactors::new(jacobian, length);
+        self.last_trial = Stages::solve(watched, &self.here, &factors, None, &self.magnitudes);
+        let end = match &self.last_trial {
             Some(stages) => Point {
                 t: self.here.t + length,
                 y: stages.end_state(&self.here.y),
             },
-            None => self.step_from(watched, &self.here, length)?,
+            None => self.make_step(watched, &self.here, length)?,
         };
         let rates = rates_at(watched, &end);
         Some((end, rates))
     }
 
     fn end_trial(&mut self, point: Point) {
-        let tried = self.tried.take();
+        let last_trial = self.last_trial.take();
         let step = self.step;
         self.restart(point, step);
-        self.stages = tried;
+        self.stages = last_trial;
     }
 
-    fn interpolated<S: System + ?Sized>(
+    fn interpolate<S: System + ?Sized>(
         &mut self,
         _watched: &WatchedSystem<'_, S>,
         t: f64,
@@ -226,23 +226,23 @@ impl Stepper for Radau {
         Some(stages.interpolate(&self.last.y, t - self.last.t))
     }
 
-    fn inside<S: System + ?Sized>(
+    fn compute_state_at<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
         t: f64,
     ) -> Option<Vec<f64>> {
-        if let Some(state) = self.interpolated(watched, t) {
+        if let Some(state) = self.interpolate(watched, t) {
             return Some(state);
         }
         let after = t - self.last.t;
-        Some(self.step_from(watched, &self.last, after)?.y)
+        Some(self.make_step(watched, &self.last, after)?.y)
     }
 }
 
 impl Radau {
     /// Returns the point after a step of exactly `length` s from `start`, without error control. The step is
     /// split if Newton's method does not converge. Returns `None` if the parts get too short.
-    fn step_from<S: System + ?Sized>(
+    fn make_step<S: System + ?Sized>(
         &self,
         watched: &WatchedSystem<'_, S>,
         start: &Point,
@@ -251,7 +251,7 @@ impl Radau {
         let mut magnitudes = self.magnitudes.reset_copy();
         let step = |point: &Point, length: f64, t: f64| {
             magnitudes.raise(&point.y);
-            let factors = Factors::new(&jacobian(watched, point), length);
+            let factors = LinearFactors::new(&jacobian(watched, point), length);
             let stages = Stages::solve(watched, point, &factors, None, &magnitudes)?;
             let y = stages.end_state(&point.y);
             Some(Point { t, y })
@@ -260,7 +260,7 @@ impl Radau {
     }
 
     /// Discards stages and step sizes that apply only at the end of the last step.
-    fn forget(&mut self) {
+    fn discard_history(&mut self) {
         self.rates = None;
         self.jacobian = None;
         self.factors = None;
@@ -272,7 +272,7 @@ impl Radau {
     /// Limits the first step by the rates and their change. The error estimate fails there: it accepts a step
     /// so long that the method damps a fast vibration. The rule is taken from Hairer, Norsett and Wanner,
     /// "Solving Ordinary Differential Equations I", section II.4, for an error of order 3.
-    fn begin<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) {
+    fn limit_first_step<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) {
         let here = &self.here;
         let norm = |values: &[f64]| self.magnitudes.norm(values.iter().copied(), &here.y);
         let rates = rates_at(watched, here);
@@ -302,9 +302,9 @@ impl Radau {
     }
 
     /// Prepares a shorter step after a rejection, with a Jacobian at its start.
-    fn refuse(&mut self, step: f64) {
+    fn reject_step(&mut self, step: f64) {
         self.step = step;
-        self.is_refused = true;
+        self.is_rejected = true;
         self.factors = None;
         if self.stages.is_some() {
             // The Jacobian may belong to an earlier point.
@@ -314,9 +314,9 @@ impl Radau {
 
     /// Returns the growth factor of the step size after a step with this length and error. The prediction of
     /// Gustafsson also uses the preceding step.
-    fn growth(&self, length: f64, error: f64, iterations: u32) -> f64 {
-        let growth = proposed(error, iterations);
-        let growth = if self.is_refused {
+    fn predict_growth(&self, length: f64, error: f64, iterations: u32) -> f64 {
+        let growth = propose_growth(error, iterations);
+        let growth = if self.is_rejected {
             growth.min(1.0)
         } else {
             growth
@@ -325,20 +325,20 @@ impl Radau {
             return growth;
         };
         let predicted =
-            SAFETY * length / before.length * (before.error / (error * error)).powf(0.25);
-        growth.min(predicted.clamp(GROWTH.1, GROWTH.0))
+            SAFETY_FACTOR * length / before.length * (before.error / (error * error)).powf(0.25);
+        growth.min(predicted.clamp(STEP_RATIO_RANGE.1, STEP_RATIO_RANGE.0))
     }
 }
 
 /// Returns the growth factor of the step size from the error of this step and its number of Newton iterations.
-fn proposed(error: f64, iterations: u32) -> f64 {
-    let most = f64::from(2 * MAX_ITERATIONS);
-    let safety = SAFETY * (most + 1.0) / (most + f64::from(iterations));
+fn propose_growth(error: f64, iterations: u32) -> f64 {
+    let most = f64::from(2 * MAX_NEWTON_ITERATIONS);
+    let safety = SAFETY_FACTOR * (most + 1.0) / (most + f64::from(iterations));
     let growth = safety / error.powf(0.25);
     if growth.is_nan() {
-        return GROWTH.1;
+        return STEP_RATIO_RANGE.1;
     }
-    growth.clamp(GROWTH.1, GROWTH.0)
+    growth.clamp(STEP_RATIO_RANGE.1, STEP_RATIO_RANGE.0)
 }
 
 fn rates_at<S: System + ?Sized>(watched: &WatchedSystem<'_, S>, point: &Point) -> Vec<f64> {

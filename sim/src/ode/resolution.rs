@@ -7,25 +7,25 @@
 //! cannot hide a sign change.
 
 /// Largest deviation from the parabola, as a fraction of the function's range in the step.
-const TOLD: f64 = 0.1;
+const MAX_DEVIATION_FRACTION: f64 = 0.1;
 
 /// A sign change is possible if the lowest value is at most this multiple of the deviation.
-const HIDDEN: f64 = 2.0;
+const HIDDEN_CHANGE_FACTOR: f64 = 2.0;
 
 /// A function can reach its surface in the next step if its lowest value is at most this multiple of its range.
-const WITHIN_REACH: f64 = 20.0;
+const REACHABLE_FACTOR: f64 = 20.0;
 
 /// Factor for a step that may hide a sign change: the deviation becomes an eighth.
-const HALF: f64 = 0.5;
+const HALVING_FACTOR: f64 = 0.5;
 
 /// Error of a function's values inside a step, in units of the tolerance.
-const ERRORS: f64 = 10.0;
+const INTERIOR_ERROR_TOLERANCES: f64 = 10.0;
 
 /// Largest change of a function, in roundings, that counts as none.
-pub const ROUNDINGS: f64 = 8.0;
+pub const MAX_CONSTANT_ROUNDINGS: f64 = 8.0;
 
 /// Sample times as fractions of the step.
-pub const PARTS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+pub const SAMPLE_FRACTIONS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// Limit on the step length from the switching functions.
 pub struct Resolution {
@@ -40,14 +40,14 @@ impl Resolution {
     pub fn new(tolerance: f64) -> Self {
         Self {
             sizes: Vec::new(),
-            error: ERRORS * tolerance,
+            error: INTERIOR_ERROR_TOLERANCES * tolerance,
         }
     }
 
     /// Returns the factor by which the next step may grow, or a factor below 1 if this step was too long.
-    /// `values` are the functions at [`PARTS`], `sides` the sides at the start. Changes within `roundings` are
+    /// `values` are the functions at [`SAMPLE_FRACTIONS`], `sides` the sides at the start. Changes within `roundings` are
     /// ignored.
-    pub fn longest(
+    pub fn find_growth_factor(
         &self,
         values: &[Vec<f64>; 5],
         sides: impl Fn(usize) -> f64,
@@ -58,10 +58,11 @@ impl Resolution {
             let side = sides(guard);
             let samples = values.each_ref().map(|values| side * values[guard]);
             let before = self.sizes.get(guard).copied().unwrap_or(0.0);
-            let size = largest(samples, before);
+            let size = find_largest_magnitude(samples, before);
             if side != 0.0 {
-                let rounding = ROUNDINGS * roundings.get(guard).copied().unwrap_or(0.0);
-                longest = longest.min(factor(samples, rounding.max(self.error * size)));
+                let rounding =
+                    MAX_CONSTANT_ROUNDINGS * roundings.get(guard).copied().unwrap_or(0.0);
+                longest = longest.min(compute_factor(samples, rounding.max(self.error * size)));
             }
         }
         longest
@@ -71,19 +72,19 @@ impl Resolution {
     pub fn settle(&mut self, values: &[Vec<f64>; 5]) {
         self.sizes.resize(values[0].len(), 0.0);
         for (guard, size) in self.sizes.iter_mut().enumerate() {
-            *size = largest(values.each_ref().map(|values| values[guard]), *size);
+            *size = find_largest_magnitude(values.each_ref().map(|values| values[guard]), *size);
         }
     }
 }
 
 /// Returns the largest of `before` and the magnitudes of the samples.
-fn largest(samples: [f64; 5], before: f64) -> f64 {
+fn find_largest_magnitude(samples: [f64; 5], before: f64) -> f64 {
     let magnitudes = samples.iter().map(|value| value.abs());
     magnitudes.fold(before, f64::max)
 }
 
 /// Returns the factor for one function that is positive at the start.
-fn factor(samples: [f64; 5], error: f64) -> f64 {
+fn compute_factor(samples: [f64; 5], error: f64) -> f64 {
     let lowest = samples.into_iter().fold(f64::INFINITY, f64::min);
     let highest = samples.into_iter().fold(f64::NEG_INFINITY, f64::max);
     let moved = highest - lowest;
@@ -93,18 +94,18 @@ fn factor(samples: [f64; 5], error: f64) -> f64 {
     if off <= error {
         return f64::INFINITY;
     }
-    if lowest > WITHIN_REACH * moved {
+    if lowest > REACHABLE_FACTOR * moved {
         // Even a change that grows with the third power of the length would not reach the surface.
         return (lowest / moved).cbrt();
     }
     // The deviation is of third order in the step length.
-    let factor = (TOLD * moved / off).cbrt();
-    if lowest > HIDDEN * off {
+    let factor = (MAX_DEVIATION_FRACTION * moved / off).cbrt();
+    if lowest > HIDDEN_CHANGE_FACTOR * off {
         return factor.max(1.0);
     }
     // A sign change between samples may be hidden. A sign change at a sample is located.
     match lowest >= 0.0 {
-        true => factor.min(HALF),
+        true => factor.min(HALVING_FACTOR),
         false => factor,
     }
 }
@@ -114,8 +115,8 @@ mod tests {
     use super::*;
 
     fn of(function: impl Fn(f64) -> f64, length: f64) -> f64 {
-        let values = PARTS.map(|part| vec![function(part * length)]);
-        Resolution::new(1e-9).longest(&values, |_| 1.0, &[])
+        let values = SAMPLE_FRACTIONS.map(|part| vec![function(part * length)]);
+        Resolution::new(1e-9).find_growth_factor(&values, |_| 1.0, &[])
     }
 
     #[test]
@@ -138,8 +139,8 @@ mod tests {
             let mut resolution = Resolution::new(1e-9);
             let (mut t, mut length) = (0.1, 1e-6);
             while t < 1000.0 {
-                let values = PARTS.map(|part| vec![offset + (t + part * length).sin()]);
-                let longest = resolution.longest(&values, |_| 1.0, &[]);
+                let values = SAMPLE_FRACTIONS.map(|part| vec![offset + (t + part * length).sin()]);
+                let longest = resolution.find_growth_factor(&values, |_| 1.0, &[]);
                 if longest >= 1.0 {
                     resolution.settle(&values);
                     t += length;

@@ -1,7 +1,7 @@
 //! The band near a switching surface in which rates that grow as a root are interpolated; see `roots`.
 
 /// Fraction to which a switching function falls before its gradient is computed again.
-const APPROACHED: f64 = 0.25;
+const APPROACH_FRACTION: f64 = 0.25;
 
 /// Band around a switching surface near which rates grow as a root.
 pub(super) struct RootBand {
@@ -21,12 +21,12 @@ pub(super) struct GuardHistory {
     /// then.
     reference: f64,
     /// Decision about the rates near the surface; `None` until the motion is near it.
-    pub(super) decision: Option<Decision>,
+    pub(super) decision: Option<RootDecision>,
 }
 
 /// Decision about the rates near a surface.
 #[derive(Clone, Copy)]
-pub(super) struct Decision {
+pub(super) struct RootDecision {
     /// True if the rates grow as a root of the switching function.
     pub(super) is_root: bool,
     /// Value of the switching function at the edge of the band.
@@ -43,16 +43,16 @@ impl GuardHistory {
     }
 
     /// Records the magnitude of the switching function. Returns true if its gradient is needed: in the band of
-    /// a root, and when the magnitude has fallen to [`APPROACHED`] of its reference.
+    /// a root, and when the magnitude has fallen to [`APPROACH_FRACTION`] of its reference.
     pub(super) fn follow(&mut self, magnitude: f64) -> bool {
-        if let Some(Decision { is_root, width }) = self.decision {
-            if APPROACHED * magnitude <= width {
+        if let Some(RootDecision { is_root, width }) = self.decision {
+            if APPROACH_FRACTION * magnitude <= width {
                 return is_root;
             }
             self.decision = None;
             self.reference = magnitude;
         }
-        if magnitude >= APPROACHED * self.reference {
+        if magnitude >= APPROACH_FRACTION * self.reference {
             self.reference = self.reference.max(magnitude);
             return false;
         }

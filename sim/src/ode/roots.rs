@@ -5,7 +5,7 @@
 //! the tolerance can change the sign of the switching function, the rates are therefore interpolated between
 //! the two edges of this band. This changes no state by more than the tolerance.
 
-use super::root_band::{Decision, GuardHistory, RootBand};
+use super::root_band::{GuardHistory, RootBand, RootDecision};
 use super::system::System;
 use super::watch::WatchedSystem;
 
@@ -78,7 +78,7 @@ impl<S: System + ?Sized> WatchedSystem<'_, S> {
             };
             let decision = history.decision.get_or_insert_with(|| {
                 let on_surface = band.state_on_surface(y, value);
-                Decision {
+                RootDecision {
                     is_root: self.grow_as_root((t, &on_surface), &band.to_edge, allowed),
                     width: band.width,
                 }
@@ -159,7 +159,7 @@ impl<S: System + ?Sized> WatchedSystem<'_, S> {
             let beside = y.iter().zip(to_edge);
             let beside: Vec<f64> = beside.map(|(y, step)| y + distance * step).collect();
             let mut rates = vec![0.0; y.len()];
-            self.count_rates(t, &beside, &mut rates);
+            self.evaluate_rates(t, &beside, &mut rates);
             rates
         };
         let [below, above] = [-1.0, 1.0].map(|edge| rates(edge / DISTANCE_RATIO));
@@ -181,7 +181,7 @@ impl<S: System + ?Sized> WatchedSystem<'_, S> {
         out: &mut [f64],
     ) {
         let Some((band, others)) = bands.split_first() else {
-            self.count_rates(t, y, out);
+            self.evaluate_rates(t, y, out);
             return;
         };
         let position = band.position(self.evaluate_guards(t, y)[band.guard]);

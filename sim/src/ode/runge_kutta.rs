@@ -1,7 +1,7 @@
 //! The classical Runge-Kutta method of order 4.
 
 /// Time of each of the four slopes, relative to the step.
-const PARTS: [f64; 4] = [0.0, 0.5, 0.5, 1.0];
+const NODES: [f64; 4] = [0.0, 0.5, 0.5, 1.0];
 
 /// Classical Runge-Kutta steps, with reused memory.
 pub struct RungeKutta {
@@ -26,7 +26,7 @@ impl RungeKutta {
         (begin, h): (f64, f64),
         mut rates: impl FnMut(usize, f64, &[f64], &mut [f64]),
     ) {
-        for (stage, part) in PARTS.into_iter().enumerate() {
+        for (stage, part) in NODES.into_iter().enumerate() {
             self.trial.copy_from_slice(state);
             if stage > 0 {
                 let slope = self.trial.iter_mut().zip(&self.slopes[stage - 1]);
@@ -35,8 +35,8 @@ impl RungeKutta {
             let slope = &mut self.slopes[stage];
             rates(stage, begin + part * h, &self.trial, slope);
         }
-        for (place, x) in state.iter_mut().enumerate() {
-            let [a, b, c, d] = [0, 1, 2, 3].map(|stage: usize| self.slopes[stage][place]);
+        for (index, x) in state.iter_mut().enumerate() {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|stage: usize| self.slopes[stage][index]);
             *x += h / 6.0 * (a + 2.0 * (b + c) + d);
         }
     }

@@ -13,10 +13,10 @@ use super::settings::{Method, Settings};
 use super::stepper::{Point, Stepper};
 use super::system::System;
 use super::trajectory::Trajectory;
-use super::watch::{Record, WatchedSystem};
+use super::watch::{WatchState, WatchedSystem};
 
 /// Length of the first step relative to the span; the error estimate corrects it at once.
-const FIRST_STEP: f64 = 1e-6;
+const FIRST_STEP_FRACTION: f64 = 1e-6;
 
 /// Simulates `system` from `initial` over `span` (begin, end; s) and returns the states at
 /// `samples` (s, ascending, inside the span). Calls `progress` with the time after every step.
@@ -55,14 +55,14 @@ pub fn simulate_into(
         end: span.1,
         may_pass: false,
     };
-    simulation.go_on(system, (span, samples), trajectory, progress)
+    simulation.continue_run(system, (span, samples), trajectory, progress)
 }
 
 /// A simulation that is continued from call to call. Each call must pass the same system, whose inputs may have
 /// changed since the last call; see [`Simulation::follow_input_jump`].
 pub struct Simulation {
-    run: Box<dyn Continue>,
-    record: Record,
+    run: Box<dyn ContinuableRun>,
+    record: WatchState,
     settings: Settings,
     point: Point,
     is_started: bool,
@@ -93,11 +93,11 @@ impl Simulation {
             y: state.to_vec(),
         };
         let watched = WatchedSystem::new(system, (t, state));
-        watched.leave_surfaces(t, state, FIRST_STEP * length);
+        watched.leave_surfaces(t, state, FIRST_STEP_FRACTION * length);
         let record = watched.pause();
         let sizes = system.typical_sizes();
-        let start = (&point, FIRST_STEP * length, &sizes[..]);
-        let run: Box<dyn Continue> = match settings.method {
+        let start = (&point, FIRST_STEP_FRACTION * length, &sizes[..]);
+        let run: Box<dyn ContinuableRun> = match settings.method {
             Method::DormandPrince853 => Box::new(new_run::<DormandPrince853>(start, settings)),
             Method::Adams => Box::new(new_run::<Adams>(start, settings)),
             Method::Radau => Box::new(new_run::<Radau>(start, settings)),
@@ -148,26 +148,26 @@ impl Simulation {
             end: until,
             may_pass: true,
         };
-        self.go_on(system, (span, samples), trajectory, progress)
+        self.continue_run(system, (span, samples), trajectory, progress)
     }
 
-    fn go_on(
+    fn continue_run(
         &mut self,
         system: &dyn System,
-        asked: (Span, &[f64]),
+        requested: (Span, &[f64]),
         trajectory: &mut Trajectory,
         progress: &mut dyn FnMut(f64),
     ) -> Result<(), SolveError> {
         let watched = WatchedSystem::resume(system, std::mem::take(&mut self.record));
-        let call = Call {
-            asked,
+        let call = ContinuationRequest {
+            requested,
             settings: &self.settings,
             is_first: !self.is_started,
         };
         self.is_started = true;
         let ended = self
             .run
-            .go_on(&watched, system, call, (trajectory, progress));
+            .continue_run(&watched, system, call, (trajectory, progress));
         trajectory.statistics.evaluations += watched.evaluations();
         self.record = watched.pause();
         self.point = match &ended {
@@ -194,8 +194,8 @@ impl Simulation {
             end: self.point.t,
             may_pass: true,
         };
-        let call = Call {
-            asked: (span, &[]),
+        let call = ContinuationRequest {
+            requested: (span, &[]),
             settings: &self.settings,
             is_first: !self.is_started,
         };
@@ -208,26 +208,26 @@ impl Simulation {
 }
 
 /// One call of a simulation.
-struct Call<'c> {
-    asked: (Span, &'c [f64]),
+struct ContinuationRequest<'c> {
+    requested: (Span, &'c [f64]),
     settings: &'c Settings,
     is_first: bool,
 }
 
 /// A run of the solver loop, for any method.
-trait Continue {
-    fn go_on(
+trait ContinuableRun {
+    fn continue_run(
         &mut self,
         watched: &WatchedSystem<'_, dyn System + '_>,
         system: &dyn System,
-        call: Call<'_>,
+        call: ContinuationRequest<'_>,
         results: (&mut Trajectory, &mut dyn FnMut(f64)),
     ) -> Result<Point, SolveError>;
 
     fn follow_input_jump(
         &mut self,
         watched: &WatchedSystem<'_, dyn System + '_>,
-        call: Call<'_>,
+        call: ContinuationRequest<'_>,
         trajectory: &mut Trajectory,
     ) -> Result<(), SolveError>;
 
@@ -238,29 +238,29 @@ trait Continue {
     fn modes(&self) -> &[SurfaceMode];
 }
 
-impl<M: Stepper> Continue for Run<M> {
-    fn go_on(
+impl<M: Stepper> ContinuableRun for Run<M> {
+    fn continue_run(
         &mut self,
         watched: &WatchedSystem<'_, dyn System + '_>,
         system: &dyn System,
-        call: Call<'_>,
+        call: ContinuationRequest<'_>,
         (trajectory, progress): (&mut Trajectory, &mut dyn FnMut(f64)),
     ) -> Result<Point, SolveError> {
-        let mut driver = Driver::new(watched, self, call.asked, call.settings, trajectory);
+        let mut driver = Driver::new(watched, self, call.requested, call.settings, trajectory);
         if call.is_first {
             driver.start();
         }
-        driver.go_to_the_end(system, progress)?;
+        driver.run_to_end(system, progress)?;
         driver.end_point()
     }
 
     fn follow_input_jump(
         &mut self,
         watched: &WatchedSystem<'_, dyn System + '_>,
-        call: Call<'_>,
+        call: ContinuationRequest<'_>,
         trajectory: &mut Trajectory,
     ) -> Result<(), SolveError> {
-        let mut driver = Driver::new(watched, self, call.asked, call.settings, trajectory);
+        let mut driver = Driver::new(watched, self, call.requested, call.settings, trajectory);
         if call.is_first {
             driver.start();
         }

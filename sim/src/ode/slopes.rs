@@ -3,7 +3,9 @@
 use super::magnitudes::Magnitudes;
 use super::point::Point;
 use super::system::System;
-use super::tableau::{END, ERROR_3, ERROR_5, EXTENSION, INCREMENTS, PARTS, SLOPES, STAGES, Terms};
+use super::tableau::{
+    END_SLOPE, ERROR_3, ERROR_5, EXTENSION, INCREMENTS, NODES, SLOPES, STAGES, Terms,
+};
 use super::watch::WatchedSystem;
 
 /// Weight of the error estimate of order 3 in the error estimate of the step.
@@ -49,7 +51,7 @@ impl Slopes {
     /// Uses the slope at the end of the last step as the slope at the start of the next.
     pub fn follow(&mut self) {
         for group in &mut self.groups {
-            group[0] = group[END];
+            group[0] = group[END_SLOPE];
         }
     }
 
@@ -67,7 +69,7 @@ impl Slopes {
                 return false;
             }
         }
-        self.write_state(start, length, END);
+        self.write_state(start, length, END_SLOPE);
         end.clone_from(&self.trial);
         is_finite(end)
     }
@@ -92,7 +94,7 @@ impl Slopes {
         end: &Point,
     ) -> &[f64] {
         watched.rates(end.t, &end.y, &mut self.rates);
-        self.store(END);
+        self.store(END_SLOPE);
         &self.rates
     }
 
@@ -123,23 +125,23 @@ impl Slopes {
 
     /// Computes the dense output of the last step, of `length` s from `start` to `end`. The slope at the end
     /// must be known.
-    pub fn find_interior<S: System + ?Sized>(
+    pub fn compute_dense_output<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
         length: f64,
         (start, end): (&Point, &Point),
     ) {
-        for stage in END + 1..SLOPES {
+        for stage in END_SLOPE + 1..SLOPES {
             self.evaluate(watched, start, length, stage);
         }
         let coefficients = &mut self.interior.coefficients;
-        for place in 0..start.y.len() {
-            let moved = end.y[place] - start.y[place];
-            let group = &self.groups[place / LANES];
-            let [first, last] = [0, END].map(|slope| length * group[slope][place % LANES]);
-            coefficients[0][place] = moved;
-            coefficients[1][place] = first - moved;
-            coefficients[2][place] = 2.0 * moved - (first + last);
+        for index in 0..start.y.len() {
+            let moved = end.y[index] - start.y[index];
+            let group = &self.groups[index / LANES];
+            let [first, last] = [0, END_SLOPE].map(|slope| length * group[slope][index % LANES]);
+            coefficients[0][index] = moved;
+            coefficients[1][index] = first - moved;
+            coefficients[2][index] = 2.0 * moved - (first + last);
         }
         for (terms, out) in EXTENSION.into_iter().zip(&mut coefficients[3..]) {
             combine(&self.groups, terms, out);
@@ -161,7 +163,7 @@ impl Slopes {
         stage: usize,
     ) -> bool {
         self.write_state(start, length, stage);
-        let t = start.t + PARTS[stage] * length;
+        let t = start.t + NODES[stage] * length;
         let is_finite = watched.rates(t, &self.trial, &mut self.rates);
         self.store(stage);
         is_finite
@@ -198,11 +200,11 @@ impl Interior {
     /// Returns the state at a fraction `part` of the step from `start`.
     pub fn interpolate(&self, part: f64, start: &[f64]) -> Vec<f64> {
         let rest = 1.0 - part;
-        let entry = |(place, start): (usize, &f64)| {
+        let entry = |(index, start): (usize, &f64)| {
             let mut value = 0.0;
             for (power, coefficients) in self.coefficients.iter().enumerate().rev() {
                 let factor = if power % 2 == 0 { part } else { rest };
-                value = factor * (value + coefficients[place]);
+                value = factor * (value + coefficients[index]);
             }
             start + value
         };

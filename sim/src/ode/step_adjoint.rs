@@ -2,7 +2,7 @@
 //! derivatives with respect to the end with the Jacobian of the step (E. Hairer, C. Lubich and G. Wanner,
 //! "Geometric Numerical Integration", section VI.4).
 
-use super::tableau::{END, INCREMENTS, PARTS, STAGES};
+use super::tableau::{END_SLOPE, INCREMENTS, NODES, STAGES};
 
 /// A step of the Runge-Kutta method of order 8, with reused memory.
 pub struct RepeatedStep {
@@ -47,10 +47,10 @@ impl RepeatedStep {
             for (slope, coefficient) in INCREMENTS[stage] {
                 add(state, length * coefficient, &self.slopes[*slope]);
             }
-            rates(t + PARTS[stage] * length, state, &mut self.slopes[stage])?;
+            rates(t + NODES[stage] * length, state, &mut self.slopes[stage])?;
         }
         self.end.copy_from_slice(start);
-        for (slope, coefficient) in INCREMENTS[END] {
+        for (slope, coefficient) in INCREMENTS[END_SLOPE] {
             add(&mut self.end, length * coefficient, &self.slopes[*slope]);
         }
         Ok(())
@@ -79,11 +79,11 @@ impl RepeatedStep {
         for stage in (0..STAGES).rev() {
             let own = &mut self.slopes[stage];
             own.fill(0.0);
-            add(own, coefficient(INCREMENTS[END], stage), weights);
+            add(own, coefficient(INCREMENTS[END_SLOPE], stage), weights);
             for (terms, product) in INCREMENTS.iter().zip(&self.products).skip(stage + 1) {
                 add(own, coefficient(terms, stage), product);
             }
-            let t = self.start + PARTS[stage] * self.length;
+            let t = self.start + NODES[stage] * self.length;
             product(t, &self.states[stage], own, &mut self.products[stage])?;
         }
         for part in &self.products {

@@ -9,7 +9,7 @@ use super::system::System;
 use super::watch::WatchedSystem;
 
 /// Maximum number of parts that may be rejected; see [`split_step`].
-const MOST_REFUSED: u32 = 50;
+const MAX_REJECTED_PARTS: u32 = 50;
 
 /// Result of a controlled step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +71,7 @@ pub trait Stepper: Sized {
     ) -> Result<Outcome, SolveError>;
 
     /// Undoes the last step, which was accepted. The length of the next step must be set again.
-    fn take_back(&mut self);
+    fn undo_step(&mut self);
 
     /// Makes a step of exactly `length` s from the current point, without error control, and returns its end
     /// and the rates there; `None` if the step overflows or leaves the domain of the rates. The current point
@@ -87,7 +87,7 @@ pub trait Stepper: Sized {
 
     /// Returns the state at time `t` (s) inside the last step by interpolation; `None` if the method did not
     /// make the last step itself.
-    fn interpolated<S: System + ?Sized>(
+    fn interpolate<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
         t: f64,
@@ -103,19 +103,13 @@ pub trait Stepper: Sized {
         let (start, end) = (self.step_start().clone(), self.current_point().clone());
         let at = |part: f64| start.t + part * (end.t - start.t);
         basis.fit((&start.y, &end.y), |part| {
-            self.interpolated(watched, at(part))
+            self.interpolate(watched, at(part))
         })
     }
 
     /// Returns true if interpolation inside the last step is as accurate as the step. If stability limits the
     /// step size, the end of a step is accurate, but the interpolation may oscillate.
-    fn tells_interior<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) -> bool {
-        let _ = watched;
-        true
-    }
-
-    /// Returns true if interpolation inside the last step is accurate enough for samples of a smooth motion.
-    fn tells_smooth_interior<S: System + ?Sized>(
+    fn has_accurate_interior<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
     ) -> bool {
@@ -123,9 +117,15 @@ pub trait Stepper: Sized {
         true
     }
 
+    /// Returns true if interpolation inside the last step is accurate enough for samples of a smooth motion.
+    fn has_smooth_interior<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) -> bool {
+        let _ = watched;
+        true
+    }
+
     /// Returns the state at time `t` (s) inside the last step, with the accuracy of the step; `None` if no step
     /// to this time meets the tolerance.
-    fn inside<S: System + ?Sized>(
+    fn compute_state_at<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
         t: f64,
@@ -141,7 +141,7 @@ pub fn split_step(
     mut step: impl FnMut(&Point, f64, f64) -> Option<Point>,
 ) -> Option<Point> {
     let mut point = start.clone();
-    let (mut part, mut done, mut refused) = (1.0, 0.0, 0);
+    let (mut part, mut done, mut rejected) = (1.0, 0.0, 0);
     while done < 1.0 {
         let t = match done + part < 1.0 {
             true => start.t + (done + part) * length,
@@ -156,8 +156,8 @@ pub fn split_step(
             continue;
         }
         part *= 0.5;
-        refused += 1;
-        if refused > MOST_REFUSED {
+        rejected += 1;
+        if rejected > MAX_REJECTED_PARTS {
             return None;
         }
     }

@@ -8,13 +8,13 @@ pub type Terms = &'static [(usize, f64)];
 pub const STAGES: usize = 12;
 
 /// Index of the slope at the end of a step.
-pub const END: usize = STAGES;
+pub const END_SLOPE: usize = STAGES;
 
 /// Number of slopes, including those of the dense output.
 pub const SLOPES: usize = 16;
 
 /// Time of each slope as a fraction of the step.
-pub const PARTS: [f64; SLOPES] = [
+pub const NODES: [f64; SLOPES] = [
     0.0,
     0.052_600_151_958_767_73,
     0.078_900_227_938_151_6,
@@ -33,7 +33,7 @@ pub const PARTS: [f64; SLOPES] = [
     0.777_777_777_777_777_8,
 ];
 
-/// Increment of the state at each slope, divided by the step size; the entry [`END`] is the increment of the
+/// Increment of the state at each slope, divided by the step size; the entry [`END_SLOPE`] is the increment of the
 /// step.
 pub const INCREMENTS: [Terms; SLOPES] = [
     &[],

@@ -22,12 +22,12 @@ pub type Regime = Vec<f64>;
 /// A system with the bookkeeping of a simulation.
 pub struct WatchedSystem<'a, S: System + ?Sized> {
     system: &'a S,
-    record: Record,
+    record: WatchState,
 }
 
 /// Regime of the current step, and errors of its trial steps.
 #[derive(Default)]
-pub struct Record {
+pub struct WatchState {
     regime: RefCell<Regime>,
     horizon: Cell<f64>,
     not_finite: Cell<Option<usize>>,
@@ -46,7 +46,7 @@ pub struct Record {
 impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// Wraps `system` for a simulation from time `t` and state `y`.
     pub fn new(system: &'a S, (t, y): (f64, &[f64])) -> Self {
-        let record = Record {
+        let record = WatchState {
             regime: RefCell::new(vec![0.0; system.guard_count()]),
             horizon: Cell::new(f64::INFINITY),
             not_finite: Cell::new(None),
@@ -68,7 +68,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     }
 
     /// Continues with a record that [`WatchedSystem::pause`] returned.
-    pub fn resume(system: &'a S, record: Record) -> Self {
+    pub fn resume(system: &'a S, record: WatchState) -> Self {
         record.evaluations.set(0);
         let watched = Self { system, record };
         watched.fix_sides(true);
@@ -76,7 +76,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     }
 
     /// Releases the system and returns the record.
-    pub fn pause(self) -> Record {
+    pub fn pause(self) -> WatchState {
         self.fix_sides(false);
         self.record
     }
@@ -101,7 +101,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     }
 
     /// Clears the errors of earlier trials.
-    pub fn forget_trials(&self) {
+    pub fn clear_trial_errors(&self) {
         self.record.not_finite.set(None);
     }
 
@@ -112,25 +112,25 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     }
 
     /// Returns the time at which the system is evaluated for a trial at `t`.
-    fn seen(&self, t: f64) -> f64 {
+    fn evaluation_time(&self, t: f64) -> f64 {
         let horizon = self.record.horizon.get();
         if t < horizon { t } else { horizon.next_down() }
     }
 
     /// Returns the index of a state whose rate was not finite in a trial since the last call of
-    /// [`WatchedSystem::forget_trials`].
+    /// [`WatchedSystem::clear_trial_errors`].
     pub fn non_finite_state(&self) -> Option<usize> {
         self.record.not_finite.get()
     }
 
     /// Returns the index of a coordinate without positive inertia in a trial since the last call of
-    /// [`WatchedSystem::forget_later_trials`].
+    /// [`WatchedSystem::clear_later_errors`].
     pub fn indefinite_coordinate(&self) -> Option<usize> {
         self.record.indefinite.get()
     }
 
     /// Clears errors of trials beyond the current point, after the motion has reached this point.
-    pub fn forget_later_trials(&self) {
+    pub fn clear_later_errors(&self) {
         self.record.indefinite.set(None);
     }
 
@@ -142,9 +142,9 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// Computes the rates at `t` and `y` in the current regime, interpolated within [`RootBand`]s. Returns true
     /// if they are finite.
     pub fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) -> bool {
-        let t = self.seen(t);
+        let t = self.evaluation_time(t);
         match &self.record.bands.borrow()[..] {
-            [] => self.count_rates(t, y, out),
+            [] => self.evaluate_rates(t, y, out),
             bands => self.interpolate_rates(bands, (t, y), out),
         }
         let not_finite = out.iter().position(|rate| !rate.is_finite());
@@ -160,7 +160,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     }
 
     /// Computes the rates of the system and counts the evaluation.
-    pub(super) fn count_rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
+    pub(super) fn evaluate_rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
         self.system.rates(t, y, out);
         self.record
             .evaluations
@@ -170,7 +170,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// Projects a state onto constraints and invariants; see [`System::project`]. Returns false if
     /// the system has none.
     pub fn project(&self, t: f64, y: &mut [f64]) -> bool {
-        let evaluations = self.system.project(self.seen(t), y);
+        let evaluations = self.system.project(self.evaluation_time(t), y);
         self.record
             .evaluations
             .set(self.record.evaluations.get() + evaluations);
@@ -185,7 +185,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// Computes the Jacobian of the rates by the state, row by row; see [`System::jacobian`].
     pub fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
         let bands = self.record.bands.borrow();
-        self.interpolate_jacobian(&bands, (self.seen(t), y), out);
+        self.interpolate_jacobian(&bands, (self.evaluation_time(t), y), out);
     }
 
     /// Finds the surfaces at `t` and `y` near which rates grow as a root, for a method with the errors
@@ -234,7 +234,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         state: &[Enclosure],
         out: &mut [Enclosure],
     ) {
-        let t = (self.seen(begin), self.seen(end));
+        let t = (self.evaluation_time(begin), self.evaluation_time(end));
         self.system.bound_guards(t, state, out);
     }
 
@@ -257,7 +257,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// Returns the switching functions at the end of a step, before the jump at a breakpoint; see
     /// [`WatchedSystem::limit_time`].
     pub fn evaluate_guards_before(&self, t: f64, y: &[f64]) -> Vec<f64> {
-        self.evaluate_guards(self.seen(t), y)
+        self.evaluate_guards(self.evaluation_time(t), y)
     }
 
     /// Returns the value of the lowest of the switching functions `guards`; each is positive on its side in the
@@ -283,7 +283,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// neighbourhood of the point, as max(x, 0) is.
     pub fn enter_regime(&self, t: f64, y: &[f64]) {
         let guards = self.evaluate_guards(t, y);
-        self.release_vanishing((t, y), &guards);
+        self.release_vanishing_functions((t, y), &guards);
         let mut regime = self.record.regime.borrow_mut();
         let mut last = self.record.last_sides.borrow_mut();
         let sides = regime.iter_mut().zip(guards).enumerate();
@@ -298,7 +298,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
 
     /// Releases the sides of the switching functions that are 0 at a point and also at a neighbouring point.
     /// `guards` are their values.
-    fn release_vanishing(&self, (t, y): (f64, &[f64]), guards: &[f64]) {
+    fn release_vanishing_functions(&self, (t, y): (f64, &[f64]), guards: &[f64]) {
         let has_side = |guard: &usize| guards[*guard] == 0.0 && self.side(*guard) != 0.0;
         let zeros: Vec<usize> = (0..guards.len()).filter(has_side).collect();
         if zeros.is_empty() {
@@ -331,7 +331,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
             let directions = [1.0, -1.0].map(|side| {
                 self.record.regime.borrow_mut()[guard] = side;
                 self.fix_sides(true);
-                self.count_rates(t, y, &mut rates);
+                self.evaluate_rates(t, y, &mut rates);
                 for (entry, (value, rate)) in beside.iter_mut().zip(y.iter().zip(&rates)) {
                     *entry = value + step * rate;
                 }
@@ -417,7 +417,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
             self.system.forget_projection();
             if rates.is_empty() {
                 rates = vec![0.0; start.len()];
-                self.count_rates(t, start, &mut rates);
+                self.evaluate_rates(t, start, &mut rates);
             }
             let mut moved = rates.iter().map(|rate| length * rate).zip(allowed);
             if !moved.all(|(moved, allowed)| moved.abs() <= *allowed) {
@@ -498,7 +498,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     ) {
         self.system.observe_step(&mut ObservedStep {
             start: (start.t, &start.y),
-            end: (self.seen(end.t), &end.y),
+            end: (self.evaluation_time(end.t), &end.y),
             state_inside: inside,
         });
     }

@@ -11,14 +11,14 @@ use super::saltation;
 use super::transition::Limit;
 
 /// Relative difference of rates below which they count as continuous.
-const CONTINUOUS: f64 = 1e-12;
+const CONTINUOUS_JUMP_FRACTION: f64 = 1e-12;
 
 /// Rounding error of a sum of products of magnitude 1.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Regime beyond a limit, and properties of the transition.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Adjacent {
+pub(super) struct AdjacentRegime {
     pub regime: usize,
     /// True if the rate of the limiting function may jump.
     pub jumps: bool,
@@ -32,7 +32,7 @@ pub(super) struct Adjacent {
 
 impl Propagator {
     /// Finds the regime beyond a limit and stores it.
-    pub(super) fn find_adjacent(&mut self, limit: &Limit) -> Result<Adjacent, ExactError> {
+    pub(super) fn find_adjacent(&mut self, limit: &Limit) -> Result<AdjacentRegime, ExactError> {
         let &Limit {
             before,
             event_function,
@@ -48,7 +48,7 @@ impl Propagator {
         let jumps = !held && self.rate_jumps(before, regime, family);
         let visited = &self.regimes[before];
         let limits = &visited.regime.event_functions[event_function].limits;
-        let constant = saltation::constant(
+        let constant = saltation::find_constant_saltation(
             &visited.regime.system,
             &self.regimes[regime].regime.system,
             &visited.regime.event_functions[event_function].linear,
@@ -58,7 +58,7 @@ impl Propagator {
             self.saltations.push(u);
             self.saltations.len() - 1
         });
-        let adjacent = Adjacent {
+        let adjacent = AdjacentRegime {
             regime,
             jumps,
             saltation,
@@ -101,7 +101,7 @@ impl Propagator {
                     difference += factor * (x - y);
                     size += (factor * x).abs() + (factor * y).abs();
                 }
-                difference.abs() > CONTINUOUS * size
+                difference.abs() > CONTINUOUS_JUMP_FRACTION * size
             })
         })
     }

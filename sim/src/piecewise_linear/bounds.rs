@@ -106,7 +106,7 @@ impl Room {
         if self.margins[limit] >= most {
             return true;
         }
-        let fast = [0.0, 1.0, 2.0, 3.0, 4.0].map(|place| place * self.fast_difference);
+        let fast = [0.0, 1.0, 2.0, 3.0, 4.0].map(|index| index * self.fast_difference);
         let with_fast = towards.iter().zip(fast);
         let most = with_fast.fold(0.0, |most, (c, fast)| greater(c + fast, most));
         self.margins_here[limit] >= most
@@ -116,11 +116,11 @@ impl Room {
     /// change away from this limit.
     #[inline(always)]
     fn is_crossed(&self, limit: usize, from: &[f64; 5]) -> bool {
-        let difference = |place: usize| from[place + 1] - from[place];
-        let falls = || (0..4).all(|place| difference(place) + self.fast_difference < 0.0);
+        let difference = |index: usize| from[index + 1] - from[index];
+        let falls = || (0..4).all(|index| difference(index) + self.fast_difference < 0.0);
         let bends = || {
-            let bend = |place: usize| difference(place + 1) - difference(place);
-            self.leaves && (0..3).all(|place| bend(place) + self.fast_bend < 0.0)
+            let bend = |index: usize| difference(index + 1) - difference(index);
+            self.leaves && (0..3).all(|index| bend(index) + self.fast_bend < 0.0)
         };
         self.ends[limit] < 0.0 && (falls() || bends())
     }

@@ -4,7 +4,7 @@
 use nalgebra::{Complex, DVector};
 
 use super::event_evaluation::{Local, ROUNDING};
-use super::event_function::{monomial, monomials};
+use super::event_function::{monomial, write_monomials};
 use super::forced_integrals::{DERIVATIVES, integrals};
 use super::regime::Cluster;
 
@@ -76,7 +76,7 @@ impl ClusterFlow {
         let mut inner = [Complex::new(0.0, 0.0); 5];
         let mut bound = [0.0; 5];
         let mut powers_of_tau = vec![0.0; DERIVATIVES + cluster.terms];
-        monomials(tau, &mut powers_of_tau[DERIVATIVES..]);
+        write_monomials(tau, &mut powers_of_tau[DERIVATIVES..]);
         for (k, power) in powers.iter().enumerate() {
             let coefficient = dot(power, &self.zeta);
             for order in 0..5 {
@@ -132,7 +132,7 @@ impl ClusterFlow {
             })
             .collect();
         let mut powers = vec![0.0; cluster.terms];
-        monomials(tau, &mut powers);
+        write_monomials(tau, &mut powers);
         let mut value = DVector::zeros(self.zeta.len());
         for k in (0..cluster.terms).rev() {
             value = &cluster.matrix * value + &self.zeta * Complex::new(powers[k], 0.0);

@@ -13,11 +13,11 @@ const NEAR_ZERO: f64 = 1e-5;
 const MIN_RELATIVE_DISTANCE: f64 = 1e-9;
 
 /// Imaginary parts below this fraction of the largest eigenvalue count as zero.
-pub(super) const REAL: f64 = 1e-11;
+pub(super) const REAL_FRACTION: f64 = 1e-11;
 
 /// Returns true for each eigenvalue near zero, which includes those with magnitudes up to `undetermined`, 1/s,
 /// and real ones up to `slow`, 1/s.
-pub(super) fn near_zero(
+pub(super) fn find_near_zero(
     eigenvalues: &[Complex<f64>],
     forcing: f64,
     [slow, undetermined]: [f64; 2],
@@ -31,7 +31,7 @@ pub(super) fn near_zero(
             bound *= 1.01;
         }
     }
-    let is_slow = |e: &Complex<f64>| e.im.abs() <= REAL * largest && e.re.abs() <= slow;
+    let is_slow = |e: &Complex<f64>| e.im.abs() <= REAL_FRACTION * largest && e.re.abs() <= slow;
     eigenvalues
         .iter()
         .map(|e| e.norm() <= bound || is_slow(e))

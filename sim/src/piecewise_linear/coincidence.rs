@@ -20,7 +20,7 @@ pub(super) struct Crossing {
 
 /// Returns the rank of the threshold that a family's function has at the crossing of another surface, and the
 /// factor between both functions; `None` if it is not on a threshold there.
-pub(super) fn coincident_rank(
+pub(super) fn find_coincident_rank(
     outline: &Outline,
     family: usize,
     crossing: &Crossing,

@@ -7,13 +7,13 @@
 
 use nalgebra::{Complex, DMatrix};
 
-use super::clustering::{clusters, near_zero};
-use super::invariant::Found;
+use super::clustering::{clusters, find_near_zero};
+use super::invariant::InvariantSubspaces;
 use super::schur::SchurForm;
 
 /// Largest sensitivity of well-conditioned eigenvalues. The relative errors of amplitudes and eigenvalues grow
 /// by this factor, which costs at most four of sixteen digits.
-const WELL_CONDITIONED: f64 = 100.0;
+const MAX_GOOD_SENSITIVITY: f64 = 100.0;
 
 /// Bound on the sensitivity of two eigenvalues with nearly equal eigenvectors, times their relative distance. A
 /// higher sensitivity has other causes.
@@ -95,11 +95,11 @@ impl Decomposition {
             .ok_or(DecompositionError::NotConverged)?;
         let mut undetermined = 0.0;
         let (zeros, mut found) = loop {
-            let near_zero = near_zero(&schur.eigenvalues(), forcing, [slow, undetermined]);
+            let near_zero = find_near_zero(&schur.eigenvalues(), forcing, [slow, undetermined]);
             schur.sort_by_key(near_zero.iter().map(|near| usize::from(!near)).collect());
             let zeros = near_zero.iter().filter(|near| **near).count();
-            let found = best_parts(&schur, zeros);
-            let radius = undetermined_radius(&schur, zeros, &found.sensitivity);
+            let found = find_best_parts(&schur, zeros);
+            let radius = find_undetermined_radius(&schur, zeros, &found.sensitivity);
             if radius <= undetermined {
                 break (zeros, found);
             }
@@ -108,7 +108,7 @@ impl Decomposition {
         for _ in 0..=zeros.max(inner.nrows()) {
             let refinement = found.refine(&inner);
             if refinement.converged {
-                return Ok(found.in_full_state(&outer, &pure, &felt));
+                return Ok(found.extend_to_full_state(&outer, &pure, &felt));
             }
             found = found
                 .merge(&schur, &refinement.inseparable)
@@ -125,9 +125,9 @@ impl Decomposition {
 fn time_scale(matrix: &DMatrix<f64>, degrees: usize, felt: &[usize]) -> Vec<f64> {
     let filters = matrix.ncols() - 2 * degrees;
     let block = |row: usize, column: usize| {
-        let size = |place: usize| if place == 2 { filters } else { degrees };
-        let (shape, place) = ((size(row), size(column)), (row * degrees, column * degrees));
-        matrix.view(place, shape).amax()
+        let size = |index: usize| if index == 2 { filters } else { degrees };
+        let (shape, index) = ((size(row), size(column)), (row * degrees, column * degrees));
+        matrix.view(index, shape).amax()
     };
     // A filter faster than its load acts as a gain, a slower one as an integrator.
     let filter = block(2, 2);
@@ -157,7 +157,7 @@ fn time_scale(matrix: &DMatrix<f64>, degrees: usize, felt: &[usize]) -> Vec<f64>
 
 /// Returns the largest magnitude, 1/s, of the eigenvalues after the first `zeros` that are zero up to rounding.
 /// A chain of k integrators has a k-fold eigenvalue zero, which rounding errors displace by their k-th root.
-fn undetermined_radius(schur: &SchurForm, zeros: usize, sensitivity: &[f64]) -> f64 {
+fn find_undetermined_radius(schur: &SchurForm, zeros: usize, sensitivity: &[f64]) -> f64 {
     let error = ITERATION_ROUNDING * schur.triangle.norm();
     let eigenvalues = schur.eigenvalues().into_iter().zip(sensitivity);
     let magnitudes = eigenvalues.map(|(e, sensitivity)| (e.norm(), sensitivity * error));
@@ -168,20 +168,25 @@ fn undetermined_radius(schur: &SchurForm, zeros: usize, sensitivity: &[f64]) -> 
 }
 
 /// Returns the parts. Eigenvalues that are sensitive because they are close to each other share a part.
-fn best_parts(schur: &SchurForm, zeros: usize) -> Found {
+fn find_best_parts(schur: &SchurForm, zeros: usize) -> InvariantSubspaces {
     let eigenvalues = schur.eigenvalues();
-    let first = Found::with_clusters(schur, zeros, clusters(&eigenvalues, zeros, |_, _, _| false));
-    if first.condition() <= WELL_CONDITIONED {
+    let first = InvariantSubspaces::with_clusters(
+        schur,
+        zeros,
+        clusters(&eigenvalues, zeros, |_, _, _| false),
+    );
+    if first.condition() <= MAX_GOOD_SENSITIVITY {
         return first;
     }
     // The sensitivities have the order of the Schur form, like the eigenvalues.
     let sensitivity = first.sensitivity.clone();
     let shared = |a: usize, b: usize, distance: f64| {
         let least = sensitivity[a].min(sensitivity[b]);
-        let explained = least > WELL_CONDITIONED && least * distance <= SENSITIVITY_FACTOR;
+        let explained = least > MAX_GOOD_SENSITIVITY && least * distance <= SENSITIVITY_FACTOR;
         explained || (least > EXTREME_SENSITIVITY.0 && distance <= EXTREME_SENSITIVITY.1)
     };
-    let second = Found::with_clusters(schur, zeros, clusters(&eigenvalues, zeros, shared));
+    let second =
+        InvariantSubspaces::with_clusters(schur, zeros, clusters(&eigenvalues, zeros, shared));
     if second.condition() < 0.5 * first.condition() {
         second
     } else {

@@ -20,7 +20,7 @@ impl Propagator {
             motion
                 .departing
                 .retain(|departing| departing.family != family);
-            let (rank, departs) = match (pair.0.standing_on(), pair.1.standing_on()) {
+            let (rank, departs) = match (pair.0.threshold_rank(), pair.1.threshold_rank()) {
                 (_, Some(rank)) => (rank, false),
                 (Some(rank), None) => (rank, true),
                 (None, None) => continue,

@@ -5,7 +5,7 @@
 
 use nalgebra::Complex;
 
-use super::coincidence::{Crossing, coincident_rank};
+use super::coincidence::{Crossing, find_coincident_rank};
 use super::parallel_guards::Cell;
 use super::propagator::Propagator;
 
@@ -40,17 +40,17 @@ impl Propagator {
 
     /// Determines the cells of dependent functions, at a start of all functions, in the order of the families.
     /// Repeats this until the cells agree with each other, at most once per family and once more.
-    pub(super) fn settle(
+    pub(super) fn determine_cells(
         &mut self,
         cells: &mut [Cell],
-        asking: DecisionCause<'_>,
-        standing: StateAt<'_>,
+        cause: DecisionCause<'_>,
+        point: StateAt<'_>,
     ) {
         for _ in 0..=cells.len() {
             let before = cells.to_vec();
             for family in 0..cells.len() {
-                if self.dependent[family] || matches!(asking, DecisionCause::Start) {
-                    cells[family] = self.decide_cell(family, cells, asking, standing);
+                if self.dependent[family] || matches!(cause, DecisionCause::Start) {
+                    cells[family] = self.decide_cell(family, cells, cause, point);
                 }
             }
             if cells == before {
@@ -60,13 +60,15 @@ impl Propagator {
     }
 
     /// Determines the cells of dependent functions that are constant throughout their regime.
-    pub(super) fn settle_resting(&mut self, cells: &mut [Cell], standing: StateAt<'_>) {
+    pub(super) fn determine_constant_cells(&mut self, cells: &mut [Cell], point: StateAt<'_>) {
         for _ in 0..=cells.len() {
             let before = cells.to_vec();
             for family in 0..cells.len() {
                 if self.dependent[family] {
                     let outline = self.outline(cells);
-                    if let Some(cell) = self.outlines[outline].resting(family, standing.inputs) {
+                    if let Some(cell) =
+                        self.outlines[outline].find_constant_cell(family, point.inputs)
+                    {
                         cells[family] = cell;
                     }
                 }
@@ -80,7 +82,7 @@ impl Propagator {
     /// Returns true if the function of another family depends on the side of a family that is held on its
     /// threshold. The other family may then be in different cells on the two sides, and no combination of two
     /// regimes describes the motion.
-    pub(super) fn is_felt(&mut self, cells: &[Cell], family: usize) -> bool {
+    pub(super) fn affects_other_functions(&mut self, cells: &[Cell], family: usize) -> bool {
         let Cell::On(rank) = cells[family] else {
             return false;
         };
@@ -91,72 +93,72 @@ impl Propagator {
         };
         let [below, above] = [Cell::Between(rank), Cell::Between(rank + 1)].map(&mut beside);
         let (below, above) = (&self.outlines[below], &self.outlines[above]);
-        (0..cells.len()).any(|other| !below.same_function(above, other))
+        (0..cells.len()).any(|other| !below.has_same_function(above, other))
     }
 
     fn decide_cell(
         &mut self,
         family: usize,
         cells: &[Cell],
-        asking: DecisionCause<'_>,
-        standing: StateAt<'_>,
+        cause: DecisionCause<'_>,
+        point: StateAt<'_>,
     ) -> Cell {
         let present = cells[family];
         let here = self.outline(cells);
         let outline = &self.outlines[here];
-        if let Some(cell) = outline.resting(family, standing.inputs) {
+        if let Some(cell) = outline.find_constant_cell(family, point.inputs) {
             return cell;
         }
-        let before = match asking {
+        let before = match cause {
             DecisionCause::Start => None,
             DecisionCause::Jump(before) => Some(before),
             DecisionCause::Crossing(crossing) => {
                 if crossing.family == family {
                     return present;
                 }
-                if let Some((rank, _)) = coincident_rank(outline, family, crossing) {
-                    return self.follow_rates(family, rank, cells, standing);
+                if let Some((rank, _)) = find_coincident_rank(outline, family, crossing) {
+                    return self.decide_cell_by_rates(family, rank, cells, point);
                 }
                 Some(crossing.outline)
             }
         };
-        if before.is_some_and(|before| outline.same_function(&self.outlines[before], family)) {
+        if before.is_some_and(|before| outline.has_same_function(&self.outlines[before], family)) {
             return present;
         }
         let function = &outline.functions[family];
-        let value = function.value(standing.state, standing.inputs, standing.phases);
+        let value = function.value(point.state, point.inputs, point.phases);
         let thresholds = &outline.thresholds[family];
         let size = match before {
             // The start is on a threshold only if the value equals it exactly.
             None => 0.0,
-            Some(_) => function.size(standing.state, standing.inputs, standing.phases),
+            Some(_) => function.size(point.state, point.inputs, point.phases),
         };
         let tied = thresholds.iter().position(|threshold| {
             (value - threshold).abs() <= ROUNDING * size.max(threshold.abs())
         });
         match tied {
             Some(rank) if before.is_some() && is_beside(present, rank) => present,
-            Some(rank) => self.follow_rates(family, rank, cells, standing),
+            Some(rank) => self.decide_cell_by_rates(family, rank, cells, point),
             None => outline.cell_at(family, value),
         }
     }
 
     /// Returns the cell into which the rates on both sides of a threshold move a function that is on the
     /// threshold.
-    fn follow_rates(
+    fn decide_cell_by_rates(
         &mut self,
         family: usize,
         rank: usize,
         cells: &[Cell],
-        standing: StateAt<'_>,
+        point: StateAt<'_>,
     ) -> Cell {
         let mut with = |cell: Cell| {
             let mut cells = cells.to_vec();
             cells[family] = cell;
-            self.settle_resting(&mut cells, standing);
+            self.determine_constant_cells(&mut cells, point);
             cells[family] = cell;
             let outline = self.outline(&cells);
-            self.rate_in(outline, &self.outlines[outline].functions[family], standing)
+            self.rate_in(outline, &self.outlines[outline].functions[family], point)
         };
         let (below, slack_below) = with(Cell::Between(rank));
         let (above, slack_above) = with(Cell::Between(rank + 1));
@@ -177,6 +179,6 @@ impl Propagator {
 fn is_beside(cell: Cell, rank: usize) -> bool {
     match cell {
         Cell::Between(above) => above == rank || above == rank + 1,
-        Cell::On(on) | Cell::Bearing(on, _) => on == rank,
+        Cell::On(on) | Cell::AtLimit(on, _) => on == rank,
     }
 }

@@ -34,19 +34,19 @@ impl Propagator {
         }
         let inputs = &inputs[..self.inputs];
         let phases = self.phases_at(Clock::new(t));
-        let standing = StateAt {
+        let point = StateAt {
             state,
             inputs,
             phases: &phases,
         };
         let cells = if self.has_dependents() {
             let mut cells = vec![Cell::Between(0); self.families.len()];
-            self.settle(&mut cells, DecisionCause::Start, standing);
+            self.determine_cells(&mut cells, DecisionCause::Start, point);
             cells
         } else {
-            self.cells_at(state, inputs, &phases).0
+            self.find_cells_at(state, inputs, &phases).0
         };
         let outline = self.outline(&cells);
-        Ok(self.outlines[outline].rates(standing))
+        Ok(self.outlines[outline].rates(point))
     }
 }

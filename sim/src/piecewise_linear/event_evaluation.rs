@@ -17,7 +17,7 @@ pub(super) struct EventEvaluation {
     /// Time since the start until which the function stays within its limits, s.
     pub safe_until: f64,
     /// Time since the start at which the function was evaluated last, s.
-    pub summed_up_at: f64,
+    pub evaluated_at: f64,
     /// Value at the start.
     start: f64,
     /// Sum of the magnitudes of the terms of the value at the start.
@@ -85,7 +85,7 @@ impl EventEvaluation {
         self.before.resize(sums, SimdVector::ZERO);
         self.sizes_before.resize(sums, SimdVector::ZERO);
         self.safe_until = f64::NEG_INFINITY;
-        self.summed_up_at = f64::NAN;
+        self.evaluated_at = f64::NAN;
         self.slack = None;
         (self.start, self.start_size) = event_function.evaluate(given);
         let polynomial = &event_function.polynomial;
@@ -95,7 +95,7 @@ impl EventEvaluation {
 
     /// Updates the sums of magnitudes if the magnitudes of the amplitudes have been measured again.
     #[inline(always)]
-    pub fn take_sizes<S: Simd>(
+    pub fn update_sizes<S: Simd>(
         &mut self,
         simd: S,
         event_function: &EventFunction,
@@ -111,20 +111,21 @@ impl EventEvaluation {
     /// Evaluates the function at a time since the start, s, given the amplitudes, their displacements, and the
     /// powers of the time.
     #[inline(always)]
-    pub fn sum_up<S: Simd>(
+    pub fn evaluate_function<S: Simd>(
         &mut self,
         simd: S,
         event_function: &EventFunction,
         amplitudes: (&[SimdVector], &[SimdVector]),
         (tau, powers): (f64, &[f64]),
     ) {
-        self.summed_up_at = tau;
+        self.evaluated_at = tau;
         let factors = Factors {
             weights: &event_function.weights,
             value_weights: &event_function.value_weights,
             terms: &self.terms,
         };
-        let summed = kernels::sum_up(simd, factors, amplitudes, powers, &mut self.before);
+        let summed =
+            kernels::evaluate_function(simd, factors, amplitudes, powers, &mut self.before);
         self.value = self.start + summed.value;
         self.size = self.start_size + self.rate_size * tau + summed.size;
         self.derivatives = summed.derivatives;

@@ -40,8 +40,8 @@ impl Linear {
     pub fn value(&self, state: &[f64], inputs: &[f64], phases: &[Complex<f64>]) -> f64 {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let mut value = dot(self.state.as_slice(), state) + dot(&self.inputs, inputs);
-        for (place, phase) in phases.iter().enumerate() {
-            value += self.sines[place] * phase.im + self.cosines[place] * phase.re;
+        for (index, phase) in phases.iter().enumerate() {
+            value += self.sines[index] * phase.im + self.cosines[index] * phase.re;
         }
         value + self.constant
     }
@@ -185,8 +185,8 @@ impl EventFunction {
     /// initial values: the state, a unit constant, the inputs, and sine and cosine of each phase.
     pub fn evaluate(&self, given: &[f64]) -> (f64, f64) {
         let (mut value, mut size) = (0.0, 0.0_f64);
-        for (place, factor) in &self.felt {
-            let term = factor * given[*place];
+        for (index, factor) in &self.felt {
+            let term = factor * given[*index];
             value += term;
             size += term.abs();
         }
@@ -230,7 +230,7 @@ fn value_weights(values: &[Complex<f64>]) -> Vec<ValueWeights> {
 }
 
 /// Writes tau^k / k! for k = 0 .. out.len() - 1.
-pub(super) fn monomials(tau: f64, out: &mut [f64]) {
+pub(super) fn write_monomials(tau: f64, out: &mut [f64]) {
     let mut value = 1.0;
     for (k, slot) in out.iter_mut().enumerate() {
         *slot = value;

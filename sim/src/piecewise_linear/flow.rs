@@ -126,7 +126,7 @@ impl Flow {
                 *slot = count.max(*slot);
             }
         }
-        self.measure(simd, regime);
+        self.measure_amplitudes(simd, regime);
     }
 
     /// Resets the flow to its start.
@@ -149,7 +149,7 @@ impl Flow {
     pub fn step<S: Simd>(&mut self, simd: S, regime: &Regime, step: &Step) {
         self.tau += step.length;
         self.advance(simd, &step.expm1);
-        self.measure(simd, regime);
+        self.measure_amplitudes(simd, regime);
     }
 
     /// Advances by any time, which may be negative.
@@ -165,7 +165,7 @@ impl Flow {
         } else {
             self.advance_by(simd, regime, time);
         }
-        self.measure(simd, regime);
+        self.measure_amplitudes(simd, regime);
     }
 
     #[inline(always)]
@@ -214,7 +214,7 @@ impl Flow {
 
     /// Returns from a state that overflowed to the last time with a finite state, and writes this state.
     #[cold]
-    pub fn go_back_to_finite_state(&mut self, regime: &Regime, out: &mut [f64]) {
+    pub fn return_to_finite_state(&mut self, regime: &Regime, out: &mut [f64]) {
         let (mut finite, mut infinite) = (0.0, self.tau);
         loop {
             let middle = 0.5 * (finite + infinite);
@@ -253,7 +253,7 @@ impl Flow {
 
     /// Computes the magnitudes of the amplitudes again if they may have decreased considerably.
     #[inline(always)]
-    fn measure<S: Simd>(&mut self, simd: S, regime: &Regime) {
+    fn measure_amplitudes<S: Simd>(&mut self, simd: S, regime: &Regime) {
         let decayed = (self.tau - self.measured_at) * regime.modes.damping;
         if (0.0..MAX_LOG_DECAY).contains(&decayed) {
             return;
@@ -267,7 +267,7 @@ impl Flow {
 
     /// Computes the needed powers of tau, an even number of them.
     #[inline(always)]
-    fn find_powers(&mut self, regime: &Regime) {
+    fn compute_powers(&mut self, regime: &Regime) {
         if self.powers_of == self.tau {
             return;
         }
@@ -284,12 +284,12 @@ impl Flow {
 
     /// Evaluates a function at the current time.
     #[inline(always)]
-    pub fn sum_up<S: Simd>(&mut self, simd: S, regime: &Regime, place: usize) {
-        self.find_powers(regime);
-        let evaluation = &mut self.evaluations[place];
-        let event_function = &regime.event_functions[place];
-        evaluation.take_sizes(simd, event_function, &self.size, self.measurements);
-        evaluation.sum_up(
+    pub fn evaluate_function<S: Simd>(&mut self, simd: S, regime: &Regime, index: usize) {
+        self.compute_powers(regime);
+        let evaluation = &mut self.evaluations[index];
+        let event_function = &regime.event_functions[index];
+        evaluation.update_sizes(simd, event_function, &self.size, self.measurements);
+        evaluation.evaluate_function(
             simd,
             event_function,
             (&self.now, &self.moved),
@@ -299,39 +299,39 @@ impl Flow {
 
     /// Returns the rounding error of the rate of a function at the start, including cancelled
     /// terms.
-    pub fn start_rate_noise(&self, regime: &Regime, place: usize) -> f64 {
-        ROUNDING * regime.event_functions[place].rate_size(&self.given)
+    pub fn start_rate_noise(&self, regime: &Regime, index: usize) -> f64 {
+        ROUNDING * regime.event_functions[index].rate_size(&self.given)
     }
 
     /// Starts the departure of a function from a limit that held it, where its value and rate are rounding
     /// errors. Does nothing if the rate exceeds its rounding error.
-    pub fn depart<S: Simd>(&mut self, simd: S, regime: &Regime, place: usize) {
+    pub fn start_departure<S: Simd>(&mut self, simd: S, regime: &Regime, index: usize) {
         let Some(step) = regime.step_table.steps.last() else {
             return;
         };
-        self.sum_up(simd, regime, place);
-        let [value, rate] = self.local(regime, place, step, |local| {
+        self.evaluate_function(simd, regime, index);
+        let [value, rate] = self.local(regime, index, step, |local| {
             [local.derivatives[0], local.derivatives[1]]
         });
-        let limits = regime.event_functions[place].limits;
+        let limits = regime.event_functions[index].limits;
         let (above, below) = ((value - limits.low).abs(), (limits.high - value).abs());
         let inward = if above <= below { rate } else { -rate };
-        let noise = DEPARTURE_ROUNDINGS * self.start_rate_noise(regime, place);
+        let noise = DEPARTURE_ROUNDINGS * self.start_rate_noise(regime, index);
         if inward <= noise {
             let distance = above.min(below);
-            self.continue_departure(place, [2.0 * distance, 2.0 * rate.abs() + noise]);
+            self.continue_departure(index, [2.0 * distance, 2.0 * rate.abs() + noise]);
         }
     }
 
     /// Continues the departure of a function whose value and rate have these errors at the start.
-    pub fn continue_departure(&mut self, place: usize, errors: [f64; 2]) {
-        self.evaluations[place].slack = Some(errors);
+    pub fn continue_departure(&mut self, index: usize, errors: [f64; 2]) {
+        self.evaluations[index].slack = Some(errors);
         self.departs = true;
     }
 
     /// Returns the errors of value and rate at the current time of a function that is still leaving a limit.
-    pub fn departure_errors(&self, place: usize) -> Option<[f64; 2]> {
-        let [value, rate] = self.evaluations[place].slack?;
+    pub fn departure_errors(&self, index: usize) -> Option<[f64; 2]> {
+        let [value, rate] = self.evaluations[index].slack?;
         Some([value + rate * self.tau, rate])
     }
 
@@ -342,16 +342,16 @@ impl Flow {
         if !self.departs {
             return;
         }
-        for place in 0..self.evaluations.len() {
-            let Some([value, rate]) = self.evaluations[place].slack else {
+        for index in 0..self.evaluations.len() {
+            let Some([value, rate]) = self.evaluations[index].slack else {
                 continue;
             };
-            self.sum_up(simd, regime, place);
-            let limits = regime.event_functions[place].limits;
-            let now = self.evaluations[place].value;
+            self.evaluate_function(simd, regime, index);
+            let limits = regime.event_functions[index].limits;
+            let now = self.evaluations[index].value;
             let distance = (now - limits.low).abs().min((limits.high - now).abs());
             if distance > DEPARTED_ROUNDINGS * (value + rate * self.tau) {
-                self.evaluations[place].slack = None;
+                self.evaluations[index].slack = None;
             }
         }
         self.departs = self
@@ -361,23 +361,23 @@ impl Flow {
     }
 
     /// Returns true if a function is known to stay within its limits until a time since the start, s.
-    pub fn is_safe(&self, place: usize, until: f64) -> bool {
-        self.evaluations[place].safe_until >= until
+    pub fn is_safe(&self, index: usize, until: f64) -> bool {
+        self.evaluations[index].safe_until >= until
     }
 
     /// Records that a function stays within its limits until a time since the start, s.
-    pub fn note_safe(&mut self, place: usize, until: f64) {
-        self.evaluations[place].safe_until = until;
+    pub fn record_safe_time(&mut self, index: usize, until: f64) {
+        self.evaluations[index].safe_until = until;
     }
 
     /// Returns true if a function has been evaluated at the current time.
-    pub fn is_summed_up(&self, place: usize) -> bool {
-        self.evaluations[place].summed_up_at == self.tau
+    pub fn is_evaluated(&self, index: usize) -> bool {
+        self.evaluations[index].evaluated_at == self.tau
     }
 
     /// Returns true if an evaluated function is certainly between two limits.
-    pub fn is_between(&self, place: usize, low: f64, high: f64) -> bool {
-        let value = self.evaluations[place].value;
+    pub fn is_between(&self, index: usize, low: f64, high: f64) -> bool {
+        let value = self.evaluations[index].value;
         self.clusters.is_empty() && low < value && value < high
     }
 
@@ -387,29 +387,29 @@ impl Flow {
     pub fn local<T>(
         &self,
         regime: &Regime,
-        place: usize,
+        index: usize,
         step: &Step,
         make: impl Fn(&Local) -> T,
     ) -> T {
-        let local = self.evaluations[place].local(step);
+        let local = self.evaluations[index].local(step);
         if self.clusters.is_empty() && !self.departs {
             make(&local)
         } else {
-            make(&self.add_clusters(local, regime, place, step))
+            make(&self.add_clusters(local, regime, index, step))
         }
     }
 
     /// Adds the contributions of the clusters and the error after a departure.
     #[cold]
-    fn add_clusters(&self, mut local: Local, regime: &Regime, place: usize, step: &Step) -> Local {
-        if let Some([value, rate]) = self.evaluations[place].slack {
+    fn add_clusters(&self, mut local: Local, regime: &Regime, index: usize, step: &Step) -> Local {
+        if let Some([value, rate]) = self.evaluations[index].slack {
             local.noise += value + rate * self.tau;
             local.rate_noise += rate;
             local.drift_noise += rate;
         }
         let phases = &regime.system.phases;
         let span = (self.tau, step.length);
-        let powers = &regime.event_functions[place].cluster_powers;
+        let powers = &regime.event_functions[index].cluster_powers;
         for ((flow, cluster), powers) in self.clusters.iter().zip(&regime.clusters).zip(powers) {
             flow.add_to(cluster, powers, phases, span, &mut local);
         }

@@ -49,7 +49,7 @@ impl<'s> Samples<'s> {
     }
 
     /// Stores the samples until a time at which the state is known.
-    pub fn take_until(&mut self, t: f64, state: &[f64]) {
+    pub fn store_until(&mut self, t: f64, state: &[f64]) {
         while let Some(sample) = self.next().filter(|sample| *sample <= t) {
             self.times.push(sample);
             self.states.push(state.to_vec());
@@ -57,13 +57,13 @@ impl<'s> Samples<'s> {
     }
 
     /// Returns the time from the start of a segment to the next sample, s, if it is within the segment.
-    pub fn next_in(&self, segment: &Segment<'_>) -> Option<f64> {
+    pub fn time_to_next(&self, segment: &Segment<'_>) -> Option<f64> {
         let after = segment.start.time_until(self.next()?);
         (after <= segment.tau).then_some(after)
     }
 
     /// Stores the next sample, `after` s after the start of a segment.
-    pub fn take_in(&mut self, segment: &Segment<'_>, after: f64, flow: &mut Flow) {
+    pub fn store_next(&mut self, segment: &Segment<'_>, after: f64, flow: &mut Flow) {
         let Some(sample) = self.next() else { return };
         let mut state = vec![0.0; segment.state.len()];
         flow.state_at(segment.regime, after, &mut state);

@@ -49,7 +49,7 @@ pub(super) fn integrals(
     }
     let z = nu * tau;
     if z.norm_sqr() < 1.0 {
-        let mut phi = series(z, orders);
+        let mut phi = sum_series(z, orders);
         for k in (0..orders).rev() {
             // At this point, phi is phi_(k+1).
             values[k] = phi;
@@ -70,7 +70,7 @@ pub(super) fn integrals(
 }
 
 /// Returns phi_k(z) for |z| < 1.
-fn series(z: Complex<f64>, k: usize) -> Complex<f64> {
+fn sum_series(z: Complex<f64>, k: usize) -> Complex<f64> {
     let terms = if z.norm_sqr() < 1.0 / 64.0 {
         FEW_TERMS
     } else {
@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     /// Returns the integral by Simpson's rule, independent of the recursions.
-    fn by_quadrature(nu: Complex<f64>, tau: f64, k: usize) -> Complex<f64> {
+    fn integrate_by_quadrature(nu: Complex<f64>, tau: f64, k: usize) -> Complex<f64> {
         let panels = 4000;
         let h = tau / panels as f64;
         let value = |s: f64| (nu * s).exp() * (tau - s).powi(k as i32) / factorial(k);
@@ -127,7 +127,7 @@ mod tests {
             let mut out = [Complex::new(0.0, 0.0); DERIVATIVES + 6];
             integrals(nu, tau, (nu * tau).exp(), &mut out);
             for k in 0..6 {
-                let wanted = by_quadrature(nu, tau, k);
+                let wanted = integrate_by_quadrature(nu, tau, k);
                 // Simpson's rule with 4000 panels: (32 / 4000)^4 / 180 at most.
                 let error = (out[DERIVATIVES + k] - wanted).norm();
                 assert!(error < 3e-11 * wanted.norm(), "{nu} {k}: {error:e}");

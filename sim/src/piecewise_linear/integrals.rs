@@ -28,7 +28,7 @@ const REMAINDER: f64 = 1e-19;
 const NEAR_FRACTION: f64 = 1.0 / 32.0;
 
 /// Maximum number of terms of a series with an argument below 1.
-const MOST_TERMS: usize = 24;
+const MAX_TERMS: usize = 24;
 
 /// Coefficients of a function's polynomial in time per unit of each cause.
 #[derive(Clone, Debug, Default)]
@@ -103,7 +103,7 @@ impl Integrals {
             let mut answer = [DVector::zeros(size), DVector::zeros(size)];
             let acts = force.iter().flat_map(|f| f.iter()).any(|f| *f != 0.0);
             if size > 0 && frequency.abs() * longest > FAST_TURN_RAD {
-                answer = forced_coordinates(&matrix, &force, frequency);
+                answer = solve_forced_coordinates(&matrix, &force, frequency);
             } else if acts {
                 if frequency.abs() * window > MAX_SLOW_TURN_RAD {
                     window = MAX_SLOW_TURN_RAD / frequency.abs();
@@ -262,18 +262,18 @@ impl Integrals {
         let mut near_powers = 0;
         for column in &mut coefficients {
             let sizes: Vec<f64> = column[1..].iter().map(|c| c.abs()).collect();
-            column.truncate(1 + terms_needed(&sizes, window));
-            near_powers = near_powers.max(1 + terms_needed(&sizes, NEAR_FRACTION * window));
+            column.truncate(1 + count_terms_needed(&sizes, window));
+            near_powers = near_powers.max(1 + count_terms_needed(&sizes, NEAR_FRACTION * window));
         }
         let powers = coefficients.iter().map(Vec::len).max().unwrap_or(0);
         let factors = (0..powers).map(|k| {
-            let of = |order: usize| falling(k + order, order);
+            let of = |order: usize| falling_factorial(k + order, order);
             SimdVector::new([0, 1, 2, 3].map(of))
         });
         let fourth: Vec<f64> = (0..powers)
             .map(|k| match k {
                 // Fourth derivative of tau^k.
-                4.. => falling(k, 4) * window.powi(k as i32 - 4),
+                4.. => falling_factorial(k, 4) * window.powi(k as i32 - 4),
                 _ => 0.0,
             })
             .collect();
@@ -303,8 +303,8 @@ impl Integrals {
         let (states, felt) = (self.rows.ncols(), self.cause_count());
         let by_cause = self.rate_sizes(weights);
         let mut sizes = vec![0.0; states + units + 2 * self.forced.len()];
-        for (place, size) in by_cause[..felt].iter().enumerate() {
-            let coordinate = self.pure + place;
+        for (index, size) in by_cause[..felt].iter().enumerate() {
+            let coordinate = self.pure + index;
             for (slot, entry) in sizes.iter_mut().zip(self.rows.row(coordinate).iter()) {
                 *slot += size * entry.abs();
             }
@@ -339,11 +339,11 @@ impl Integrals {
         }
         for cause in 0..self.rates.ncols() {
             let sizes: Vec<f64> = by_order.iter().map(|b| b.column(cause).amax()).collect();
-            let orders = by_order[..terms_needed(&sizes, window)].iter();
+            let orders = by_order[..count_terms_needed(&sizes, window)].iter();
             let factors = orders.flat_map(|b| pack(b.column(cause).clone_owned().as_slice()));
             self.by_cause.push(factors.collect());
             self.near_powers
-                .push(terms_needed(&sizes, NEAR_FRACTION * window));
+                .push(count_terms_needed(&sizes, NEAR_FRACTION * window));
         }
     }
 }
@@ -392,8 +392,8 @@ fn generator(rates: &DMatrix<f64>, pure: usize, frequencies: &[f64]) -> DMatrix<
         .rows_mut(0, inner)
         .copy_from(&rates.rows(pure, inner));
     let first = count - 2 * frequencies.len();
-    for (place, omega) in frequencies.iter().enumerate() {
-        let sine = first + 2 * place;
+    for (index, omega) in frequencies.iter().enumerate() {
+        let sine = first + 2 * index;
         generator[(sine, sine + 1)] = *omega;
         generator[(sine + 1, sine)] = -omega;
     }
@@ -401,7 +401,7 @@ fn generator(rates: &DMatrix<f64>, pure: usize, frequencies: &[f64]) -> DMatrix<
 }
 
 /// Returns the falling factorial k (k - 1) ... with `factors` factors.
-fn falling(k: usize, factors: usize) -> f64 {
+fn falling_factorial(k: usize, factors: usize) -> f64 {
     (0..factors)
         .map(|factor| k as f64 - factor as f64)
         .product()
@@ -409,7 +409,7 @@ fn falling(k: usize, factors: usize) -> f64 {
 
 /// Returns the number of coefficients of these magnitudes needed within a window, from the first power of time
 /// on.
-fn terms_needed(sizes: &[f64], window: f64) -> usize {
+fn count_terms_needed(sizes: &[f64], window: f64) -> usize {
     let (mut power, mut largest, mut needed) = (1.0, 0.0_f64, 0);
     for (order, size) in sizes.iter().enumerate() {
         power *= window;
@@ -423,15 +423,15 @@ fn terms_needed(sizes: &[f64], window: f64) -> usize {
 }
 
 /// Returns real and imaginary part of Z, for the response Im(Z exp(i theta)) to a force beta sin + gamma cos.
-fn forced_coordinates(
+fn solve_forced_coordinates(
     matrix: &DMatrix<f64>,
     [beta, gamma]: &[DVector<f64>; 2],
     omega: f64,
 ) -> [DVector<f64>; 2] {
     let size = matrix.nrows();
     let mut system = matrix.map(|entry| Complex::new(-entry, 0.0));
-    for place in 0..size {
-        system[(place, place)] += Complex::new(0.0, omega);
+    for index in 0..size {
+        system[(index, index)] += Complex::new(0.0, omega);
     }
     let force = beta.zip_map(gamma, Complex::new);
     // The matrix is nonsingular, because the frequency is far above every eigenvalue.
@@ -443,7 +443,7 @@ fn forced_coordinates(
 /// Returns the number of terms of an exponential series needed at this argument.
 fn terms(argument: f64) -> usize {
     let (mut terms, mut term) = (0, 1.0);
-    while term > REMAINDER && terms < MOST_TERMS {
+    while term > REMAINDER && terms < MAX_TERMS {
         terms += 1;
         term *= argument / terms as f64;
     }

@@ -5,13 +5,13 @@ use std::ops::Range;
 use nalgebra::{Complex, DMatrix};
 
 use super::blocks::{decouple, inverse};
-use super::clustering::{REAL, runs};
+use super::clustering::{REAL_FRACTION, runs};
 use super::decomposition::{Decomposition, Integrals, Part};
 use super::refine::{Refinement, Subspaces};
 use super::schur::SchurForm;
 
 /// Subspaces for one grouping of the eigenvalues, in the balanced inner state.
-pub(super) struct Found {
+pub(super) struct InvariantSubspaces {
     subspaces: Subspaces,
     /// Dimension of the subspace of the eigenvalues near zero, which is the first subspace.
     zeros: usize,
@@ -24,12 +24,12 @@ pub(super) struct Found {
     numbers: Vec<usize>,
 }
 
-impl Found {
+impl InvariantSubspaces {
     /// Computes the subspaces for the cluster `numbers` of the eigenvalues, 0 for those near zero, in the order
     /// of the Schur form.
     pub fn with_clusters(schur: &SchurForm, zeros: usize, numbers: Vec<usize>) -> Self {
         let mut order: Vec<usize> = (0..numbers.len()).collect();
-        order.sort_by_key(|place| numbers[*place]);
+        order.sort_by_key(|index| numbers[*index]);
         let mut cluster = numbers.clone();
         let mut form = SchurForm {
             triangle: schur.triangle.clone(),
@@ -39,14 +39,14 @@ impl Found {
         form.sort_by_key(cluster.clone());
         cluster.sort_unstable();
         let blocks = runs(&cluster);
-        let near_zero = (0..zeros).map(|place| form.triangle[(place, place)].norm());
+        let near_zero = (0..zeros).map(|index| form.triangle[(index, index)].norm());
         let radius = near_zero.fold(0.0, f64::max);
         let coupling = decouple(&form.triangle, &blocks);
         let columns = &form.basis * &coupling;
         let rows = inverse(&coupling) * form.basis.adjoint();
         let mut sensitivity = vec![1.0; cluster.len()];
-        for (place, original) in order.into_iter().enumerate().skip(zeros) {
-            sensitivity[original] = columns.column(place).norm() * rows.row(place).norm();
+        for (index, original) in order.into_iter().enumerate().skip(zeros) {
+            sensitivity[original] = columns.column(index).norm() * rows.row(index).norm();
         }
         Self {
             subspaces: Subspaces {
@@ -98,7 +98,7 @@ impl Found {
             ..
         } = &mut self.subspaces;
         let spanned = columns.columns(0, zeros).into_owned();
-        let basis = real_basis(&spanned);
+        let basis = find_real_basis(&spanned);
         let slow = basis.transpose() * &balanced * &basis;
         let complex = |real: &DMatrix<f64>| real.map(|entry| Complex::new(entry, 0.0));
         let turned = complex(&basis).transpose() * &spanned * rows.rows(0, zeros);
@@ -125,19 +125,19 @@ impl Found {
     }
 
     /// Returns the parts in the full state. The rates of the `pure` states are `outer` times the inner state.
-    pub fn in_full_state(
+    pub fn extend_to_full_state(
         self,
         outer: &DMatrix<f64>,
         pure: &[usize],
         felt: &[usize],
     ) -> Decomposition {
         let unscaled = |mut matrix: DMatrix<Complex<f64>>, power: i32| {
-            for (place, scale) in self.scale.iter().enumerate() {
+            for (index, scale) in self.scale.iter().enumerate() {
                 let factor = Complex::new(scale.powi(power), 0.0);
                 if power > 0 {
-                    matrix.row_mut(place).scale_mut(factor.re);
+                    matrix.row_mut(index).scale_mut(factor.re);
                 } else {
-                    matrix.column_mut(place).scale_mut(factor.re);
+                    matrix.column_mut(index).scale_mut(factor.re);
                 }
             }
             matrix
@@ -183,15 +183,15 @@ impl Found {
     fn weights(&self) -> Vec<f64> {
         let matrix = &self.subspaces.matrix;
         let imaginary = |block: &Range<usize>| -> (f64, f64) {
-            let parts = block.clone().map(|place| matrix[(place, place)].im);
+            let parts = block.clone().map(|index| matrix[(index, index)].im);
             let (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
             parts.fold((low, high), |(low, high), im| (low.min(im), high.max(im)))
         };
         let bounds: Vec<(f64, f64)> = self.subspaces.blocks.iter().map(imaginary).collect();
         let largest = (0..matrix.nrows())
-            .map(|place| matrix[(place, place)].norm())
+            .map(|index| matrix[(index, index)].norm())
             .fold(0.0, f64::max);
-        let mut tolerance = REAL * largest;
+        let mut tolerance = REAL_FRACTION * largest;
         loop {
             let upper = bounds.iter().filter(|(low, _)| *low > tolerance).count();
             let lower = bounds.iter().filter(|(_, high)| *high < -tolerance).count();
@@ -239,17 +239,17 @@ impl Found {
         let states = pure.len() + felt.len();
         let mut columns = DMatrix::zeros(states, size);
         let mut rows = DMatrix::zeros(size, states);
-        for (place, state) in pure.iter().enumerate() {
-            columns[(*state, place)] = 1.0;
-            rows[(place, *state)] = 1.0;
+        for (index, state) in pure.iter().enumerate() {
+            columns[(*state, index)] = 1.0;
+            rows[(index, *state)] = 1.0;
             for (column, other) in felt.iter().enumerate() {
-                rows[(place, *other)] = -carried[(place, column)];
+                rows[(index, *other)] = -carried[(index, column)];
             }
         }
-        for (place, state) in felt.iter().enumerate() {
+        for (index, state) in felt.iter().enumerate() {
             for column in 0..zeros {
-                columns[(*state, pure.len() + column)] = inner_columns[(place, column)];
-                rows[(pure.len() + column, *state)] = inner_rows[(column, place)];
+                columns[(*state, pure.len() + column)] = inner_columns[(index, column)];
+                rows[(pure.len() + column, *state)] = inner_rows[(column, index)];
             }
         }
         Integrals {
@@ -282,9 +282,9 @@ fn scatter_rows(
 ) -> DMatrix<Complex<f64>> {
     let columns = pieces.first().map_or(0, |(_, piece)| piece.ncols());
     let mut whole = DMatrix::zeros(states, columns);
-    for (places, piece) in pieces {
-        for (row, place) in places.iter().enumerate() {
-            whole.row_mut(*place).copy_from(&piece.row(row));
+    for (indices, piece) in pieces {
+        for (row, index) in indices.iter().enumerate() {
+            whole.row_mut(*index).copy_from(&piece.row(row));
         }
     }
     whole
@@ -292,7 +292,7 @@ fn scatter_rows(
 
 /// Returns an orthonormal real basis of the span of complex columns, which must equal its conjugate.
 /// Gram-Schmidt with pivoting: the largest remainder is next.
-fn real_basis(columns: &DMatrix<Complex<f64>>) -> DMatrix<f64> {
+fn find_real_basis(columns: &DMatrix<Complex<f64>>) -> DMatrix<f64> {
     let (rows, size) = columns.shape();
     let mut candidates = DMatrix::from_fn(rows, 2 * size, |i, j| {
         let entry = columns[(i, j / 2)];

@@ -8,7 +8,7 @@ use super::event_function::{ValueWeights, Weights};
 use super::simd_vectors::{SimdVector, SplitComplex, numbers};
 
 /// Results of the evaluation of a function.
-pub(super) struct Summed {
+pub(super) struct FunctionSums {
     /// Change of the value since the start.
     pub value: f64,
     /// Sum of the magnitudes of the terms of that change.
@@ -101,10 +101,10 @@ pub(super) fn advance<S: Simd>(simd: S, expm1: &SplitComplex, mut amplitudes: Am
 
 /// Reciprocals of 20 to 2.
 const RECIPROCALS: [f64; 19] = {
-    let (mut reciprocals, mut place) = ([0.0; 19], 0);
-    while place < 19 {
-        reciprocals[place] = 1.0 / (20 - place) as f64;
-        place += 1;
+    let (mut reciprocals, mut index) = ([0.0; 19], 0);
+    while index < 19 {
+        reciprocals[index] = 1.0 / (20 - index) as f64;
+        index += 1;
     }
     reciprocals
 };
@@ -148,13 +148,13 @@ pub(super) struct Factors<'a> {
 /// cumulative sums over the modes to `before`: contributions of the amplitudes to the value and to the
 /// derivatives of order 1 to 3.
 #[inline(always)]
-pub(super) fn sum_up<S: Simd>(
+pub(super) fn evaluate_function<S: Simd>(
     simd: S,
     factors: Factors<'_>,
     (now, moved): (&[SimdVector], &[SimdVector]),
     powers: &[f64],
     before: &mut [SimdVector],
-) -> Summed {
+) -> FunctionSums {
     let zero = f64x4::splat(simd, 0.0);
     let vectors = factors.value_weights.len();
     let (re, im) = numbers(now).split_at(4 * vectors);
@@ -192,7 +192,7 @@ pub(super) fn sum_up<S: Simd>(
         size += load(simd, weights.size) * (re.abs() + im.abs());
     }
     let of_polynomial = store(polynomial).to_array();
-    Summed {
+    FunctionSums {
         value: store(value).total() + of_polynomial[0],
         size: store(size).total() + store(sizes).to_array()[0],
         derivatives: store(sums + polynomial),

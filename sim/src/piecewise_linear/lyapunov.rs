@@ -41,7 +41,7 @@ pub struct LyapunovGrowth {
 /// A motion with tangent vectors that can be continued.
 pub struct MotionWithTangents {
     motion: Motion,
-    frame: Frame,
+    frame: TangentFrame,
 }
 
 impl MotionWithTangents {
@@ -81,7 +81,7 @@ impl Propagator {
         }
         Ok(MotionWithTangents {
             motion: self.start(t, initial, inputs)?,
-            frame: Frame::new(weights, 1),
+            frame: TangentFrame::new(weights, 1),
         })
     }
 
@@ -121,7 +121,7 @@ impl Propagator {
             .min(felt.iter().filter(|f| **f).count());
         let mut motion = self.start(t, initial, inputs)?;
         let weights: Vec<f64> = felt.iter().map(|felt| f64::from(u8::from(*felt))).collect();
-        let mut nobody = Frame::new(&weights, 0);
+        let mut nobody = TangentFrame::new(&weights, 0);
         self.follow_until(
             &mut motion,
             t + 0.5 * request.transient,
@@ -130,7 +130,7 @@ impl Propagator {
         )?;
         let mut carried = MotionWithTangents {
             motion,
-            frame: Frame::new(&weights, wanted),
+            frame: TangentFrame::new(&weights, wanted),
         };
         let measured_from = t + request.transient;
         self.continue_to(&mut carried, measured_from, inputs)?;
@@ -172,7 +172,7 @@ impl LyapunovRequest {
 }
 
 /// Tangent vectors that are kept orthonormal.
-struct Frame {
+struct TangentFrame {
     tangents: Tangents,
     /// Square of the weight of each state in a length.
     metric: Vec<f64>,
@@ -180,7 +180,7 @@ struct Frame {
     growth: Vec<f64>,
 }
 
-impl Frame {
+impl TangentFrame {
     /// Creates unit vectors of the first states with a weight, with small components of the other states.
     fn new(weights: &[f64], count: usize) -> Self {
         let felt = weights
@@ -224,25 +224,25 @@ impl Frame {
                 }
             }
             for earlier in done {
-                let along = product(&self.metric, earlier, vector);
+                let along = weighted_product(&self.metric, earlier, vector);
                 vector
                     .iter_mut()
                     .zip(earlier)
                     .for_each(|(slot, e)| *slot -= along * *e);
             }
-            let length = product(&self.metric, vector, vector).sqrt();
+            let length = weighted_product(&self.metric, vector, vector).sqrt();
             self.growth[index] += length.ln();
             vector.iter_mut().for_each(|slot| *slot /= length);
         }
     }
 }
 
-fn product(metric: &[f64], a: &[f64], b: &[f64]) -> f64 {
+fn weighted_product(metric: &[f64], a: &[f64], b: &[f64]) -> f64 {
     let pairs = a.iter().zip(b).zip(metric);
     pairs.map(|((a, b), metric)| metric * a * b).sum()
 }
 
-impl Follow for Frame {
+impl Follow for TangentFrame {
     fn observe_segment(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
         self.tangents.observe_segment(segment, flow);
         // Without this, fast decaying vectors would align with the first one by rounding.

@@ -79,7 +79,7 @@ impl PiecewiseLinear {
         let all = model
             .parameter_values()
             .map_err(|error| ExactError::Model(error.diagnostic().message))?;
-        let values: Vec<f64> = independent(model).map(|(_, place)| all[place]).collect();
+        let values: Vec<f64> = independent(model).map(|(_, index)| all[index]).collect();
         self.propagator_at(&values)
     }
 
@@ -113,5 +113,5 @@ fn independent(model: &Model) -> impl Iterator<Item = (&str, usize)> {
         .iter()
         .enumerate()
         .filter(|(_, parameter)| matches!(parameter.value, ParameterValue::Number(_)))
-        .map(|(place, parameter)| (parameter.name.as_str(), place))
+        .map(|(index, parameter)| (parameter.name.as_str(), index))
 }

@@ -77,13 +77,13 @@ impl Modes {
             forced: vec![[nothing.clone(), nothing]; frequencies.len()],
             ..Self::default()
         };
-        for (mode, place) in order.into_iter().enumerate() {
-            let (rate, phase) = all[place];
+        for (mode, index) in order.into_iter().enumerate() {
+            let (rate, phase) = all[index];
             modes.rate.push(rate);
             modes.magnitude.push(rate.norm());
             modes.phase.push(phase);
             match phase {
-                None => modes.add_part(mode, &simple[place], forcing, frequencies),
+                None => modes.add_part(mode, &simple[index], forcing, frequencies),
                 Some(phase) => {
                     let response = forced_response(simple, &forcing.sinusoids[phase], rate.im);
                     modes.columns.set_column(mode, &response);
@@ -111,14 +111,14 @@ impl Modes {
         }
         let sinusoids = forcing.sinusoids.iter().zip(frequencies);
         for (forced, (sinusoid, omega)) in self.forced.iter_mut().zip(sinusoids) {
-            let [sine, cosine] = answer(part, sinusoid, *omega);
+            let [sine, cosine] = compute_response(part, sinusoid, *omega);
             forced[0][mode] = sine;
             forced[1][mode] = cosine;
         }
     }
 
     /// Adds the response of the integrals to fast sinusoids.
-    pub fn add_forced(&mut self, integrals: &Integrals) {
+    pub fn add_forced_response(&mut self, integrals: &Integrals) {
         for (mode, phase) in self.phase.iter().enumerate() {
             let Some(phase) = phase else { continue };
             let [sine, cosine] = &integrals.forced[*phase];
@@ -151,7 +151,7 @@ pub(super) fn project(
 
 /// Returns the amplitudes of a mode's response per unit sine and per unit cosine, for the force beta sin theta
 /// + gamma cos theta: -(beta (rate sin + omega cos) + gamma (rate cos - omega sin)) / (rate^2 + omega^2).
-fn answer(part: &Part, sinusoid: &[DVector<f64>; 2], omega: f64) -> [Complex<f64>; 2] {
+fn compute_response(part: &Part, sinusoid: &[DVector<f64>; 2], omega: f64) -> [Complex<f64>; 2] {
     let rate = part.centre;
     let [beta, gamma] = [0, 1].map(|kind| project(&part.rows, &sinusoid[kind])[0]);
     let determinant = rate * rate + omega * omega;
@@ -169,7 +169,7 @@ fn forced_response(
 ) -> DVector<Complex<f64>> {
     let mut response = DVector::zeros(sinusoid[0].len());
     for part in simple {
-        let [sine, cosine] = answer(part, sinusoid, omega);
+        let [sine, cosine] = compute_response(part, sinusoid, omega);
         for (slot, entry) in response.iter_mut().zip(part.columns.column(0).iter()) {
             let real = |factor: Complex<f64>| part.weight * (entry * factor).re;
             *slot += Complex::new(real(cosine), -real(sine));

@@ -41,9 +41,9 @@ impl Propagator {
             at_sample: Tangents::default(),
             derivatives: Vec::new(),
         };
-        carrier.take_until(span.0, initial);
+        carrier.store_until(span.0, initial);
         self.follow_until(&mut motion, span.1, inputs, &mut carrier)?;
-        carrier.take_until(span.1, motion.state());
+        carrier.store_until(span.1, motion.state());
         Ok(Sensitivities {
             times: carrier.samples.times,
             states: carrier.samples.states,
@@ -63,8 +63,8 @@ struct Carrier<'s> {
 
 impl Carrier<'_> {
     /// Stores the samples until a time at which state and directions are known.
-    fn take_until(&mut self, t: f64, state: &[f64]) {
-        self.samples.take_until(t, state);
+    fn store_until(&mut self, t: f64, state: &[f64]) {
+        self.samples.store_until(t, state);
         let taken = self.samples.times.len();
         self.derivatives
             .resize(taken, self.tangents.vectors.clone());
@@ -75,8 +75,8 @@ impl Follow for Carrier<'_> {
     fn observe_segment(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
         // Inputs change at samples, so the last sample of a segment is usually at its end.
         let mut at_end = false;
-        while let Some(after) = self.samples.next_in(segment) {
-            self.samples.take_in(segment, after, flow);
+        while let Some(after) = self.samples.time_to_next(segment) {
+            self.samples.store_next(segment, after, flow);
             if after >= segment.tau {
                 at_end = true;
                 break;

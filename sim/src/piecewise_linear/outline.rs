@@ -9,7 +9,7 @@ use super::event_function::Linear;
 use super::parallel_guards::Cell;
 use super::propagator::Propagator;
 use super::regime::rates;
-use super::sliding::slide;
+use super::sliding::derive_sliding;
 
 /// Rounding error of a sum of products of magnitude 1.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -36,7 +36,7 @@ impl Propagator {
         let below = self.evaluator.system(&sides);
         let held = cells.iter().any(|cell| matches!(cell, Cell::On(_)));
         let sliding = held
-            .then(|| slide(&mut self.evaluator, &self.families, cells))
+            .then(|| derive_sliding(&mut self.evaluator, &self.families, cells))
             .flatten();
         let ranks = |index: usize| {
             let family = &self.families[index];
@@ -58,7 +58,7 @@ impl Propagator {
 
 impl Outline {
     /// Returns the cell of a family whose function is constant while the inputs are held; `None` if it varies.
-    pub fn resting(&self, family: usize, inputs: &[f64]) -> Option<Cell> {
+    pub fn find_constant_cell(&self, family: usize, inputs: &[f64]) -> Option<Cell> {
         let function = &self.functions[family];
         function
             .is_still()
@@ -72,14 +72,14 @@ impl Outline {
     }
 
     /// Returns true if a family has the same function and thresholds as in another outline.
-    pub fn same_function(&self, other: &Self, family: usize) -> bool {
+    pub fn has_same_function(&self, other: &Self, family: usize) -> bool {
         self.functions[family] == other.functions[family]
             && self.thresholds[family] == other.thresholds[family]
     }
 
     /// Returns the rate of a function due to the rates of the state, and the rounding error of this rate.
-    pub fn rate(&self, function: &Linear, standing: StateAt<'_>) -> (f64, f64) {
-        let Rates { values, sizes } = self.rates(standing);
+    pub fn rate(&self, function: &Linear, point: StateAt<'_>) -> (f64, f64) {
+        let Rates { values, sizes } = self.rates(point);
         let factors = function.state.iter();
         let rate = factors.clone().zip(values).map(|(a, b)| a * b).sum();
         let size: f64 = factors.zip(sizes).map(|(a, b)| (a * b).abs()).sum();
@@ -87,12 +87,12 @@ impl Outline {
     }
 
     /// Returns the rates of the state.
-    pub fn rates(&self, standing: StateAt<'_>) -> Rates {
+    pub fn rates(&self, point: StateAt<'_>) -> Rates {
         let StateAt {
             state,
             inputs,
             phases,
-        } = standing;
+        } = point;
         let mut values = vec![0.0; self.system.states];
         rates(&self.system, state, inputs, phases, &mut values);
         let rows = 0..self.system.states;

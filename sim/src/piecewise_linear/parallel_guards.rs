@@ -24,7 +24,7 @@ pub(super) enum Cell {
     On(usize),
     /// On the threshold of this rank, where other surfaces hold the motion; true on its upper side. The surface
     /// exerts its maximum force.
-    Bearing(usize, bool),
+    AtLimit(usize, bool),
 }
 
 impl Cell {
@@ -33,22 +33,25 @@ impl Cell {
         match (self, upper) {
             (Self::Between(above), true) => Self::Between(above + 1),
             (Self::Between(above), false) => Self::Between(above - 1),
-            (Self::On(rank) | Self::Bearing(rank, _), true) => Self::Between(rank + 1),
-            (Self::On(rank) | Self::Bearing(rank, _), false) => Self::Between(rank),
+            (Self::On(rank) | Self::AtLimit(rank, _), true) => Self::Between(rank + 1),
+            (Self::On(rank) | Self::AtLimit(rank, _), false) => Self::Between(rank),
         }
     }
 
     /// Returns the rank of the threshold that the function equals, if any.
-    pub fn standing_on(self) -> Option<usize> {
+    pub fn threshold_rank(self) -> Option<usize> {
         match self {
             Self::Between(_) => None,
-            Self::On(rank) | Self::Bearing(rank, _) => Some(rank),
+            Self::On(rank) | Self::AtLimit(rank, _) => Some(rank),
         }
     }
 }
 
 /// Finds the families of a model's surfaces at its current parameters.
-pub(super) fn families(evaluator: &AffineEvaluator, system: &AffineSystem) -> Vec<ParallelGuards> {
+pub(super) fn find_families(
+    evaluator: &AffineEvaluator,
+    system: &AffineSystem,
+) -> Vec<ParallelGuards> {
     let mut families: Vec<ParallelGuards> = Vec::new();
     for (guard, &first) in evaluator.guard_groups().iter().enumerate() {
         let threshold = |guard: usize| -system.guards.constant[guard];
@@ -83,8 +86,8 @@ impl ParallelGuards {
             let side = match cell {
                 Cell::Between(above) => f64::from(u8::from(rank < above)),
                 Cell::On(on) if on == rank => held,
-                Cell::Bearing(on, upper) if on == rank => f64::from(u8::from(upper)),
-                Cell::On(on) | Cell::Bearing(on, _) => f64::from(u8::from(rank < on)),
+                Cell::AtLimit(on, upper) if on == rank => f64::from(u8::from(upper)),
+                Cell::On(on) | Cell::AtLimit(on, _) => f64::from(u8::from(rank < on)),
             };
             for guard in guards {
                 sides[*guard] = side;
@@ -95,9 +98,9 @@ impl ParallelGuards {
     /// Returns the mode of the surfaces at a rank.
     pub fn mode(&self, cell: Cell, rank: usize) -> SurfaceMode {
         let is_positive = match cell {
-            Cell::On(on) | Cell::Bearing(on, _) if on == rank => return SurfaceMode::Held,
+            Cell::On(on) | Cell::AtLimit(on, _) if on == rank => return SurfaceMode::Held,
             Cell::Between(above) => rank < above,
-            Cell::On(on) | Cell::Bearing(on, _) => rank < on,
+            Cell::On(on) | Cell::AtLimit(on, _) => rank < on,
         };
         SurfaceMode::from_side(if is_positive { 1.0 } else { -1.0 })
     }

@@ -15,24 +15,24 @@ use super::error::ExactError;
 use super::event_function::Linear;
 use super::flow::Flow;
 use super::outline::Outline;
-use super::parallel_guards::{Cell, ParallelGuards, families};
+use super::parallel_guards::{Cell, ParallelGuards, find_families};
 use super::regime::Regime;
-use super::search::{Effort, Found, find_jumped_function, search};
-use super::switching::switched_rate;
+use super::search::{SearchResult, SearchStatistics, find_jumped_function, search};
+use super::switching::find_switched_rate;
 use super::transition::{Limit, Transition};
 use super::visited_regimes::VisitedRegime;
 use crate::inputs::HeldInputs;
 use crate::ode::SolveError;
 
 /// Number of switches at one time after which the motion is advanced by the shortest step.
-const AT_ONCE: u32 = 16;
+const MAX_SIMULTANEOUS_SWITCHES: u32 = 16;
 
 /// Decays slower than the switching by this factor are treated as polynomials: as modes they would have large
 /// amplitudes that cancel.
 const SLOW_DECAY_RATIO: f64 = 1e-2;
 
 /// Largest number of steps of a motion, equivalent to hours; a longer motion is rejected.
-const MOST_STEPS: f64 = 1e8;
+const MAX_STEPS: f64 = 1e8;
 
 /// Number of switches over which their rate is averaged.
 const SWITCHES_AVERAGED: u64 = 1024;
@@ -69,14 +69,14 @@ pub struct Motion {
     pub(super) regime: usize,
     at_once: u32,
     /// Families whose functions may have jumped beyond their limits.
-    jumped: Option<Jumped>,
+    jumped: Option<JumpedFamilies>,
     /// Number of switches so far, and the time at which the current average started.
     switches: u64,
     averaged_from: f64,
     /// Functions that are leaving a surface that held the motion.
     pub(super) departing: Vec<Departure>,
     /// Work done so far.
-    pub(super) effort: Effort,
+    pub(super) effort: SearchStatistics,
     /// State at the start of the current segment.
     before: Vec<f64>,
     /// exp(i theta) of the phases at the current time.
@@ -94,7 +94,7 @@ pub(super) struct Departure {
 
 /// Families whose functions may have jumped beyond their limits.
 #[derive(Clone, Copy, Debug)]
-enum Jumped {
+enum JumpedFamilies {
     /// All families.
     Any,
     /// All families except this one.
@@ -103,8 +103,8 @@ enum Jumped {
     Held,
 }
 
-impl Jumped {
-    fn may_be(self, family: usize, cells: &[Cell]) -> bool {
+impl JumpedFamilies {
+    fn includes(self, family: usize, cells: &[Cell]) -> bool {
         match self {
             Self::Any => true,
             Self::AnyBut(one) => family != one,
@@ -185,7 +185,7 @@ impl Propagator {
         if system.guards.constant.iter().any(|c| !c.is_finite()) {
             return Err(ExactError::NotFinite);
         }
-        let families = families(&evaluator, &system);
+        let families = find_families(&evaluator, &system);
         let rests = evaluator.guards_rest();
         let rests =
             |family: &ParallelGuards| family.ranks.iter().flatten().any(|guard| rests[*guard]);
@@ -202,7 +202,7 @@ impl Propagator {
             states: evaluator.states(),
             phases: system.phases.clone(),
             saltations: Vec::new(),
-            slow: SLOW_DECAY_RATIO * switched_rate(&mut evaluator, &system),
+            slow: SLOW_DECAY_RATIO * find_switched_rate(&mut evaluator, &system),
             max_switch_rate: crate::ode::Settings::default().max_switch_rate,
             evaluator,
         })
@@ -235,7 +235,7 @@ impl Propagator {
             visited.step = 0;
         }
         let clock = Clock::new(t);
-        let regime = self.regime_at(clock, state, held_inputs(inputs, t, self.inputs))?;
+        let regime = self.find_regime_at(clock, state, held_inputs(inputs, t, self.inputs))?;
         Ok(Motion {
             clock,
             state: state.to_vec(),
@@ -245,7 +245,7 @@ impl Propagator {
             departing: Vec::new(),
             switches: 0,
             averaged_from: t,
-            effort: Effort::default(),
+            effort: SearchStatistics::default(),
             before: state.to_vec(),
             phases: self.phases_at(clock),
         })
@@ -284,26 +284,26 @@ impl Propagator {
         let length = remaining.min(regime.step_table.window);
         let start = motion.clock;
         let (found, by_jump) = dispatch_registers!(simd => {
-            go_on(simd, flow, (regime, cells), motion, (values, length), step)
+            advance_in_regime(simd, flow, (regime, cells), motion, (values, length), step)
         });
         let reached = match found {
-            Found::Nothing if length < remaining => {
+            SearchResult::Nothing if length < remaining => {
                 motion.clock = start.advanced_by(length);
                 false
             }
-            Found::Nothing => {
+            SearchResult::Nothing => {
                 motion.clock = Clock::new(target);
-                motion.jumped = breakpoint.map(|_| Jumped::Any);
+                motion.jumped = breakpoint.map(|_| JumpedFamilies::Any);
                 breakpoint.is_none()
             }
-            Found::Limit { .. } => {
+            SearchResult::Limit { .. } => {
                 motion.clock = start.advanced_by(flow.tau);
                 false
             }
         };
         let diverged = motion.state.iter().position(|y| !y.is_finite());
         if diverged.is_some() {
-            flow.go_back_to_finite_state(regime, &mut motion.state);
+            flow.return_to_finite_state(regime, &mut motion.state);
             motion.clock = start.advanced_by(flow.tau);
         }
         for (slot, phase) in motion.phases.iter_mut().zip(&self.phases) {
@@ -322,10 +322,10 @@ impl Propagator {
             let t = motion.time();
             return Err(SolveError::NotFinite { t, state }.into());
         }
-        if found == Found::Nothing && breakpoint.is_some() {
-            self.take_inputs(motion, inputs)?;
+        if found == SearchResult::Nothing && breakpoint.is_some() {
+            self.apply_inputs(motion, inputs)?;
         }
-        if let Found::Limit {
+        if let SearchResult::Limit {
             event_function,
             upper,
         } = found
@@ -339,7 +339,7 @@ impl Propagator {
     /// Rejects a motion so fast, or a duration so long, that the simulation would not end.
     fn check_window(&self, motion: &Motion, remaining: f64) -> Result<(), SolveError> {
         let window = self.regimes[motion.regime].regime.step_table.window;
-        if remaining <= MOST_STEPS * window {
+        if remaining <= MAX_STEPS * window {
             return Ok(());
         }
         Err(SolveError::Request {
@@ -360,24 +360,24 @@ impl Propagator {
         motion: &mut Motion,
         inputs: &HeldInputs,
     ) -> Result<(), ExactError> {
-        motion.jumped = Some(Jumped::Any);
-        self.take_inputs(motion, inputs)
+        motion.jumped = Some(JumpedFamilies::Any);
+        self.apply_inputs(motion, inputs)
     }
 
     /// Enters the regime after a change of inputs, if functions depend only on inputs or on the sides of other
     /// surfaces.
-    fn take_inputs(&mut self, motion: &mut Motion, inputs: &HeldInputs) -> Result<(), ExactError> {
+    fn apply_inputs(&mut self, motion: &mut Motion, inputs: &HeldInputs) -> Result<(), ExactError> {
         if !self.has_dependents() {
             return Ok(());
         }
         let mut cells = self.regimes[motion.regime].cells.clone();
         let before = self.outline(&cells);
-        let standing = StateAt {
+        let point = StateAt {
             state: &motion.state,
             inputs: held_inputs(inputs, motion.time(), self.inputs),
             phases: &motion.phases,
         };
-        self.settle(&mut cells, DecisionCause::Jump(before), standing);
+        self.determine_cells(&mut cells, DecisionCause::Jump(before), point);
         motion.regime = self.regime(&cells, motion.time())?;
         Ok(())
     }
@@ -392,7 +392,7 @@ impl Propagator {
     ) -> Result<(), ExactError> {
         let before = motion.regime;
         let values = held_inputs(inputs, motion.time(), self.inputs);
-        let standing = StateAt {
+        let point = StateAt {
             state: &motion.state,
             inputs: values,
             phases: &motion.phases,
@@ -412,7 +412,7 @@ impl Propagator {
             after,
             saltation,
             moves_others,
-        } = self.transition(&limit, standing)?;
+        } = self.transition(&limit, point)?;
         let rank = limit.rank(self.regimes[before].cells[family]);
         let phases = &motion.phases;
         let guard = self.families[family].ranks[rank][0];
@@ -434,12 +434,12 @@ impl Propagator {
         self.release_surfaces(motion, before);
         if by_jump {
             // The jump may exceed more than one limit.
-            motion.jumped = Some(Jumped::Any);
+            motion.jumped = Some(JumpedFamilies::Any);
         } else if self.has_dependents() {
             // The cells of all other families have been determined.
-            motion.jumped = Some(Jumped::Held);
+            motion.jumped = Some(JumpedFamilies::Held);
         } else if moves_others {
-            motion.jumped = Some(Jumped::AnyBut(family));
+            motion.jumped = Some(JumpedFamilies::AnyBut(family));
         }
         self.count_switch(motion, guard)
     }
@@ -460,23 +460,23 @@ impl Propagator {
 /// Advances the state within a regime to the first limit that it reaches, by at most `length` s. Returns this
 /// limit, and true if a jump exceeded it.
 #[inline(always)]
-fn go_on<S: Simd>(
+fn advance_in_regime<S: Simd>(
     simd: S,
     flow: &mut Flow,
     (regime, cells): (&Regime, &[Cell]),
     motion: &mut Motion,
     (inputs, length): (&[f64], f64),
     step: &mut usize,
-) -> (Found, bool) {
+) -> (SearchResult, bool) {
     flow.start(simd, regime, &motion.state, inputs, &motion.phases);
     // Functions have the same indices as their families.
     for departure in &motion.departing {
         match departure.errors {
-            None => flow.depart(simd, regime, departure.family),
+            None => flow.start_departure(simd, regime, departure.family),
             Some(errors) => flow.continue_departure(departure.family, errors),
         }
     }
-    if motion.at_once > AT_ONCE {
+    if motion.at_once > MAX_SIMULTANEOUS_SWITCHES {
         // Only rounding errors separate the surfaces, so the motion is advanced first.
         if let Some(shortest) = regime.step_table.steps.last() {
             flow.step(simd, regime, shortest);
@@ -485,7 +485,7 @@ fn go_on<S: Simd>(
     }
     let jump = match motion.jumped.take() {
         Some(jumped) => {
-            find_jumped_function(simd, flow, regime, |family| jumped.may_be(family, cells))
+            find_jumped_function(simd, flow, regime, |family| jumped.includes(family, cells))
         }
         None => None,
     };
@@ -493,7 +493,7 @@ fn go_on<S: Simd>(
         Some(found) => found,
         None => search(simd, flow, regime, length, step, &mut motion.effort),
     };
-    if found == Found::Nothing {
+    if found == SearchResult::Nothing {
         flow.advance_to(simd, regime, length);
         flow.end_departures(simd, regime);
     }

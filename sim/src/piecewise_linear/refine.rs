@@ -12,7 +12,7 @@ use nalgebra::{Complex, DMatrix};
 use super::error_free::{two_product, two_sum};
 
 /// Maximum number of corrections; each squares the relative error.
-const ROUNDS: usize = 5;
+const MAX_ROUNDS: usize = 5;
 
 /// Errors below this fraction of the eigenvalues are rounding and are not corrected. The vectors of nearly
 /// equal eigenvalues cannot be separated, and need not be.
@@ -53,7 +53,7 @@ impl Subspaces {
     pub fn refine(&mut self, of: &DMatrix<f64>) -> Refinement {
         let mut inseparable = Vec::new();
         let mut wrong = f64::INFINITY;
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_ROUNDS {
             self.refine_rows();
             inseparable.clear();
             let before = std::mem::replace(&mut wrong, self.refine_columns(of, &mut inseparable));
@@ -78,7 +78,7 @@ impl Subspaces {
         let magnitude = |range: &Range<usize>| -> f64 {
             range
                 .clone()
-                .map(|place| self.matrix[(place, place)].norm())
+                .map(|index| self.matrix[(index, index)].norm())
                 .fold(0.0, f64::max)
         };
         let magnitudes: Vec<f64> = self.blocks.iter().map(magnitude).collect();
@@ -86,11 +86,11 @@ impl Subspaces {
         let mut wrong = 0.0_f64;
         for (i, rows) in self.blocks.iter().enumerate() {
             for (j, columns) in self.blocks.iter().enumerate() {
-                let place = (rows.start, columns.start);
+                let index = (rows.start, columns.start);
                 let shape = (rows.len(), columns.len());
-                let found = error.view(place, shape).into_owned();
+                let found = error.view(index, shape).into_owned();
                 if i == j {
-                    let mut block = self.matrix.view_mut(place, shape);
+                    let mut block = self.matrix.view_mut(index, shape);
                     block += found;
                     continue;
                 }
@@ -102,10 +102,10 @@ impl Subspaces {
                 } else {
                     wrong.max(relative)
                 };
-                let solved = sylvester(&self.block(rows), &self.block(columns), &found);
+                let solved = solve_sylvester(&self.block(rows), &self.block(columns), &found);
                 let is_apart = solved.norm() <= MAX_ROTATION_PER_ERROR * relative;
                 if is_apart || (relative > ROUNDING && solved.norm() <= MAX_ROTATION) {
-                    turn.view_mut(place, shape).copy_from(&solved);
+                    turn.view_mut(index, shape).copy_from(&solved);
                 } else if relative > MAX_REMAINING_ERROR {
                     inseparable.push((i, j));
                 }
@@ -178,7 +178,7 @@ impl Subspaces {
 }
 
 /// Returns X of A X - X B = -C.
-fn sylvester(
+fn solve_sylvester(
     a: &DMatrix<Complex<f64>>,
     b: &DMatrix<Complex<f64>>,
     c: &DMatrix<Complex<f64>>,

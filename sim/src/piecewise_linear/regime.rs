@@ -16,10 +16,10 @@ use super::step_table::StepTable;
 
 /// Relative distance of a forcing frequency from an eigenvalue below which it is resonant. The forced and the
 /// free response would then be large and cancel each other.
-const RESONANT: f64 = 1e-3;
+const RESONANCE_FRACTION: f64 = 1e-3;
 
 /// Largest argument of a series.
-const SERIES: f64 = 0.25;
+const MAX_SERIES_ARGUMENT: f64 = 0.25;
 
 /// Relative remainder of a series in powers of a cluster's matrix.
 const REMAINDER: f64 = 1e-19;
@@ -81,7 +81,7 @@ impl Regime {
         if !forcing.is_finite() || frequencies.iter().any(|f| !f.is_finite()) {
             return Err(DecompositionError::NotFinite);
         }
-        let (simple, clustered) = divide(decomposition.parts, &frequencies);
+        let (simple, clustered) = separate_simple_parts(decomposition.parts, &frequencies);
         let mut modes = Modes::new(&simple, &forcing, &frequencies, states);
         let fastest = modes.magnitude.last().copied().unwrap_or(0.0);
         let fastest = clustered
@@ -94,8 +94,8 @@ impl Regime {
             .map(radius)
             .chain([decomposition.integrals.radius]);
         for radius in radii {
-            if radius * window > SERIES {
-                window = SERIES / radius;
+            if radius * window > MAX_SERIES_ARGUMENT {
+                window = MAX_SERIES_ARGUMENT / radius;
             }
         }
         for part in &clustered {
@@ -104,7 +104,7 @@ impl Regime {
         }
         let (integrals, window) =
             Integrals::new(decomposition.integrals, &forcing, &frequencies, window);
-        modes.add_forced(&integrals);
+        modes.add_forced_response(&integrals);
         let clusters: Vec<Cluster> = clustered
             .into_iter()
             .map(|part| Cluster::new(part, &forcing, window))
@@ -119,7 +119,7 @@ impl Regime {
         let layout = Layout::new(&modes, &integrals);
         Ok(Self {
             coordinates: layout.coordinates(&modes, &integrals),
-            states: layout.states(&modes, &integrals, &still_states(&system)),
+            states: layout.states(&modes, &integrals, &find_constant_states(&system)),
             step_table: StepTable::new(&modes, window, fastest),
             system,
             modes,
@@ -243,7 +243,7 @@ impl Layout {
 }
 
 /// Returns true for each state whose rate is identically zero.
-fn still_states(system: &AffineSystem) -> Vec<bool> {
+fn find_constant_states(system: &AffineSystem) -> Vec<bool> {
     let rates = &system.rates;
     let blocks = [
         &rates.state,
@@ -293,7 +293,7 @@ impl Forcing {
 }
 
 /// Separates parts with one eigenvalue away from resonance from all other parts.
-fn divide(parts: Vec<Part>, frequencies: &[f64]) -> (Vec<Part>, Vec<Part>) {
+fn separate_simple_parts(parts: Vec<Part>, frequencies: &[f64]) -> (Vec<Part>, Vec<Part>) {
     parts.into_iter().partition(|part| {
         let rate = part.centre;
         let distance = |frequency: f64| {
@@ -301,7 +301,7 @@ fn divide(parts: Vec<Part>, frequencies: &[f64]) -> (Vec<Part>, Vec<Part>) {
             let lower = (rate + Complex::new(0.0, frequency)).norm();
             upper.min(lower)
         };
-        let near = |f: &f64| distance(*f) < RESONANT * rate.norm().max(f.abs());
+        let near = |f: &f64| distance(*f) < RESONANCE_FRACTION * rate.norm().max(f.abs());
         part.matrix.nrows() == 1 && !frequencies.iter().any(near)
     })
 }

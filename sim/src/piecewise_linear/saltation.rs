@@ -13,7 +13,7 @@ use super::event_function::Linear;
 const ROUNDING: f64 = 1e-10;
 
 /// Returns u of the saltation matrix I + u grad g; `None` if it is not constant.
-pub(super) fn constant(
+pub(super) fn find_constant_saltation(
     before: &AffineSystem,
     after: &AffineSystem,
     function: &Linear,
@@ -25,7 +25,7 @@ pub(super) fn constant(
     if !(still(&function.inputs) && still(&function.sines) && still(&function.cosines)) {
         return None;
     }
-    let rate = along(row, &before.rates);
+    let rate = compute_function_rate(row, &before.rates);
     // Each row of the jump is w row + u rate.state, by least squares.
     let normal = Matrix2::new(
         row.norm_squared(),
@@ -36,7 +36,7 @@ pub(super) fn constant(
     let inverse = normal.try_inverse()?;
     let mut factors = DVector::zeros(states);
     for state in 0..states {
-        let jump = difference(&before.rates, &after.rates, state);
+        let jump = compute_jump(&before.rates, &after.rates, state);
         let right = Vector2::new(row.dot(&jump.state), rate.state.dot(&jump.state));
         let [w, u] = (inverse * right).into();
         let rest = &jump.state - row * w - &rate.state * u;
@@ -65,7 +65,7 @@ pub(super) fn constant(
 }
 
 /// Returns row f as a function of state, inputs and sinusoids.
-fn along(row: &DVector<f64>, rates: &AffineRows) -> Linear {
+fn compute_function_rate(row: &DVector<f64>, rates: &AffineRows) -> Linear {
     let of = |block: &[f64]| -> Vec<f64> {
         let width = block.len() / row.len().max(1);
         (0..width)
@@ -87,7 +87,7 @@ fn along(row: &DVector<f64>, rates: &AffineRows) -> Linear {
 }
 
 /// Returns row `state` of f_after - f_before.
-fn difference(before: &AffineRows, after: &AffineRows, state: usize) -> Linear {
+fn compute_jump(before: &AffineRows, after: &AffineRows, state: usize) -> Linear {
     let (mut a, b) = (Linear::row(after, state), Linear::row(before, state));
     a.state -= b.state;
     a.constant -= b.constant;

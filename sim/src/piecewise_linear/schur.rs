@@ -45,26 +45,26 @@ impl SchurForm {
     /// Returns the eigenvalues in the current order, 1/s.
     pub fn eigenvalues(&self) -> Vec<Complex<f64>> {
         (0..self.triangle.nrows())
-            .map(|place| self.triangle[(place, place)])
+            .map(|index| self.triangle[(index, index)])
             .collect()
     }
 
     /// Sorts the eigenvalues by `key` (stable sort).
     pub fn sort_by_key(&mut self, mut key: Vec<usize>) {
         for end in (1..key.len()).rev() {
-            for place in 0..end {
-                if key[place] > key[place + 1] {
-                    key.swap(place, place + 1);
-                    self.swap(place);
+            for index in 0..end {
+                if key[index] > key[index + 1] {
+                    key.swap(index, index + 1);
+                    self.swap(index);
                 }
             }
         }
     }
 
-    /// Exchanges the eigenvalues `place` and `place` + 1 by a rotation (Golub and Van Loan, Matrix
+    /// Exchanges the eigenvalues `index` and `index` + 1 by a rotation (Golub and Van Loan, Matrix
     /// Computations, 7.6.2).
-    fn swap(&mut self, place: usize) {
-        let (p, q) = (place, place + 1);
+    fn swap(&mut self, index: usize) {
+        let (p, q) = (index, index + 1);
         let difference = self.triangle[(q, q)] - self.triangle[(p, p)];
         let coupling = self.triangle[(p, q)];
         let length = (coupling.norm_sqr() + difference.norm_sqr()).sqrt();
@@ -142,8 +142,8 @@ mod tests {
         let key: Vec<usize> = (0..size).map(|i| (i * 5) % size).collect();
         form.sort_by_key(key.clone());
         assert!(residual(&matrix, &form) < 1e-14);
-        for (place, value) in form.eigenvalues().iter().enumerate() {
-            let from = key.iter().position(|k| *k == place).expect("a permutation");
+        for (index, value) in form.eigenvalues().iter().enumerate() {
+            let from = key.iter().position(|k| *k == index).expect("a permutation");
             assert!((value - before[from]).norm() < 1e-11 * before[from].norm());
         }
     }

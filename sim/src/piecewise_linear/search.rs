@@ -26,11 +26,11 @@ const MAX_NEWTON_STEPS: usize = 60;
 const ROOT_TOLERANCE_ROUNDINGS: f64 = 1e-3;
 
 /// Distance beyond a limit, in rounding errors, above which a function has jumped.
-const JUMP: f64 = 64.0;
+const JUMP_ROUNDINGS: f64 = 64.0;
 
 /// Result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Found {
+pub(super) enum SearchResult {
     /// The flow is at the time at which this function reaches its upper or lower limit.
     Limit {
         /// Index of the function.
@@ -44,7 +44,7 @@ pub(super) enum Found {
 
 /// Counters of a search and its scratch memory.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Effort {
+pub(super) struct SearchStatistics {
     /// Number of steps.
     pub steps: u64,
     /// Number of Newton steps.
@@ -62,44 +62,44 @@ pub(super) fn search<S: Simd>(
     regime: &Regime,
     end: f64,
     first: &mut usize,
-    effort: &mut Effort,
-) -> Found {
+    effort: &mut SearchStatistics,
+) -> SearchResult {
     let steps = &regime.step_table.steps;
     let last = steps.len() - 1;
-    let mut place = (*first).min(last);
+    let mut index = (*first).min(last);
     while flow.tau < end {
         // The first step can be the shortest one that extends beyond the end.
-        while place < last && steps[place + 1].length >= end - flow.tau {
-            place += 1;
+        while index < last && steps[index + 1].length >= end - flow.tau {
+            index += 1;
         }
         let mut halved = false;
         let outcome = loop {
-            match step(simd, flow, regime, place, steps[place].length, end, effort) {
-                Outcome::Halve if place < last => {
-                    place += 1;
+            match step(simd, flow, regime, index, steps[index].length, end, effort) {
+                StepOutcome::Halve if index < last => {
+                    index += 1;
                     halved = true;
                 }
-                Outcome::Halve => break search_grazing(flow, regime, end, effort),
+                StepOutcome::Halve => break search_grazing(flow, regime, end, effort),
                 other => break other,
             }
         };
-        *first = place;
+        *first = index;
         flow.end_departures(simd, regime);
         match outcome {
-            Outcome::Limit(found) => return found,
-            Outcome::End => return Found::Nothing,
-            Outcome::Made | Outcome::Halve if !halved => place = place.saturating_sub(2),
-            Outcome::Made | Outcome::Halve => {}
+            StepOutcome::Limit(found) => return found,
+            StepOutcome::End => return SearchResult::Nothing,
+            StepOutcome::Made | StepOutcome::Halve if !halved => index = index.saturating_sub(2),
+            StepOutcome::Made | StepOutcome::Halve => {}
         }
     }
-    Found::Nothing
+    SearchResult::Nothing
 }
 
-enum Outcome {
+enum StepOutcome {
     Halve,
     Made,
     End,
-    Limit(Found),
+    Limit(SearchResult),
 }
 
 /// A crossing that certainly occurs.
@@ -116,7 +116,12 @@ struct Crossing {
 /// Searches with steps shorter than those of the step table, down to a length in which no function changes by
 /// more than its rounding. A function that grazes its limit then neither reaches nor leaves it.
 #[cold]
-fn search_grazing(flow: &mut Flow, regime: &Regime, end: f64, effort: &mut Effort) -> Outcome {
+fn search_grazing(
+    flow: &mut Flow,
+    regime: &Regime,
+    end: f64,
+    effort: &mut SearchStatistics,
+) -> StepOutcome {
     dispatch_registers!(simd => search_grazing_by(simd, flow, regime, end, effort))
 }
 
@@ -126,25 +131,25 @@ fn search_grazing_by<S: Simd>(
     flow: &mut Flow,
     regime: &Regime,
     end: f64,
-    effort: &mut Effort,
-) -> Outcome {
+    effort: &mut SearchStatistics,
+) -> StepOutcome {
     let last = regime.step_table.steps.len() - 1;
     let mut length = regime.step_table.steps[last].length;
     for event_function in 0..regime.event_functions.len() {
-        flow.sum_up(simd, regime, event_function);
+        flow.evaluate_function(simd, regime, event_function);
     }
     loop {
         length *= 0.5;
         if !flow.is_finite() {
-            return Outcome::End;
+            return StepOutcome::End;
         }
         if is_still(flow, regime, length) {
             flow.shift(simd, regime, length);
             effort.steps += 1;
-            return Outcome::Made;
+            return StepOutcome::Made;
         }
         match step(simd, flow, regime, last, length, end, effort) {
-            Outcome::Halve => {}
+            StepOutcome::Halve => {}
             other => return other,
         }
     }
@@ -170,12 +175,12 @@ fn step<S: Simd>(
     simd: S,
     flow: &mut Flow,
     regime: &Regime,
-    place: usize,
+    index: usize,
     length: f64,
     end: f64,
-    effort: &mut Effort,
-) -> Outcome {
-    let step = &regime.step_table.steps[place];
+    effort: &mut SearchStatistics,
+) -> StepOutcome {
+    let step = &regime.step_table.steps[index];
     effort.crossings.clear();
     let origin = flow.tau;
     let until = origin + length;
@@ -184,10 +189,10 @@ fn step<S: Simd>(
         if flow.is_safe(event_function, until) {
             continue;
         }
-        if !flow.is_summed_up(event_function) {
-            flow.sum_up(simd, regime, event_function);
+        if !flow.is_evaluated(event_function) {
+            flow.evaluate_function(simd, regime, event_function);
             if let Some(found) = find_reached_limit(flow, regime, event_function) {
-                return Outcome::Limit(found);
+                return StepOutcome::Limit(found);
             }
         }
         let limits = regime.event_functions[event_function].limits;
@@ -199,8 +204,8 @@ fn step<S: Simd>(
             |local| classify_step(local, [limits.low, limits.high], length),
         );
         match verdict {
-            Verdict::WithinLimits => flow.note_safe(event_function, until),
-            Verdict::Undecided => return Outcome::Halve,
+            Verdict::WithinLimits => flow.record_safe_time(event_function, until),
+            Verdict::Undecided => return StepOutcome::Halve,
             Verdict::Crossing { upper } => {
                 let guess = flow.local(
                     regime,
@@ -219,21 +224,21 @@ fn step<S: Simd>(
         }
     }
     effort.steps += 1;
-    let Some(first) = first_of_all(simd, flow, regime, effort) else {
+    let Some(first) = locate_first_crossing(simd, flow, regime, effort) else {
         if until >= end {
-            return Outcome::End;
+            return StepOutcome::End;
         }
         if length == step.length {
             flow.step(simd, regime, step);
         } else {
             flow.shift(simd, regime, length);
         }
-        return Outcome::Made;
+        return StepOutcome::Made;
     };
     if flow.tau >= end {
-        return Outcome::End;
+        return StepOutcome::End;
     }
-    Outcome::Limit(Found::Limit {
+    StepOutcome::Limit(SearchResult::Limit {
         event_function: first.event_function,
         upper: first.upper,
     })
@@ -242,16 +247,16 @@ fn step<S: Simd>(
 /// Moves to the first of the certain crossings: to the crossing with the smallest estimate, then back to those
 /// of other functions that turn out to be earlier.
 #[inline(always)]
-fn first_of_all<S: Simd>(
+fn locate_first_crossing<S: Simd>(
     simd: S,
     flow: &mut Flow,
     regime: &Regime,
-    effort: &mut Effort,
+    effort: &mut SearchStatistics,
 ) -> Option<Crossing> {
     let guesses = effort.crossings.iter().copied();
     let mut first = guesses.reduce(|a, b| if b.guess < a.guess { b } else { a })?;
     flow.shift(simd, regime, first.guess - flow.tau);
-    polish(simd, flow, regime, &first, &mut effort.newton);
+    refine_crossing(simd, flow, regime, &first, &mut effort.newton);
     let seeming = first.event_function;
     for crossing in &effort.crossings {
         if crossing.event_function == seeming {
@@ -266,14 +271,14 @@ fn first_of_all<S: Simd>(
             let [near, far] = first.within;
             let guess = (flow.tau + here.newton()).clamp(near, far);
             flow.shift(simd, regime, guess - flow.tau);
-            polish(simd, flow, regime, &first, &mut effort.newton);
+            refine_crossing(simd, flow, regime, &first, &mut effort.newton);
         }
     }
     Some(first)
 }
 
 /// Returns a limit that a function has already reached at the current time.
-fn find_reached_limit(flow: &Flow, regime: &Regime, event_function: usize) -> Option<Found> {
+fn find_reached_limit(flow: &Flow, regime: &Regime, event_function: usize) -> Option<SearchResult> {
     let limits = &regime.event_functions[event_function].limits;
     if flow.is_between(event_function, limits.low, limits.high) {
         return None;
@@ -285,7 +290,7 @@ fn find_reached_limit(flow: &Flow, regime: &Regime, event_function: usize) -> Op
             .into_iter()
             .find(|upper| Distance::to(local, limits, *upper).is_reached(noise))
     })?;
-    Some(Found::Limit {
+    Some(SearchResult::Limit {
         event_function,
         upper,
     })
@@ -299,15 +304,15 @@ pub(super) fn find_jumped_function<S: Simd>(
     flow: &mut Flow,
     regime: &Regime,
     may_have_jumped: impl Fn(usize) -> bool,
-) -> Option<Found> {
+) -> Option<SearchResult> {
     for (event_function, of) in regime.event_functions.iter().enumerate() {
         if !may_have_jumped(of.limits.family) {
             continue;
         }
         for upper in [false, true] {
             let here = distance(simd, flow, regime, event_function, upper);
-            if here.value < -JUMP * here.noise {
-                return Some(Found::Limit {
+            if here.value < -JUMP_ROUNDINGS * here.noise {
+                return Some(SearchResult::Limit {
                     event_function,
                     upper,
                 });
@@ -327,7 +332,7 @@ fn distance<S: Simd>(
     upper: bool,
 ) -> Distance {
     let steps = &regime.step_table.steps;
-    flow.sum_up(simd, regime, event_function);
+    flow.evaluate_function(simd, regime, event_function);
     // No mode is fast compared with the shortest step.
     flow.local(
         regime,
@@ -340,7 +345,7 @@ fn distance<S: Simd>(
 
 /// Moves from a time near a crossing to the crossing, and counts the Newton steps.
 #[inline(always)]
-fn polish<S: Simd>(
+fn refine_crossing<S: Simd>(
     simd: S,
     flow: &mut Flow,
     regime: &Regime,

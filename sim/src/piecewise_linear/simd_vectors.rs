@@ -231,8 +231,8 @@ mod tests {
             let terms = terms_of_expm1(argument.abs());
             dispatch_registers!(simd => kernels::advance_little(simd, &pairs, time, terms, amplitudes));
             let [re, im] = moved;
-            for (place, rate) in rates.iter().enumerate() {
-                let found = Complex::new(re.to_array()[place], im.to_array()[place]);
+            for (index, rate) in rates.iter().enumerate() {
+                let found = Complex::new(re.to_array()[index], im.to_array()[index]);
                 let wanted = expm1(rate * time);
                 assert!((found - wanted).norm() < 1e-15 * wanted.norm());
             }

@@ -104,12 +104,12 @@ impl Propagator {
             observer,
         };
         if let Some(initial) = initial {
-            recorder.samples.take_until(motion.time(), initial);
+            recorder.samples.store_until(motion.time(), initial);
         }
         let ended = self.follow_until(motion, until, inputs, &mut recorder);
         if ended.is_ok() {
             // The last switch may be at the end of the span, up to rounding.
-            recorder.samples.take_until(until, motion.state());
+            recorder.samples.store_until(until, motion.state());
         }
         trajectory.times.append(&mut recorder.samples.times);
         trajectory.states.append(&mut recorder.samples.states);
@@ -153,8 +153,8 @@ impl Recorder<'_, '_> {
 impl Follow for Recorder<'_, '_> {
     fn observe_segment(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
         self.observe(segment, flow);
-        while let Some(after) = self.samples.next_in(segment) {
-            self.samples.take_in(segment, after, flow);
+        while let Some(after) = self.samples.time_to_next(segment) {
+            self.samples.store_next(segment, after, flow);
         }
         (self.progress)(segment.start.advanced_by(segment.tau).time());
     }

@@ -46,8 +46,8 @@ impl Propagator {
             },
         }];
         for (family, cell) in visited.cells.iter().enumerate() {
-            if let Some(rank) = cell.standing_on().filter(|_| family != limit.family) {
-                let side = if *cell == Cell::Bearing(rank, false) {
+            if let Some(rank) = cell.threshold_rank().filter(|_| family != limit.family) {
+                let side = if *cell == Cell::AtLimit(rank, false) {
                     -1.0
                 } else {
                     1.0
@@ -73,7 +73,8 @@ impl Propagator {
             if known.iter().any(|on| on.family == family) {
                 continue;
             }
-            let Some(factors) = express_by(&functions, &coefficients(&visited.functions[family]))
+            let Some(factors) =
+                find_combination(&functions, &coefficients(&visited.functions[family]))
             else {
                 continue;
             };
@@ -108,14 +109,14 @@ impl Propagator {
 
     /// Returns the cells beyond a limit at which the motion is on several surfaces, or `None` if their combined
     /// effect is not the sum of their single effects.
-    pub(super) fn decide_together(
+    pub(super) fn decide_simultaneously(
         &mut self,
         limit: &Limit,
-        standing: StateAt<'_>,
+        point: StateAt<'_>,
     ) -> Option<Vec<Cell>> {
         let met = self.surfaces_at_limit(limit);
         let cells = self.regimes[limit.before].cells.clone();
-        self.decided_of(&met, cells, standing)
+        self.decide_cells(&met, cells, point)
     }
 
     /// Returns the cells of a motion that starts on the thresholds `tied` (family and rank). The other families
@@ -124,7 +125,7 @@ impl Propagator {
         &mut self,
         cells: &[Cell],
         tied: &[(usize, usize)],
-        standing: StateAt<'_>,
+        point: StateAt<'_>,
     ) -> Option<Vec<Cell>> {
         let met: Vec<SurfaceContact> = tied
             .iter()
@@ -137,22 +138,22 @@ impl Propagator {
                 },
             })
             .collect();
-        self.decided_of(&met, cells.to_vec(), standing)
+        self.decide_cells(&met, cells.to_vec(), point)
     }
 
-    fn decided_of(
+    fn decide_cells(
         &mut self,
         met: &[SurfaceContact],
         mut cells: Vec<Cell>,
-        standing: StateAt<'_>,
+        point: StateAt<'_>,
     ) -> Option<Vec<Cell>> {
-        let rates = self.rates_on(met, &cells, standing)?;
+        let rates = self.compute_surface_rates(met, &cells, point)?;
         let arrivals: Vec<Arrival> = met.iter().map(|on| on.arrival).collect();
         let verdicts = decide(&rates, &arrivals)?;
         for (on, verdict) in met.iter().zip(verdicts) {
             cells[on.family] = match verdict {
                 Verdict::Holds(_) => Cell::On(on.rank),
-                Verdict::AtLimit(side) => Cell::Bearing(on.rank, side > 0.0),
+                Verdict::AtLimit(side) => Cell::AtLimit(on.rank, side > 0.0),
                 Verdict::Releases(side) => Cell::Between(on.rank + usize::from(side > 0.0)),
             };
         }
@@ -161,11 +162,11 @@ impl Propagator {
 
     /// Returns the rates of the surfaces' functions by the sides of the surfaces; the other families are in
     /// these cells.
-    fn rates_on(
+    fn compute_surface_rates(
         &mut self,
         met: &[SurfaceContact],
         cells: &[Cell],
-        standing: StateAt<'_>,
+        point: StateAt<'_>,
     ) -> Option<Rates> {
         let mut low = cells.to_vec();
         for on in met {
@@ -174,7 +175,7 @@ impl Propagator {
         let mut all = low.clone();
         let at = |propagator: &mut Self, cells: &[Cell]| {
             let outline = propagator.outline(cells);
-            (outline, propagator.outlines[outline].rates(standing))
+            (outline, propagator.outlines[outline].rates(point))
         };
         let (outline, below) = at(self, &low);
         let mut jumps = Vec::with_capacity(met.len());
@@ -216,7 +217,7 @@ impl Propagator {
         });
         let c = DVector::from_fn(count, |i, _| {
             let function = functions(met[i].family);
-            function.state.dot(&middle) + self.explicit_rate(function, standing.phases)
+            function.state.dot(&middle) + self.explicit_rate(function, point.phases)
         });
         let sharing = Sharing::LeastSquares;
         Some(Rates { w, c, sharing })
@@ -228,7 +229,7 @@ fn coefficients(function: &Linear) -> DVector<f64> {
 }
 
 /// Returns the factors of a linear combination of functions that equals another function, if it exists.
-fn express_by(functions: &[DVector<f64>], wanted: &DVector<f64>) -> Option<DVector<f64>> {
+fn find_combination(functions: &[DVector<f64>], wanted: &DVector<f64>) -> Option<DVector<f64>> {
     let count = functions.len();
     let products = DMatrix::from_fn(count, count, |i, j| functions[i].dot(&functions[j]));
     let right = DVector::from_fn(count, |i, _| functions[i].dot(wanted));

@@ -30,7 +30,7 @@ pub(super) struct Sliding {
 
 /// Returns the motion with the cells of all families, some of which are held. Returns `None` if the jumps are
 /// not constant on the surfaces or the surfaces do not hold the motion.
-pub(super) fn slide(
+pub(super) fn derive_sliding(
     evaluator: &mut AffineEvaluator,
     families: &[ParallelGuards],
     cells: &[Cell],
@@ -58,7 +58,7 @@ pub(super) fn slide(
             return None;
         }
         let threshold = family.threshold(&below, rank);
-        jumps.push(jump(
+        jumps.push(find_constant_jump(
             &below.rates,
             &above.rates,
             &function.state,
@@ -70,7 +70,7 @@ pub(super) fn slide(
 }
 
 /// Returns the constant jump of the rates across a surface row y = threshold; `None` if it is not constant.
-fn jump(
+fn find_constant_jump(
     below: &AffineRows,
     above: &AffineRows,
     row: &DVector<f64>,
@@ -159,7 +159,7 @@ fn combine(below: AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) -
     if are_dependent && !rows.iter().all(|row| is_held(&system, &below, row)) {
         return None;
     }
-    hold(&mut system, rows, jumps);
+    remove_rate_rounding(&mut system, rows, jumps);
     Some(Sliding { system, parts })
 }
 
@@ -211,7 +211,7 @@ fn blocks(rates: &AffineRows) -> [&Vec<f64>; 5] {
 
 /// Removes rounding errors from held rates. For each function, the rate of one state that the surfaces affect
 /// is computed from the others; it is zero if the function depends on no other state.
-fn hold(system: &mut AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) {
+fn remove_rate_rounding(system: &mut AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) {
     let states = system.states;
     let moved: Vec<usize> = (0..states)
         .filter(|state| jumps.iter().any(|jump| jump[*state] != 0.0))

@@ -5,7 +5,7 @@ use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
 use super::propagator::Propagator;
 
 /// Irrational number whose multiples are used as sides. Polynomials of practical models have no zero there.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
+const GOLDEN_RATIO_FRACTION: f64 = 0.618_033_988_749_894_9;
 
 impl Propagator {
     /// Returns true for each state that affects any rate or switching function.
@@ -16,7 +16,7 @@ impl Propagator {
         let nested = usize::from(self.has_dependents());
         for case in 0..guards + 2 + nested {
             let side = |guard: usize| match case == guards + 2 {
-                true => (0.5 + guard as f64 * GOLDEN).fract(),
+                true => (0.5 + guard as f64 * GOLDEN_RATIO_FRACTION).fract(),
                 false => f64::from(u8::from(case == guards + 1 || case == guard)),
             };
             let sides: Vec<f64> = (0..guards).map(side).collect();
@@ -34,7 +34,7 @@ impl Propagator {
 }
 
 /// Returns the fastest rate that switching can add, 1/s: the square root of the largest change of a stiffness.
-pub(super) fn switched_rate(evaluator: &mut AffineEvaluator, system: &AffineSystem) -> f64 {
+pub(super) fn find_switched_rate(evaluator: &mut AffineEvaluator, system: &AffineSystem) -> f64 {
     let (guards, states) = (evaluator.guard_count(), evaluator.states());
     let mut largest: f64 = 0.0;
     for guard in 0..guards {

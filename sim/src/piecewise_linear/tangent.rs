@@ -6,7 +6,7 @@ use fearless_simd::Simd;
 use crate::registers::dispatch_registers;
 use nalgebra::{Complex, DVector};
 
-use super::event_function::monomials;
+use super::event_function::write_monomials;
 use super::flow::Flow;
 use super::propagator::{Change, Follow, Segment};
 use super::regime::{Cluster, Regime};
@@ -49,7 +49,7 @@ impl Tangents {
             let integrals = &regime.integrals;
             integrals.transition(simd, tau, integrals.cause_count(), transition);
             for vector in vectors {
-                neighbour.carry(simd, regime, &expm1, tau, vector);
+                neighbour.propagate_vector(simd, regime, &expm1, tau, vector);
             }
         });
     }
@@ -99,7 +99,7 @@ impl Follow for Tangents {
 impl Neighbour {
     /// Propagates a difference of the state over `tau` s, given the modes' expm1 over that time.
     #[inline(always)]
-    fn carry<S: Simd>(
+    fn propagate_vector<S: Simd>(
         &mut self,
         simd: S,
         regime: &Regime,
@@ -155,7 +155,7 @@ fn add_cluster(cluster: &Cluster, tau: f64, vector: &[f64], sum: &mut [f64]) {
     );
     let start = &cluster.rows * difference;
     let mut powers = vec![0.0; cluster.terms];
-    monomials(tau, &mut powers);
+    write_monomials(tau, &mut powers);
     let mut value = DVector::zeros(start.len());
     for power in powers.iter().rev() {
         value = &cluster.matrix * value + &start * Complex::new(*power, 0.0);

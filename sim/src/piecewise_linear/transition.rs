@@ -1,6 +1,6 @@
 //! Transition at a surface: into the regime beyond it, or onto the surface if the rates beyond it point back.
 
-use super::coincidence::{Crossing, coincident_rank};
+use super::coincidence::{Crossing, find_coincident_rank};
 use super::dependents::{DecisionCause, StateAt};
 use super::error::ExactError;
 use super::event_function::Linear;
@@ -41,7 +41,7 @@ impl Limit {
         match (cell, self.upper) {
             (Cell::Between(above), true) => above,
             (Cell::Between(above), false) => above - 1,
-            (Cell::On(rank) | Cell::Bearing(rank, _), _) => rank,
+            (Cell::On(rank) | Cell::AtLimit(rank, _), _) => rank,
         }
     }
 
@@ -56,10 +56,10 @@ impl Propagator {
     pub(super) fn transition(
         &mut self,
         limit: &Limit,
-        standing: StateAt<'_>,
+        point: StateAt<'_>,
     ) -> Result<Transition, ExactError> {
         if self.has_dependents() {
-            let after = self.adjacent_with_dependents(limit, standing)?;
+            let after = self.adjacent_with_dependents(limit, point)?;
             return Ok(Transition {
                 after,
                 saltation: self.saltation(limit, after),
@@ -78,7 +78,7 @@ impl Propagator {
             moves_others: adjacent.moves_others,
         };
         if adjacent.meets_others
-            && let Some(cells) = self.decide_together(limit, standing)
+            && let Some(cells) = self.decide_simultaneously(limit, point)
         {
             transition.after = self.regime(&cells, limit.t)?;
             transition.saltation = None;
@@ -88,7 +88,7 @@ impl Propagator {
                 state,
                 inputs,
                 phases,
-            } = standing;
+            } = point;
             let rate = |index: usize| self.rate(index, family, state, inputs, phases);
             let (here, there) = (rate(before), rate(adjacent.regime));
             // A motion that has just left the surface, or barely reaches it, has a rate within rounding.
@@ -108,7 +108,7 @@ impl Propagator {
     fn adjacent_with_dependents(
         &mut self,
         limit: &Limit,
-        standing: StateAt<'_>,
+        point: StateAt<'_>,
     ) -> Result<usize, ExactError> {
         let family = limit.family;
         let cells = self.regimes[limit.before].cells.clone();
@@ -123,14 +123,14 @@ impl Propagator {
         let mut after = cells.clone();
         after[family] = cells[family].adjacent(limit.upper);
         if limit.by_jump {
-            self.settle(&mut after, DecisionCause::Jump(outline), standing);
+            self.determine_cells(&mut after, DecisionCause::Jump(outline), point);
             return self.regime(&after, limit.t);
         }
-        self.settle(&mut after, DecisionCause::Crossing(&crossing), standing);
+        self.determine_cells(&mut after, DecisionCause::Crossing(&crossing), point);
         if matches!(cells[family], Cell::Between(_))
-            && self.leads_back(limit, &crossing, &after, standing)
+            && self.points_back(limit, &crossing, &after, point)
         {
-            let held = self.find_held_cells(limit, &crossing, &cells, standing);
+            let held = self.find_held_cells(limit, &crossing, &cells, point);
             let (t, guard) = (limit.t, self.families[family].ranks[rank][0]);
             let held = held.ok_or(ExactError::Sticking { t, guard })?;
             return self.regime(&held, limit.t);
@@ -139,16 +139,16 @@ impl Propagator {
     }
 
     /// Returns true if the rates beyond a surface point back to it and the rates before it point towards it.
-    fn leads_back(
+    fn points_back(
         &mut self,
         limit: &Limit,
         crossing: &Crossing,
         after: &[Cell],
-        standing: StateAt<'_>,
+        point: StateAt<'_>,
     ) -> bool {
         let after = self.outline(after);
-        let (here, _) = self.rate_in(crossing.outline, &crossing.function, standing);
-        let (there, slack) = self.rate_in(after, &crossing.function, standing);
+        let (here, _) = self.rate_in(crossing.outline, &crossing.function, point);
+        let (there, slack) = self.rate_in(after, &crossing.function, point);
         there * limit.outward() < -slack && here * limit.outward() > -slack
     }
 
@@ -159,7 +159,7 @@ impl Propagator {
         limit: &Limit,
         crossing: &Crossing,
         cells: &[Cell],
-        standing: StateAt<'_>,
+        point: StateAt<'_>,
     ) -> Option<Vec<Cell>> {
         let others = (0..cells.len())
             .rev()
@@ -169,7 +169,7 @@ impl Propagator {
                 continue;
             }
             let outline = &self.outlines[crossing.outline];
-            let Some((rank, factor)) = coincident_rank(outline, index, crossing) else {
+            let Some((rank, factor)) = find_coincident_rank(outline, index, crossing) else {
                 continue;
             };
             let upper = limit.upper == (factor > 0.0);
@@ -179,9 +179,9 @@ impl Propagator {
             }
             let mut alone = cells.to_vec();
             alone[index] = inside.adjacent(upper);
-            if self.leads_back(limit, crossing, &alone, standing) {
+            if self.points_back(limit, crossing, &alone, point) {
                 alone[index] = Cell::On(rank);
-                return (!self.is_felt(&alone, index)).then_some(alone);
+                return (!self.affects_other_functions(&alone, index)).then_some(alone);
             }
         }
         None
@@ -192,13 +192,10 @@ impl Propagator {
         &self,
         outline: usize,
         function: &Linear,
-        standing: StateAt<'_>,
+        point: StateAt<'_>,
     ) -> (f64, f64) {
-        let (rate, rounding) = self.outlines[outline].rate(function, standing);
-        (
-            rate + self.explicit_rate(function, standing.phases),
-            rounding,
-        )
+        let (rate, rounding) = self.outlines[outline].rate(function, point);
+        (rate + self.explicit_rate(function, point.phases), rounding)
     }
 
     /// Returns the index of the saltation matrix of a transition, if it is constant.
@@ -211,7 +208,7 @@ impl Propagator {
         let event_function = &visited.regime.event_functions[limit.event_function];
         let limits = &event_function.limits;
         let held = matches!(self.regimes[after].cells[limit.family], Cell::On(_));
-        let constant = saltation::constant(
+        let constant = saltation::find_constant_saltation(
             &visited.regime.system,
             &self.regimes[after].regime.system,
             &event_function.linear,

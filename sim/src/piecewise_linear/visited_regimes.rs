@@ -3,7 +3,7 @@
 
 use nalgebra::Complex;
 
-use super::adjacent_regimes::Adjacent;
+use super::adjacent_regimes::AdjacentRegime;
 use super::clock::Clock;
 use super::coincidence::factor;
 use super::decomposition::DecompositionError;
@@ -13,7 +13,7 @@ use super::event_function::{Limits, Linear};
 use super::parallel_guards::Cell;
 use super::propagator::Propagator;
 use super::regime::Regime;
-use super::sliding::slide;
+use super::sliding::derive_sliding;
 
 /// A regime that a motion has entered. Hybrid systems theory calls it a *mode*; here modes are vibration modes.
 pub(super) struct VisitedRegime {
@@ -24,7 +24,7 @@ pub(super) struct VisitedRegime {
     /// Step-table index at which the last search ended.
     pub step: usize,
     /// Adjacent regime for each function and limit, once known.
-    pub adjacent: Vec<[Option<Adjacent>; 2]>,
+    pub adjacent: Vec<[Option<AdjacentRegime>; 2]>,
 }
 
 impl Propagator {
@@ -45,11 +45,11 @@ impl Propagator {
             Some(family) => {
                 let guard = self.families[family].first;
                 if self.has_dependents()
-                    && (0..cells.len()).any(|family| self.is_felt(cells, family))
+                    && (0..cells.len()).any(|family| self.affects_other_functions(cells, family))
                 {
                     return Err(ExactError::Sticking { t, guard });
                 }
-                let sliding = slide(&mut self.evaluator, &self.families, cells)
+                let sliding = derive_sliding(&mut self.evaluator, &self.families, cells)
                     .ok_or(ExactError::Sticking { t, guard })?;
                 (sliding.system, sliding.parts)
             }
@@ -71,7 +71,7 @@ impl Propagator {
                     };
                     (function, limits)
                 }
-                Cell::Bearing(..) => (functions[index].clone(), Limits::none(index)),
+                Cell::AtLimit(..) => (functions[index].clone(), Limits::none(index)),
                 Cell::On(_) => (
                     parts.remove(0),
                     Limits {
@@ -112,7 +112,7 @@ impl Propagator {
 
     /// Returns the cells of all families at a state, and the families and ranks of thresholds that are met
     /// exactly. A value on a threshold counts as below it.
-    pub(super) fn cells_at(
+    pub(super) fn find_cells_at(
         &mut self,
         state: &[f64],
         inputs: &[f64],
@@ -151,7 +151,7 @@ impl Propagator {
     }
 
     /// Returns the regime of a motion that starts at a state.
-    pub(super) fn regime_at(
+    pub(super) fn find_regime_at(
         &mut self,
         clock: Clock,
         state: &[f64],
@@ -159,23 +159,23 @@ impl Propagator {
     ) -> Result<usize, ExactError> {
         let phases = self.phases_at(clock);
         if self.has_dependents() {
-            let standing = StateAt {
+            let point = StateAt {
                 state,
                 inputs,
                 phases: &phases,
             };
             let mut cells = vec![Cell::Between(0); self.families.len()];
-            self.settle(&mut cells, DecisionCause::Start, standing);
+            self.determine_cells(&mut cells, DecisionCause::Start, point);
             return self.regime(&cells, clock.time());
         }
-        let (mut cells, tied) = self.cells_at(state, inputs, &phases);
+        let (mut cells, tied) = self.find_cells_at(state, inputs, &phases);
         if tied.len() > 1 {
-            let standing = StateAt {
+            let point = StateAt {
                 state,
                 inputs,
                 phases: &phases,
             };
-            if let Some(cells) = self.start_together(&cells, &tied, standing) {
+            if let Some(cells) = self.start_together(&cells, &tied, point) {
                 return self.regime(&cells, clock.time());
             }
         }

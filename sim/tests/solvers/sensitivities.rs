@@ -18,11 +18,11 @@ fn model(text_or_name: &str) -> Model {
 
 fn values(model: &Model, exact: &PiecewiseLinear) -> Vec<f64> {
     let all = model.parameter_values().expect("values");
-    let place = |name: &String| model.parameters.iter().position(|p| p.name == *name);
+    let index = |name: &String| model.parameters.iter().position(|p| p.name == *name);
     exact
         .parameter_names()
         .iter()
-        .map(|name| all[place(name).expect("known")])
+        .map(|name| all[index(name).expect("known")])
         .collect()
 }
 

@@ -67,7 +67,7 @@ fn run(
 }
 
 /// Returns the largest difference between a component of the rows and its expected value.
-fn worst(found: &Trajectory, component: usize, expected: impl Fn(f64) -> f64) -> f64 {
+fn find_largest_error(found: &Trajectory, component: usize, expected: impl Fn(f64) -> f64) -> f64 {
     let rows = found.times.iter().zip(&found.states);
     let errors = rows.map(|(t, state)| (state[component] - expected(*t)).abs());
     errors.fold(0.0, f64::max)
@@ -128,9 +128,9 @@ fn rows_of_stiff_systems_meet_tolerance_without_evaluations() {
     let rows = grid(10.0, 1000);
     for tolerance in [1e-3, 1e-6, 1e-9, 1e-13] {
         let found = run(&system, &[1.0, 1.0], &rows, &radau(tolerance)).expect("an end");
-        let error = worst(&found, 0, |t| (-t).exp());
+        let error = find_largest_error(&found, 0, |t| (-t).exp());
         assert!(error < 3.0 * tolerance, "{error:e} at {tolerance:e}");
-        let error = worst(&found, 1, |t| t.cos() + 1e-7 * t.sin());
+        let error = find_largest_error(&found, 1, |t| t.cos() + 1e-7 * t.sin());
         assert!(error < 3.0 * tolerance, "{error:e} at {tolerance:e}");
         let without = run(&system, &[1.0, 1.0], &[10.0], &radau(tolerance)).expect("an end");
         assert_eq!(without.statistics.evaluations, found.statistics.evaluations);

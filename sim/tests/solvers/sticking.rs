@@ -46,7 +46,7 @@ load_rubs = {{ on = "l", value = "-T_l*sign(dot(l))" }}
 }
 
 /// Additional friction at the motor and in the shaft.
-const MORE: &str = r#"
+const MORE_FRICTION: &str = r#"
 motor_rubs = { on = "m", value = "-T_m*sign(dot(m))" }
 shaft_rubs = { on = "twist", value = "-T_s*sign(dot(m) - dot(l))" }
 "#;
@@ -91,7 +91,7 @@ impl Drive {
     }
 
     /// Returns the state after a number of steps: coordinates, then rates.
-    fn stepped(&self, until: f64, steps: u32) -> [f64; 4] {
+    fn simulate_by_steps(&self, until: f64, steps: u32) -> [f64; 4] {
         let h = until / f64::from(steps);
         let rubbed = [
             ([0.0, 1.0], self.load),
@@ -113,10 +113,10 @@ impl Drive {
                 let mean = [0.5 * (v[0] + next[0]), 0.5 * (v[1] + next[1])];
                 let torques = self.torques(t, middle, mean);
                 let free = [v[0] + h * torques[0] / J_M, v[1] + h * torques[1] / J_L];
-                next = with_friction(free, h, &rubbed, &mut impulses);
+                next = apply_friction(free, h, &rubbed, &mut impulses);
             }
-            for place in 0..2 {
-                q[place] += 0.5 * h * (v[place] + next[place]);
+            for index in 0..2 {
+                q[index] += 0.5 * h * (v[index] + next[index]);
             }
             v = next;
         }
@@ -141,7 +141,7 @@ impl Drive {
 
 /// Returns the speeds after the friction impulses of a step. Each impulse is within its bounds. If it is not at
 /// a bound, its speed is zero.
-fn with_friction(
+fn apply_friction(
     free: [f64; 2],
     h: f64,
     rubbed: &[([f64; 2], f64)],
@@ -150,8 +150,8 @@ fn with_friction(
     let yields = [1.0 / J_M, 1.0 / J_L];
     let mut v = free;
     for ((along, _), impulse) in rubbed.iter().zip(impulses.iter()) {
-        for place in 0..2 {
-            v[place] += yields[place] * along[place] * impulse;
+        for index in 0..2 {
+            v[index] += yields[index] * along[index] * impulse;
         }
     }
     for _ in 0..if rubbed.len() > 1 { 200 } else { 1 } {
@@ -161,8 +161,8 @@ fn with_friction(
             let yielding = along[0] * along[0] * yields[0] + along[1] * along[1] * yields[1];
             let bound = level * h;
             let wanted = (*impulse - speed / yielding).clamp(-bound, bound);
-            for place in 0..2 {
-                v[place] += yields[place] * along[place] * (wanted - *impulse);
+            for index in 0..2 {
+                v[index] += yields[index] * along[index] * (wanted - *impulse);
             }
             changed = changed.max((wanted - *impulse).abs() / bound);
             *impulse = wanted;
@@ -182,7 +182,7 @@ fn equations(more: &str) -> PiecewiseLinear {
 }
 
 /// Returns the state at the end and the number of events.
-fn exact(equations: &PiecewiseLinear, drive: &Drive, until: f64) -> (Vec<f64>, usize) {
+fn simulate_exactly(equations: &PiecewiseLinear, drive: &Drive, until: f64) -> (Vec<f64>, usize) {
     let mut propagator = equations
         .propagator_at(&drive.values())
         .expect("a propagator");
@@ -195,11 +195,11 @@ fn exact(equations: &PiecewiseLinear, drive: &Drive, until: f64) -> (Vec<f64>, u
 /// Asserts that the time stepping converges to the exact motion. The largest difference, relative to the
 /// largest angles and speeds, is of first order: it falls below a third for steps of an eighth, and is small
 /// for the shortest steps.
-fn agree(drive: &Drive, until: f64) {
-    let (wanted, _) = exact(&equations(MORE), drive, until);
+fn assert_agreement(drive: &Drive, until: f64) {
+    let (wanted, _) = simulate_exactly(&equations(MORE_FRICTION), drive, until);
     let sizes = [0.1, 0.1, 10.0, 10.0];
     let difference = |steps: u32| {
-        let found = drive.stepped(until, steps);
+        let found = drive.simulate_by_steps(until, steps);
         let pairs = found.iter().zip(&wanted).zip(sizes);
         pairs.fold(0.0_f64, |worst, ((a, b), size)| {
             worst.max((a - b).abs() / size)
@@ -226,7 +226,7 @@ fn drives_of_a_parameter_grid_match_time_stepping() {
                 b: 0.5_f64.to_radians(),
                 ..PLAIN
             };
-            let (_, switches) = exact(&equations, &drive, 10.0);
+            let (_, switches) = simulate_exactly(&equations, &drive, 10.0);
             // A few events occur per turn of the motor, and more if the shaft bounces in its play.
             assert!(switches < 10 * 500, "{drive:?}: {switches} switches");
         }
@@ -242,7 +242,7 @@ fn load_breaking_away_matches_time_stepping() {
         (1.0, 50.0),
         (2.0, 5.0),
     ] {
-        agree(
+        assert_agreement(
             &Drive {
                 torque,
                 omega,
@@ -259,7 +259,7 @@ fn torque_near_friction_level_matches_time_stepping() {
         let torque = 0.4 * (1.0 + part);
         // Without play the shaft transmits the torque at once.
         for b in [0.0, 1e-5] {
-            agree(
+            assert_agreement(
                 &Drive {
                     torque,
                     b,
@@ -274,9 +274,9 @@ fn torque_near_friction_level_matches_time_stepping() {
 
 #[test]
 fn drives_without_play_or_damping_match_time_stepping() {
-    agree(&Drive { b: 0.0, ..PLAIN }, 0.25);
+    assert_agreement(&Drive { b: 0.0, ..PLAIN }, 0.25);
     for b_m in [0.0, 1e-12, 1e-7] {
-        agree(
+        assert_agreement(
             &Drive {
                 b_m,
                 torque: 0.7,
@@ -291,7 +291,7 @@ fn drives_without_play_or_damping_match_time_stepping() {
 fn two_and_three_frictions_match_time_stepping() {
     for (motor, shaft) in [(0.2, 0.0), (0.4, 0.0), (0.0, 0.1), (0.3, 0.2)] {
         for omega in [12.0, 40.0] {
-            agree(
+            assert_agreement(
                 &Drive {
                     motor,
                     shaft,

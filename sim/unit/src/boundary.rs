@@ -7,10 +7,10 @@
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::refusal::{Outcome, Refusal, Status, invalid};
+use crate::rejection::{Outcome, Rejection, Status, invalid};
 use crate::resources::derive_specification;
 use crate::saved_state::SavedState;
-use crate::unit::{ANY, Kind, Unit};
+use crate::unit::{ANY_MODE, Kind, Unit};
 
 /// Category of all messages.
 const CATEGORY: &CStr = c"logStatusError";
@@ -55,10 +55,10 @@ impl Messages {
         }
     }
 
-    pub fn log(&self, refusal: &Refusal) {
+    pub fn log(&self, rejection: &Rejection) {
         // A C string ends at its first null character.
-        let text = CString::new(refusal.message.replace('\0', " ")).unwrap_or_default();
-        let status = refusal.status as c_int;
+        let text = CString::new(rejection.message.replace('\0', " ")).unwrap_or_default();
+        let status = rejection.status as c_int;
         match self.logger {
             Logger::None => {}
             // SAFETY: the importer's function, with the arguments that the standard defines; the format has one
@@ -137,7 +137,7 @@ pub unsafe fn write<T>(pointer: *mut T, value: T, what: &str) -> Outcome {
     Ok(())
 }
 
-fn null_pointer(what: &str) -> Refusal {
+fn null_pointer(what: &str) -> Rejection {
     invalid(format!("a null pointer in place of {what}"))
 }
 
@@ -170,8 +170,8 @@ pub unsafe fn instantiate(
             has_failed: false,
         }))
         .cast(),
-        Err(refusal) => {
-            messages.log(&refusal);
+        Err(rejection) => {
+            messages.log(&rejection);
             std::ptr::null_mut()
         }
     }
@@ -219,14 +219,14 @@ pub unsafe fn call(
     };
     match outcome {
         Ok(()) => Status::Ok as c_int,
-        Err(refusal) => {
-            messages.log(&refusal);
-            refusal.status as c_int
+        Err(rejection) => {
+            messages.log(&rejection);
+            rejection.status as c_int
         }
     }
 }
 
-fn internal_error() -> Refusal {
+fn internal_error() -> Rejection {
     invalid("internal error of the unit; the instance cannot be used any more: please report it")
 }
 
@@ -234,9 +234,9 @@ fn internal_error() -> Refusal {
 ///
 /// # Safety
 /// Same as [`call`].
-pub unsafe fn refuse(component: *mut c_void, refusal: Refusal) -> c_int {
+pub unsafe fn reject(component: *mut c_void, rejection: Rejection) -> c_int {
     // SAFETY: by the contract of this function.
-    unsafe { call(component, (ANY, ""), |_| Err(refusal)) }
+    unsafe { call(component, (ANY_MODE, ""), |_| Err(rejection)) }
 }
 
 /// Accepts a call without variables, and rejects a call for variables of a type that the unit does not have.
@@ -246,7 +246,7 @@ pub unsafe fn refuse(component: *mut c_void, refusal: Refusal) -> c_int {
 pub unsafe fn accept_none(component: *mut c_void, count: usize, reason: &str) -> c_int {
     // SAFETY: by the contract of this function.
     unsafe {
-        call(component, (ANY, ""), |_| match count {
+        call(component, (ANY_MODE, ""), |_| match count {
             0 => Ok(()),
             _ => Err(invalid(reason)),
         })
@@ -254,7 +254,7 @@ pub unsafe fn accept_none(component: *mut c_void, count: usize, reason: &str) ->
 }
 
 /// Reason for a rejection of variables of other types.
-pub const NO_SUCH_TYPE: &str = "there are no variables of this type";
+pub const NO_SUCH_TYPE: &str = "the unit has no variables of this type";
 
 /// Saves the state of an instance into a new saved state, or into the one that `saved` points to.
 ///
@@ -263,7 +263,7 @@ pub const NO_SUCH_TYPE: &str = "there are no variables of this type";
 pub unsafe fn save(component: *mut c_void, saved: *mut *mut c_void, name: &str) -> c_int {
     // SAFETY: by the contract of this function.
     unsafe {
-        call(component, (ANY, name), |unit| {
+        call(component, (ANY_MODE, name), |unit| {
             let state = unit.save();
             match saved
                 .as_ref()
@@ -288,7 +288,7 @@ pub unsafe fn save(component: *mut c_void, saved: *mut *mut c_void, name: &str) 
 pub unsafe fn restore(component: *mut c_void, saved: *mut c_void, name: &str) -> c_int {
     // SAFETY: by the contract of this function.
     unsafe {
-        call(component, (ANY, name), |unit| {
+        call(component, (ANY_MODE, name), |unit| {
             let saved = saved.cast::<SavedState>().as_ref();
             unit.restore(saved.ok_or_else(|| null_pointer("a saved state"))?)
         })
@@ -302,7 +302,7 @@ pub unsafe fn restore(component: *mut c_void, saved: *mut c_void, name: &str) ->
 pub unsafe fn free_saved(component: *mut c_void, saved: *mut *mut c_void, name: &str) -> c_int {
     // SAFETY: by the contract of this function.
     unsafe {
-        call(component, (ANY, name), |_| {
+        call(component, (ANY_MODE, name), |_| {
             if let Some(saved) = saved.as_mut()
                 && !saved.is_null()
             {
@@ -326,7 +326,7 @@ pub unsafe fn write_serialised_length(
 ) -> c_int {
     // SAFETY: by the contract of this function.
     unsafe {
-        call(component, (ANY, name), |unit| {
+        call(component, (ANY_MODE, name), |unit| {
             let saved = saved.cast::<SavedState>().as_ref();
             let content = unit.serialise(saved.ok_or_else(|| null_pointer("a saved state"))?);
             write(size, content.len(), "a size")
@@ -346,12 +346,13 @@ pub unsafe fn serialise(
 ) -> c_int {
     // SAFETY: by the contract of this function.
     unsafe {
-        call(component, (ANY, name), |unit| {
+        call(component, (ANY_MODE, name), |unit| {
             let saved = saved.cast::<SavedState>().as_ref();
             let content = unit.serialise(saved.ok_or_else(|| null_pointer("a saved state"))?);
             let bytes = array_mut(bytes, size, "the bytes of a saved state")?;
             let room = bytes.get_mut(..content.len());
-            let room = room.ok_or_else(|| invalid("no room for the bytes of a saved state"))?;
+            let room = room
+                .ok_or_else(|| invalid("the array is too small for the bytes of a saved state"))?;
             room.copy_from_slice(&content);
             Ok(())
         })
@@ -370,7 +371,7 @@ pub unsafe fn deserialise(
 ) -> c_int {
     // SAFETY: by the contract of this function.
     unsafe {
-        call(component, (ANY, name), |unit| {
+        call(component, (ANY_MODE, name), |unit| {
             if saved.is_null() {
                 return Err(null_pointer("a saved state"));
             }
@@ -396,19 +397,23 @@ pub struct Derivative {
 /// Writes directional or adjoint derivatives.
 ///
 /// # Safety Same as [`call`]; each array has one element for each of its variables.
-pub unsafe fn differentiate(component: *mut c_void, asked: &Derivative, name: &str) -> c_int {
-    let (given, wanted) = match asked.backward {
-        true => (asked.unknowns.1, asked.knowns.1),
-        false => (asked.knowns.1, asked.unknowns.1),
+pub unsafe fn differentiate(component: *mut c_void, derivative: &Derivative, name: &str) -> c_int {
+    let (given, wanted) = match derivative.backward {
+        true => (derivative.unknowns.1, derivative.knowns.1),
+        false => (derivative.knowns.1, derivative.unknowns.1),
     };
     // SAFETY: by the contract of this function.
     unsafe {
-        call(component, (ANY, name), |unit| {
-            let unknowns = array(asked.unknowns.0, asked.unknowns.1, "value references")?;
-            let knowns = array(asked.knowns.0, asked.knowns.1, "value references")?;
-            let seed = array(asked.seed, given, "derivatives")?;
-            let out = array_mut(asked.sensitivity, wanted, "derivatives")?;
-            let found = unit.differentiate(asked.backward, (unknowns, knowns), seed)?;
+        call(component, (ANY_MODE, name), |unit| {
+            let unknowns = array(
+                derivative.unknowns.0,
+                derivative.unknowns.1,
+                "value references",
+            )?;
+            let knowns = array(derivative.knowns.0, derivative.knowns.1, "value references")?;
+            let seed = array(derivative.seed, given, "derivatives")?;
+            let out = array_mut(derivative.sensitivity, wanted, "derivatives")?;
+            let found = unit.differentiate(derivative.backward, (unknowns, knowns), seed)?;
             out.copy_from_slice(&found);
             Ok(())
         })
@@ -427,9 +432,9 @@ pub unsafe fn write_vector(
 ) -> c_int {
     // SAFETY: by the contract of this function.
     unsafe {
-        call(component, (ANY, name), |unit| {
+        call(component, (ANY_MODE, name), |unit| {
             let values = values(unit)?;
-            Unit::check_length(count, values.len(), "numbers are asked for")?;
+            Unit::check_length(count, values.len(), "numbers are requested")?;
             array_mut(out, count, "numbers")?.copy_from_slice(&values);
             Ok(())
         })

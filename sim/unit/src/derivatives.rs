@@ -9,7 +9,7 @@ use eomgen_compiled_model::{Jacobian, JacobianEvaluator};
 use eomgen_sim::inputs::HeldInputs;
 
 use crate::layout::Variable;
-use crate::refusal::{Outcome, invalid, unavailable};
+use crate::rejection::{Outcome, invalid, unavailable};
 use crate::unit::{External, Unit};
 
 /// Step of a central difference, relative to the size of the variable: the cube root of the unit roundoff.
@@ -27,13 +27,13 @@ impl Unit {
         (unknowns, knowns): (&[u32], &[u32]),
         seed: &[f64],
     ) -> Outcome<Vec<f64>> {
-        let unknowns = self.find_all(unknowns, |variable| {
+        let unknowns = self.find_variables(unknowns, |variable| {
             matches!(
                 variable,
                 Variable::State(_) | Variable::Rate(_) | Variable::Observable(_)
             )
         })?;
-        let knowns = self.find_all(knowns, |variable| {
+        let knowns = self.find_variables(knowns, |variable| {
             matches!(
                 variable,
                 Variable::State(_) | Variable::Input(_) | Variable::Parameter(_)
@@ -45,7 +45,7 @@ impl Unit {
             unknowns.len()
         };
         let mut sensitivity = vec![0.0; wanted];
-        let columns = self.columns(&knowns)?;
+        let columns = self.compute_columns(&knowns)?;
         for (place, (known, column)) in knowns.iter().zip(&columns).enumerate() {
             for (row, unknown) in unknowns.iter().enumerate() {
                 let entry = match unknown {
@@ -61,11 +61,11 @@ impl Unit {
         }
         match sensitivity.iter().all(|entry| entry.is_finite()) {
             true => Ok(sensitivity),
-            false => Err(unavailable("a derivative is no finite number")),
+            false => Err(unavailable("a derivative is not finite")),
         }
     }
 
-    fn find_all(
+    fn find_variables(
         &self,
         references: &[u32],
         fits: impl Fn(&Variable) -> bool,
@@ -78,18 +78,18 @@ impl Unit {
         match found.iter().all(fits) {
             true => Ok(found),
             false => Err(invalid(
-                "there are derivatives of rates, states and outputs, by states, inputs and parameters",
+                "derivatives are available for rates, states and outputs, with respect to states, inputs and parameters",
             )),
         }
     }
 
     /// Returns the derivatives of rates and observables with respect to each of these variables.
-    fn columns(&mut self, knowns: &[Variable]) -> Outcome<Vec<Values>> {
+    fn compute_columns(&mut self, knowns: &[Variable]) -> Outcome<Vec<Values>> {
         let (t, state) = (self.now.t, self.now.state.clone());
         let motion = self.external()?;
         if motion.is_beyond_surface(t, &state) {
             return Err(unavailable(
-                "no derivatives beyond a switching surface whose event has not been handled",
+                "derivatives are not available beyond a switching surface before its event is handled",
             ));
         }
         match motion.system().is_free() {
@@ -160,8 +160,8 @@ impl Unit {
         };
         let [above, below] = [value + step, value - step];
         let (up, down) = (
-            self.values_with(known, above)?,
-            self.values_with(known, below)?,
+            self.evaluate_with(known, above)?,
+            self.evaluate_with(known, below)?,
         );
         let entries = up.iter().zip(&down);
         Ok(entries
@@ -170,7 +170,7 @@ impl Unit {
     }
 
     /// Returns rates and observables with another value of a variable, in the current modes.
-    fn values_with(&mut self, known: Variable, value: f64) -> Outcome<Values> {
+    fn evaluate_with(&mut self, known: Variable, value: f64) -> Outcome<Values> {
         let (t, mut state) = (self.now.t, self.now.state.clone());
         let layout = self.layout;
         match known {
@@ -181,7 +181,7 @@ impl Unit {
                 let mut motion = self.start_external(&parameters, &modes)?;
                 if motion.modes() != modes {
                     return Err(unavailable(
-                        "no derivative by a parameter whose change ends the rest of the motion",
+                        "the derivative with respect to a parameter does not exist: a change of it ends the rest of the motion",
                     ));
                 }
                 Ok(evaluate_motion(&mut motion, layout.observables, t, &state))

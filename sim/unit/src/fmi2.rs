@@ -5,11 +5,11 @@ use std::ffi::{c_char, c_int, c_void};
 
 use crate::boundary::{
     Derivative, Logger, Logger2, NO_SUCH_TYPE, accept_none, array, array_mut, call, deserialise,
-    differentiate, free_instance, free_saved, instantiate, refuse, restore, save, serialise, write,
+    differentiate, free_instance, free_saved, instantiate, reject, restore, save, serialise, write,
     write_serialised_length, write_vector,
 };
-use crate::refusal::{Status, invalid, unavailable};
-use crate::unit::{ANY, Kind, Mode, Unit};
+use crate::rejection::{Status, invalid, unavailable};
+use crate::unit::{ANY_MODE, Kind, Mode, Unit};
 
 const EVENT: u8 = Mode::Event as u8;
 const CONTINUOUS: u8 = Mode::Continuous as u8;
@@ -58,7 +58,7 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
 ) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
     unsafe {
-        call(c, (ANY, "fmi2SetDebugLogging"), |_| {
+        call(c, (ANY_MODE, "fmi2SetDebugLogging"), |_| {
             array(categories, count, "categories").map(|_| ())
         })
     }
@@ -157,7 +157,7 @@ pub unsafe extern "C" fn fmi2Terminate(c: *mut c_void) -> c_int {
 pub unsafe extern "C" fn fmi2Reset(c: *mut c_void) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
     unsafe {
-        call(c, (ANY, "fmi2Reset"), |unit| {
+        call(c, (ANY_MODE, "fmi2Reset"), |unit| {
             unit.reset();
             Ok(())
         })
@@ -173,7 +173,7 @@ pub unsafe extern "C" fn fmi2GetReal(
 ) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
     unsafe {
-        call(c, (ANY, "fmi2GetReal"), |unit| {
+        call(c, (ANY_MODE, "fmi2GetReal"), |unit| {
             let references = array(references, count, "value references")?;
             unit.get_values(references, array_mut(values, count, "values")?)
         })
@@ -189,7 +189,7 @@ pub unsafe extern "C" fn fmi2SetReal(
 ) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
     unsafe {
-        call(c, (ANY, "fmi2SetReal"), |unit| {
+        call(c, (ANY_MODE, "fmi2SetReal"), |unit| {
             let references = array(references, count, "value references")?;
             unit.set_values(references, array(values, count, "values")?)
         })
@@ -197,7 +197,7 @@ pub unsafe extern "C" fn fmi2SetReal(
 }
 
 /// Exports functions that reject variables of a type that no unit has.
-macro_rules! refuse_type {
+macro_rules! reject_type {
     ($($get:ident $set:ident)*) => {$(
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn $get(
@@ -223,7 +223,7 @@ macro_rules! refuse_type {
     )*};
 }
 
-refuse_type! {
+reject_type! {
     fmi2GetInteger fmi2SetInteger
     fmi2GetBoolean fmi2SetBoolean
     fmi2GetString fmi2SetString
@@ -289,7 +289,7 @@ pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     seed: *const f64,
     sensitivity: *mut f64,
 ) -> c_int {
-    let asked = Derivative {
+    let derivative = Derivative {
         unknowns: (unknowns, unknown_count),
         knowns: (knowns, known_count),
         seed,
@@ -297,7 +297,7 @@ pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
         backward: false,
     };
     // SAFETY: the importer's pointers, see `boundary`.
-    unsafe { differentiate(c, &asked, "fmi2GetDirectionalDerivative") }
+    unsafe { differentiate(c, &derivative, "fmi2GetDirectionalDerivative") }
 }
 
 #[unsafe(no_mangle)]
@@ -456,7 +456,7 @@ pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     _values: *mut f64,
 ) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
-    unsafe { accept_none(c, count, "derivatives of outputs by the time are not given") }
+    unsafe { accept_none(c, count, "time derivatives of outputs are not provided") }
 }
 
 #[unsafe(no_mangle)]
@@ -472,36 +472,36 @@ pub unsafe extern "C" fn fmi2DoStep(
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2CancelStep(c: *mut c_void) -> c_int {
-    let reason = "there is no step to cancel: steps are not asynchronous";
+    let reason = "no step can be cancelled: steps are not asynchronous";
     // SAFETY: the importer's pointers, see `boundary`.
-    unsafe { refuse(c, invalid(reason)) }
+    unsafe { reject(c, invalid(reason)) }
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealStatus(c: *mut c_void, kind: c_int, value: *mut f64) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
     unsafe {
-        call(c, (ANY, "fmi2GetRealStatus"), |unit| match kind {
+        call(c, (ANY_MODE, "fmi2GetRealStatus"), |unit| match kind {
             LAST_SUCCESSFUL_TIME => write(value, unit.now.t, "a status"),
             _ => Err(unavailable(NO_STATUS)),
         })
     }
 }
 
-const NO_STATUS: &str = "there is no such status";
+const NO_STATUS: &str = "this status kind is not supported";
 
 /// Exports functions that reject a status kind that the unit does not have.
-macro_rules! refuse_status {
+macro_rules! reject_status {
     ($($name:ident)*) => {$(
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn $name(c: *mut c_void, _kind: c_int, _value: *mut c_void) -> c_int {
             // SAFETY: the importer's pointers, see `boundary`.
-            unsafe { refuse(c, unavailable(NO_STATUS)) }
+            unsafe { reject(c, unavailable(NO_STATUS)) }
         }
     )*};
 }
 
-refuse_status! { fmi2GetStatus fmi2GetIntegerStatus fmi2GetBooleanStatus fmi2GetStringStatus }
+reject_status! { fmi2GetStatus fmi2GetIntegerStatus fmi2GetBooleanStatus fmi2GetStringStatus }
 
 // The values must be those of the FMI standard.
 const _: () = assert!(Status::Discard as c_int == 2 && Status::Error as c_int == 3);

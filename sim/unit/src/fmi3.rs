@@ -5,11 +5,11 @@ use std::ffi::{c_char, c_int, c_void};
 
 use crate::boundary::{
     Derivative, Logger, Logger3, Messages, NO_SUCH_TYPE, accept_none, array, array_mut, call,
-    deserialise, differentiate, free_instance, free_saved, instantiate, refuse, restore, save,
+    deserialise, differentiate, free_instance, free_saved, instantiate, reject, restore, save,
     serialise, write, write_serialised_length, write_vector,
 };
-use crate::refusal::{Outcome, invalid};
-use crate::unit::{ANY, Kind, Mode, Unit};
+use crate::rejection::{Outcome, invalid};
+use crate::unit::{ANY_MODE, Kind, Mode, Unit};
 
 const EVENT: u8 = Mode::Event as u8;
 const CONTINUOUS: u8 = Mode::Continuous as u8;
@@ -29,7 +29,7 @@ pub unsafe extern "C" fn fmi3SetDebugLogging(
 ) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
     unsafe {
-        call(c, (ANY, "fmi3SetDebugLogging"), |_| {
+        call(c, (ANY_MODE, "fmi3SetDebugLogging"), |_| {
             array(categories, count, "categories").map(|_| ())
         })
     }
@@ -91,7 +91,8 @@ pub extern "C" fn fmi3InstantiateScheduledExecution(
     _unlock: *const c_void,
 ) -> *mut c_void {
     let logger = logger.map_or(Logger::None, Logger::Three);
-    Messages::new(None, (environment, logger)).log(&invalid("there is no scheduled execution"));
+    Messages::new(None, (environment, logger))
+        .log(&invalid("scheduled execution is not supported"));
     std::ptr::null_mut()
 }
 
@@ -161,7 +162,7 @@ pub unsafe extern "C" fn fmi3Terminate(c: *mut c_void) -> c_int {
 pub unsafe extern "C" fn fmi3Reset(c: *mut c_void) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
     unsafe {
-        call(c, (ANY, "fmi3Reset"), |unit| {
+        call(c, (ANY_MODE, "fmi3Reset"), |unit| {
             unit.reset();
             Ok(())
         })
@@ -178,7 +179,7 @@ pub unsafe extern "C" fn fmi3GetFloat64(
 ) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
     unsafe {
-        call(c, (ANY, "fmi3GetFloat64"), |unit| {
+        call(c, (ANY_MODE, "fmi3GetFloat64"), |unit| {
             check_counts(count, value_count)?;
             let references = array(references, count, "value references")?;
             unit.get_values(references, array_mut(values, count, "values")?)
@@ -196,7 +197,7 @@ pub unsafe extern "C" fn fmi3SetFloat64(
 ) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
     unsafe {
-        call(c, (ANY, "fmi3SetFloat64"), |unit| {
+        call(c, (ANY_MODE, "fmi3SetFloat64"), |unit| {
             check_counts(count, value_count)?;
             let references = array(references, count, "value references")?;
             unit.set_values(references, array(values, count, "values")?)
@@ -208,13 +209,13 @@ fn check_counts(references: usize, values: usize) -> Outcome {
     match references == values {
         true => Ok(()),
         false => Err(invalid(
-            "not as many values as value references: all variables are scalars",
+            "the numbers of values and value references differ; all variables are scalars",
         )),
     }
 }
 
 /// Exports functions that reject variables of a type that no unit has.
-macro_rules! refuse_type {
+macro_rules! reject_type {
     ($($get:ident $set:ident)*) => {$(
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn $get(
@@ -242,7 +243,7 @@ macro_rules! refuse_type {
     )*};
 }
 
-refuse_type! {
+reject_type! {
     fmi3GetFloat32 fmi3SetFloat32
     fmi3GetInt8 fmi3SetInt8
     fmi3GetUInt8 fmi3SetUInt8
@@ -257,7 +258,7 @@ refuse_type! {
 }
 
 /// Exports functions of clocks, which have one to three arrays after the value references.
-macro_rules! refuse_clock {
+macro_rules! reject_clock {
     ($($name:ident($($array:ident),*))*) => {$(
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn $name(
@@ -272,7 +273,7 @@ macro_rules! refuse_clock {
     )*};
 }
 
-refuse_clock! {
+reject_clock! {
     fmi3GetClock(_values)
     fmi3SetClock(_values)
     fmi3GetIntervalDecimal(_intervals, _qualifiers)
@@ -312,7 +313,7 @@ pub unsafe extern "C" fn fmi3SetBinary(
 }
 
 const CONSTANT_DEPENDENCIES: &str =
-    "dependencies are those of the description: no variable changes its size";
+    "the dependencies are constant and listed in modelDescription.xml";
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3GetNumberOfVariableDependencies(
@@ -321,7 +322,7 @@ pub unsafe extern "C" fn fmi3GetNumberOfVariableDependencies(
     _count: *mut usize,
 ) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
-    unsafe { refuse(c, invalid(CONSTANT_DEPENDENCIES)) }
+    unsafe { reject(c, invalid(CONSTANT_DEPENDENCIES)) }
 }
 
 #[unsafe(no_mangle)]
@@ -335,7 +336,7 @@ pub unsafe extern "C" fn fmi3GetVariableDependencies(
     _count: usize,
 ) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
-    unsafe { refuse(c, invalid(CONSTANT_DEPENDENCIES)) }
+    unsafe { reject(c, invalid(CONSTANT_DEPENDENCIES)) }
 }
 
 #[unsafe(no_mangle)]
@@ -403,9 +404,14 @@ pub unsafe extern "C" fn fmi3GetDirectionalDerivative(
     let counts = (known_count, unknown_count);
     if counts != (seed_count, sensitivity_count) {
         // SAFETY: the importer's pointers, see `boundary`.
-        return unsafe { refuse(c, invalid("not as many derivatives as variables")) };
+        return unsafe {
+            reject(
+                c,
+                invalid("the numbers of derivatives and variables differ"),
+            )
+        };
     }
-    let asked = Derivative {
+    let derivative = Derivative {
         unknowns: (unknowns, unknown_count),
         knowns: (knowns, known_count),
         seed,
@@ -413,7 +419,7 @@ pub unsafe extern "C" fn fmi3GetDirectionalDerivative(
         backward: false,
     };
     // SAFETY: the importer's pointers, see `boundary`.
-    unsafe { differentiate(c, &asked, "fmi3GetDirectionalDerivative") }
+    unsafe { differentiate(c, &derivative, "fmi3GetDirectionalDerivative") }
 }
 
 #[unsafe(no_mangle)]
@@ -431,9 +437,14 @@ pub unsafe extern "C" fn fmi3GetAdjointDerivative(
     let counts = (unknown_count, known_count);
     if counts != (seed_count, sensitivity_count) {
         // SAFETY: the importer's pointers, see `boundary`.
-        return unsafe { refuse(c, invalid("not as many derivatives as variables")) };
+        return unsafe {
+            reject(
+                c,
+                invalid("the numbers of derivatives and variables differ"),
+            )
+        };
     }
-    let asked = Derivative {
+    let derivative = Derivative {
         unknowns: (unknowns, unknown_count),
         knowns: (knowns, known_count),
         seed,
@@ -441,25 +452,40 @@ pub unsafe extern "C" fn fmi3GetAdjointDerivative(
         backward: true,
     };
     // SAFETY: the importer's pointers, see `boundary`.
-    unsafe { differentiate(c, &asked, "fmi3GetAdjointDerivative") }
+    unsafe { differentiate(c, &derivative, "fmi3GetAdjointDerivative") }
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3EnterConfigurationMode(c: *mut c_void) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
-    unsafe { refuse(c, invalid("there is nothing to configure")) }
+    unsafe {
+        reject(
+            c,
+            invalid("the unit has no structural parameters, so it has no configuration mode"),
+        )
+    }
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3ExitConfigurationMode(c: *mut c_void) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
-    unsafe { refuse(c, invalid("there is nothing to configure")) }
+    unsafe {
+        reject(
+            c,
+            invalid("the unit has no structural parameters, so it has no configuration mode"),
+        )
+    }
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3EnterStepMode(c: *mut c_void) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
-    unsafe { refuse(c, invalid("co-simulation has no event mode to come from")) }
+    unsafe {
+        reject(
+            c,
+            invalid("the step mode cannot be entered: co-simulation has no event mode"),
+        )
+    }
 }
 
 #[unsafe(no_mangle)]
@@ -616,7 +642,7 @@ pub unsafe extern "C" fn fmi3GetNumberOfEventIndicators(
 ) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
     unsafe {
-        call(c, (ANY, "fmi3GetNumberOfEventIndicators"), |unit| {
+        call(c, (ANY_MODE, "fmi3GetNumberOfEventIndicators"), |unit| {
             write(count, unit.layout.indicators, "a count")
         })
     }
@@ -629,7 +655,7 @@ pub unsafe extern "C" fn fmi3GetNumberOfContinuousStates(
 ) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
     unsafe {
-        call(c, (ANY, "fmi3GetNumberOfContinuousStates"), |unit| {
+        call(c, (ANY_MODE, "fmi3GetNumberOfContinuousStates"), |unit| {
             write(count, unit.layout.states, "a count")
         })
     }
@@ -645,7 +671,7 @@ pub unsafe extern "C" fn fmi3GetOutputDerivatives(
     _value_count: usize,
 ) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
-    unsafe { accept_none(c, count, "derivatives of outputs by the time are not given") }
+    unsafe { accept_none(c, count, "time derivatives of outputs are not provided") }
 }
 
 #[unsafe(no_mangle)]
@@ -681,5 +707,5 @@ pub unsafe extern "C" fn fmi3ActivateModelPartition(
     _time: f64,
 ) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
-    unsafe { refuse(c, invalid("there is no scheduled execution")) }
+    unsafe { reject(c, invalid("scheduled execution is not supported")) }
 }

@@ -17,7 +17,7 @@ mod fmi2;
 mod fmi3;
 mod layout;
 mod motion;
-mod refusal;
+mod rejection;
 mod resources;
 mod saved_state;
 mod unit;

@@ -6,7 +6,7 @@ use eomgen_compiled_model::{SampledController, Solver, SolverOptions};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{ExternalMotion, SurfaceMode};
 
-use crate::refusal::{Outcome, invalid, unavailable};
+use crate::rejection::{Outcome, invalid, unavailable};
 use crate::unit::{BEFORE_START, External, Kind, Mode, Unit};
 
 /// Relative difference of times that count as equal.
@@ -30,7 +30,7 @@ impl Unit {
         }
         if self.rates()?.iter().any(|rate| !rate.is_finite()) {
             return Err(invalid(
-                "at the initial state a rate is no finite number: is the mass matrix positive definite?",
+                "a rate is not finite at the initial state: check that the mass matrix is positive definite",
             ));
         }
         self.now.earlier_inputs.clone_from(&self.now.inputs);
@@ -88,7 +88,7 @@ impl Unit {
         let slack = TIME_ROUNDING * (t.abs() + length.abs());
         if !(length > 0.0 && end.is_finite()) {
             return Err(invalid(format!(
-                "communicationStepSize = {length:?}: not a step forward"
+                "communicationStepSize = {length:?}: the step size must be positive"
             )));
         }
         if from.is_nan() || (from - t).abs() > slack {
@@ -98,7 +98,7 @@ impl Unit {
         }
         if let Some(stop) = self.now.stop.filter(|stop| end > stop + slack) {
             return Err(invalid(format!(
-                "communicationStepSize = {length:?}: the step leads beyond the stop time {stop:?}"
+                "communicationStepSize = {length:?}: the step exceeds the stop time {stop:?}"
             )));
         }
         self.update_simulation()?;
@@ -260,7 +260,7 @@ impl Unit {
         if state.iter().any(|entry| !entry.is_finite()) {
             let reason = motion.system().stop_message();
             let reason = reason.unwrap_or_else(|| {
-                format!("at t = {t:?} s the event has no finite state: the motion cannot continue")
+                format!("at t = {t:?} s the state after an event is not finite, so the motion cannot continue")
             });
             return Err(unavailable(reason));
         }

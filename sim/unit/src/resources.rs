@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use eomgen_codegen::program::Program;
 use eomgen_compiled_model::{CompiledModel, Orders};
 
-use crate::refusal::{Outcome, Refusal, invalid};
+use crate::rejection::{Outcome, Rejection, invalid};
 
 /// Returns the token that links the description of a unit to its specification: hash of the specification, orders of the
 /// fields and version of the program.
@@ -24,9 +24,9 @@ pub fn derive_specification(
     location: Option<&[u8]>,
     given: Option<&str>,
 ) -> Outcome<CompiledModel> {
-    let orders = given.and_then(parse_orders).ok_or_else(refuse_token)?;
+    let orders = given.and_then(parse_orders).ok_or_else(reject_token)?;
     let location = location.ok_or_else(|| {
-        invalid("the importer gives no location of the resources, which contain the specification of the unit")
+        invalid("the importer passed no resource location, but the resources contain the specification of the unit")
     })?;
     let folder = parse_location(location)?;
     let file = find_specification(&folder)?;
@@ -45,11 +45,11 @@ pub fn derive_specification(
     })?;
     match given == Some(&*token(compiled.program())) {
         true => Ok(compiled),
-        false => Err(refuse_token()),
+        false => Err(reject_token()),
     }
 }
 
-fn refuse_token() -> Refusal {
+fn reject_token() -> Rejection {
     invalid(
         "the token is not that of the specification in the unit's resources: the description or the specification \
          belongs to another unit, or was changed; generate the unit again",
@@ -122,7 +122,8 @@ fn to_path(bytes: Vec<u8>) -> Outcome<PathBuf> {
 #[cfg(not(unix))]
 fn to_path(bytes: Vec<u8>) -> Outcome<PathBuf> {
     let text = String::from_utf8(bytes);
-    let text = text.map_err(|_| invalid("the location of the unit's resources is not in UTF-8"))?;
+    let text =
+        text.map_err(|_| invalid("the location of the unit's resources is not valid UTF-8"))?;
     Ok(text.into())
 }
 
@@ -161,7 +162,10 @@ mod tests {
             ("/tmp/%20", "/tmp/%20"),
         ] {
             let found = parse_location(location.as_bytes());
-            assert_eq!(found.map_err(|refusal| refusal.message), Ok(path.into()));
+            assert_eq!(
+                found.map_err(|rejection| rejection.message),
+                Ok(path.into())
+            );
         }
     }
 }

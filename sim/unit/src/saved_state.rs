@@ -5,11 +5,11 @@ use eomgen_codegen::program::encoding::Encoded;
 use eomgen_codegen::stable_hash::StableHash;
 use eomgen_sim::ode::SurfaceMode;
 
-use crate::refusal::{Outcome, invalid};
+use crate::rejection::{Outcome, invalid};
 use crate::resources::token;
 use crate::unit::{Condition, Kind, Mode, Unit};
 
-const MARK: &[u8] = b"eomgen 3";
+const FILE_MARK: &[u8] = b"eomgen 3";
 
 /// Number of bytes of a length, and of a checksum.
 const NUMBER_LENGTH: usize = 8;
@@ -57,7 +57,7 @@ impl Unit {
     pub fn restore(&mut self, saved: &SavedState) -> Outcome {
         if saved.kind != self.kind {
             return Err(invalid(
-                "the saved state is of an instance of the other kind",
+                "the saved state belongs to an instance of the other interface type (model exchange or co-simulation)",
             ));
         }
         self.set_condition(saved.condition.clone());
@@ -85,7 +85,12 @@ impl Unit {
         }
         now.control.encode(&mut bytes);
         let length = (bytes.len() as u64).to_le_bytes();
-        let head = [MARK, token(self.compiled.program()).as_bytes(), &length].concat();
+        let head = [
+            FILE_MARK,
+            token(self.compiled.program()).as_bytes(),
+            &length,
+        ]
+        .concat();
         let mut bytes = [head, bytes].concat();
         let sum = StableHash::new().include(&bytes).value().to_le_bytes();
         bytes.extend(sum);
@@ -94,9 +99,9 @@ impl Unit {
 
     /// Reads a saved state from its bytes; further bytes are ignored.
     pub fn deserialise(&self, bytes: &[u8]) -> Outcome<SavedState> {
-        let cut = || invalid("the bytes of a saved state are missing or cut");
-        let foreign = || invalid("these bytes are no saved state of this unit");
-        let head = [MARK, token(self.compiled.program()).as_bytes()].concat();
+        let cut = || invalid("the bytes of a saved state are missing or truncated");
+        let foreign = || invalid("these bytes are not a saved state of this unit");
+        let head = [FILE_MARK, token(self.compiled.program()).as_bytes()].concat();
         let known = bytes.get(..head.len()).ok_or_else(cut)?;
         if known != head {
             return Err(foreign());

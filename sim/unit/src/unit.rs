@@ -12,7 +12,7 @@ use eomgen_sim::ode::{ExternalMotion, Surface, SurfaceMode};
 
 use crate::DEFAULT_TOLERANCE;
 use crate::layout::Layout;
-use crate::refusal::{Outcome, invalid};
+use crate::rejection::{Outcome, invalid};
 
 /// Kind of an instance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +36,7 @@ pub enum Mode {
 }
 
 /// Bits of all modes.
-pub const ANY: u8 = 63;
+pub const ANY_MODE: u8 = 63;
 
 /// Bits of the modes before the start of the motion.
 pub const BEFORE_START: u8 = Mode::Instantiated as u8 | Mode::Initialization as u8;
@@ -139,7 +139,7 @@ impl Unit {
         match self.is_in(modes) {
             true => Ok(()),
             false => Err(invalid(format!(
-                "{call} is not allowed in the present state of the unit"
+                "{call} is not permitted in the current state of the unit"
             ))),
         }
     }
@@ -152,7 +152,7 @@ impl Unit {
     pub fn set_up(&mut self, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> Outcome {
         if !start.is_finite() || stop.is_some_and(|stop| stop.is_nan() || stop <= start) {
             return Err(invalid(
-                "the start time is no finite number, or the stop time not after it",
+                "the start time is not finite, or the stop time is not later",
             ));
         }
         if let Some(tolerance) =

@@ -1,12 +1,13 @@
 //! Access to variables by value reference.
 
 use crate::layout::Variable;
-use crate::refusal::{Outcome, Refusal, invalid, unavailable};
+use crate::rejection::{Outcome, Rejection, invalid, unavailable};
 use crate::unit::{BEFORE_START, Kind, Mode, Unit};
 
 /// Modes in which inputs and parameters may be set. Parameters may also be set in continuous-time mode: callers
 /// that use the unit as a function set all arguments.
-const SETTABLE: u8 = BEFORE_START | Mode::Event as u8 | Mode::Continuous as u8 | Mode::Step as u8;
+const SETTABLE_MODES: u8 =
+    BEFORE_START | Mode::Event as u8 | Mode::Continuous as u8 | Mode::Step as u8;
 
 /// Results at the current point, computed at their first use.
 #[derive(Default)]
@@ -47,7 +48,7 @@ impl Unit {
     }
 
     /// Returns the rejection of a value of a variable.
-    fn refuse_value(&self, variable: Variable, value: f64, why: &str) -> Refusal {
+    fn reject_value(&self, variable: Variable, value: f64, why: &str) -> Rejection {
         invalid(format!("{} = {value:?}: {why}", self.name(variable)))
     }
 
@@ -59,7 +60,9 @@ impl Unit {
             let value = self.value(variable, &mut computed)?;
             if !value.is_finite() {
                 let name = self.name(variable);
-                return Err(unavailable(format!("{name} = {value:?}: no finite number")));
+                return Err(unavailable(format!(
+                    "{name} = {value:?}: not a finite number"
+                )));
             }
             *slot = value;
         }
@@ -122,29 +125,29 @@ impl Unit {
             Variable::State(_) => BEFORE_START,
             Variable::Input(place) if self.compiled.model().is_controlled(place) => {
                 let why = "a controller of the unit drives this input";
-                return Err(self.refuse_value(variable, value, why));
+                return Err(self.reject_value(variable, value, why));
             }
-            Variable::Input(_) => SETTABLE,
+            Variable::Input(_) => SETTABLE_MODES,
             Variable::Parameter(place) => {
                 let (min, max) = self.bounds(place);
                 if min.is_some_and(|min| value < min) {
                     let why = "below the smallest admissible value";
-                    return Err(self.refuse_value(variable, value, why));
+                    return Err(self.reject_value(variable, value, why));
                 }
                 if max.is_some_and(|max| value > max) {
                     let why = "above the largest admissible value";
-                    return Err(self.refuse_value(variable, value, why));
+                    return Err(self.reject_value(variable, value, why));
                 }
-                SETTABLE
+                SETTABLE_MODES
             }
             _ => 0,
         };
         if !self.is_in(modes) {
-            let why = "not to be set in the present state of the unit";
-            return Err(self.refuse_value(variable, value, why));
+            let why = "it cannot be set in the current state of the unit";
+            return Err(self.reject_value(variable, value, why));
         }
         if !value.is_finite() {
-            return Err(self.refuse_value(variable, value, "not a finite number"));
+            return Err(self.reject_value(variable, value, "not a finite number"));
         }
         Ok(())
     }
@@ -171,9 +174,9 @@ impl Unit {
     pub fn set_states(&mut self, states: &[f64]) -> Outcome {
         Self::check_length(states.len(), self.layout.states, "continuous states")?;
         if let Some(place) = states.iter().position(|entry| !entry.is_finite()) {
-            let why = "no finite number";
-            let refusal = self.refuse_value(Variable::State(place), states[place], why);
-            return Err(unavailable(refusal.message));
+            let why = "not a finite number";
+            let rejection = self.reject_value(Variable::State(place), states[place], why);
+            return Err(unavailable(rejection.message));
         }
         self.now.state.copy_from_slice(states);
         Ok(())
@@ -182,7 +185,7 @@ impl Unit {
     /// Sets the time, s.
     pub fn set_time(&mut self, t: f64) -> Outcome {
         if !t.is_finite() {
-            return Err(self.refuse_value(Variable::Time, t, "not a finite number"));
+            return Err(self.reject_value(Variable::Time, t, "not a finite number"));
         }
         self.now.t = t;
         Ok(())
@@ -194,7 +197,7 @@ impl Unit {
         match rates.iter().all(|rate| rate.is_finite()) {
             true => Ok(rates),
             false => Err(unavailable(
-                "a rate is no finite number: the state is too large, or the mass matrix is not positive definite there",
+                "a rate is not finite: the state is too large, or the mass matrix is not positive definite",
             )),
         }
     }
@@ -204,7 +207,7 @@ impl Unit {
         let indicators = self.indicators()?;
         match indicators.iter().all(|value| value.is_finite()) {
             true => Ok(indicators),
-            false => Err(unavailable("an event indicator is no finite number")),
+            false => Err(unavailable("an event indicator is not finite")),
         }
     }
 }

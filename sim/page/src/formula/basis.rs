@@ -59,12 +59,12 @@ fn shape(index: &str, derivative: u8) -> Markup {
     let shape = element(&identifier("φ"), index);
     match derivative {
         0 => shape,
-        n => html! { msup { (shape) mo { (primes(n)) } } },
+        n => html! { msup { (shape) mo { (prime_marks(n)) } } },
     }
 }
 
 /// Returns prime marks, as one character if Unicode has it.
-fn primes(count: u8) -> String {
+fn prime_marks(count: u8) -> String {
     match count {
         1 => "′".to_owned(),
         2 => "″".to_owned(),

@@ -239,12 +239,12 @@ fn symbol(symbol: &Symbol) -> Markup {
 }
 
 /// Smallest numbers of letters of the words in a name that is not a letter with a subscript.
-const FEWEST_LETTERS: [usize; 2] = [8, 4];
+const MIN_WORD_LETTERS: [usize; 2] = [8, 4];
 
 /// Returns the words of a name such as `stabilisation_rate`, which is not a letter with a subscript.
 fn words(head: &str, parts: &[&str]) -> Option<String> {
     let [rest] = parts else { return None };
-    let are_words = head.len() >= FEWEST_LETTERS[0] && rest.len() >= FEWEST_LETTERS[1];
+    let are_words = head.len() >= MIN_WORD_LETTERS[0] && rest.len() >= MIN_WORD_LETTERS[1];
     are_words.then(|| format!("{head}\u{a0}{rest}"))
 }
 

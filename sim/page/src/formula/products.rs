@@ -41,10 +41,10 @@ fn product(factors: &[Formula]) -> Markup {
     ordered.sort_by_key(|factor| rank(factor));
     let last = ordered.len().saturating_sub(1);
     html! {
-        @for (place, factor) in ordered.into_iter().enumerate() {
-            @if place > 0 { (times()) }
+        @for (index, factor) in ordered.into_iter().enumerate() {
+            @if index > 0 { (times()) }
             @match factor {
-                Formula::Total(..) if place < last => (parenthesise("(", &formula_at_level(factor, Level::Sum), ")")),
+                Formula::Total(..) if index < last => (parenthesise("(", &formula_at_level(factor, Level::Sum), ")")),
                 _ => (formula_at_level(factor, Level::Product)),
             }
         }

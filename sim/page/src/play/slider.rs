@@ -4,7 +4,7 @@ use eomgen_model_spec::model::Parameter;
 use maud::{Markup, html};
 
 use crate::formula::quantity_symbol;
-use crate::number::raised_digit;
+use crate::number::to_superscript;
 use crate::prose::prose;
 
 const SLIDER_STEPS: f64 = 400.0;
@@ -148,7 +148,7 @@ pub fn format_unit(unit: &str) -> String {
         match letter {
             '^' => {}
             '-' if raised => text.push('⁻'),
-            '0'..='9' if raised => text.push(raised_digit(letter)),
+            '0'..='9' if raised => text.push(to_superscript(letter)),
             other => text.push(other),
         }
     }

@@ -6,24 +6,24 @@ use crate::bars::{draw_label, draw_outline, write_text};
 use crate::canvas::{Anchor, Canvas, FRAME_STROKE, GRID_STROKE, Text};
 use crate::decimate::Point;
 use crate::error::{PlotError, is_drawable};
-use crate::layout::{LABEL_SIZE, TICK_SIZE, TITLE_SIZE};
+use crate::layout::{LABEL_SIZE_PX, TICK_SIZE_PX, TITLE_SIZE_PX};
 use crate::lettering::{text_width, truncate_to_width};
 use crate::quantity::Quantity;
 
 /// Size of every map and scatter plot, in px.
-pub const WIDTH: f64 = 1000.0;
-pub const HEIGHT: f64 = 760.0;
-pub const TICK_LENGTH: f64 = 5.0;
+pub const WIDTH_PX: f64 = 1000.0;
+pub const HEIGHT_PX: f64 = 760.0;
+pub const TICK_LENGTH_PX: f64 = 5.0;
 
 /// Upper and lower edge of every frame, in px.
 const TOP: f64 = 48.0;
 const BOTTOM: f64 = 696.0;
 const RIGHT_MARGIN: f64 = 28.0;
 /// Space for the name of the vertical axis, in px.
-const LABEL_ROOM: f64 = 36.0;
-const TICK_LABEL_GAP: f64 = TICK_LENGTH + 6.0;
+const LABEL_SPACE_PX: f64 = 36.0;
+const TICK_LABEL_GAP: f64 = TICK_LENGTH_PX + 6.0;
 /// Width of regular text relative to bold text.
-const BOLD_ROOM: f64 = 0.9;
+const REGULAR_OVER_BOLD_WIDTH: f64 = 0.9;
 /// Maximum distance between the edges of evenly spaced cells and of the cells of a map, in px.
 const MAX_CELL_SHIFT_PX: f64 = 0.25;
 
@@ -66,9 +66,9 @@ pub fn coordinate_units(coordinate: &Coordinate<'_>) -> Units {
 
 impl Units {
     /// Returns the coordinate of an SI value along the axis; NaN if it cannot be drawn.
-    pub fn place(&self, value: f64) -> f64 {
+    pub fn to_position(&self, value: f64) -> f64 {
         if is_drawable(value) {
-            self.scale.place(value / self.quantity.scale)
+            self.scale.to_position(value / self.quantity.scale)
         } else {
             f64::NAN
         }
@@ -79,25 +79,25 @@ impl Units {
 pub fn cell_edges(coordinate: &Coordinate<'_>) -> Result<Vec<f64>, PlotError> {
     let units = coordinate_units(coordinate);
     let values = coordinate.values.iter();
-    let places: Vec<f64> = values.map(|value| units.place(*value)).collect();
+    let positions: Vec<f64> = values.map(|value| units.to_position(*value)).collect();
     let mut before = f64::NEG_INFINITY;
-    for (index, place) in places.iter().enumerate() {
-        if !(*place > before && place.is_finite()) {
+    for (index, position) in positions.iter().enumerate() {
+        if !(*position > before && position.is_finite()) {
             return Err(PlotError::Grid {
                 axis: coordinate.name.clone(),
                 index,
             });
         }
-        before = *place;
+        before = *position;
     }
-    let middles: Vec<f64> = places
+    let middles: Vec<f64> = positions
         .windows(2)
         .filter_map(|pair| match *pair {
             [low, high] => Some(low + (high - low) / 2.0),
             _ => None,
         })
         .collect();
-    let Some(around) = Range::from_places(places.into_iter()) else {
+    let Some(around) = Range::from_positions(positions.into_iter()) else {
         return Ok(Vec::new());
     };
     // The outer cells are symmetric; a single cell has an arbitrary width.
@@ -119,8 +119,8 @@ impl Frame {
         beside: f64,
     ) -> Self {
         let vertical = FrameEdge::new(vertical, ranges.1, (BOTTOM, TOP), 8);
-        let left = LABEL_ROOM + widest_label(&vertical.ticks) + TICK_LABEL_GAP;
-        let right = WIDTH - beside.min(400.0) - RIGHT_MARGIN;
+        let left = LABEL_SPACE_PX + widest_label(&vertical.ticks) + TICK_LABEL_GAP;
+        let right = WIDTH_PX - beside.min(400.0) - RIGHT_MARGIN;
         let pixels = (left.ceil().min(300.0), right.floor());
         Self {
             horizontal: FrameEdge::new(horizontal, ranges.0, pixels, 8),
@@ -174,22 +174,22 @@ impl Frame {
         draw_cell_outline(canvas, (left, right), (bottom, top));
         self.draw_tick_marks(canvas, side);
         for tick in &self.horizontal.ticks {
-            let at = (self.horizontal.axis.pixel(tick.place), bottom + 23.0);
+            let at = (self.horizontal.axis.pixel(tick.position), bottom + 23.0);
             write_text(canvas, &tick.label, at, Anchor::Middle);
         }
         for tick in &self.vertical.ticks {
-            let y = self.vertical.axis.pixel(tick.place) + 0.35 * TICK_SIZE;
+            let y = self.vertical.axis.pixel(tick.position) + 0.35 * TICK_SIZE_PX;
             write_text(canvas, &tick.label, (left - TICK_LABEL_GAP, y), Anchor::End);
         }
-        let name = truncate_to_width(&self.horizontal.label, LABEL_SIZE, right - left);
+        let name = truncate_to_width(&self.horizontal.label, LABEL_SIZE_PX, right - left);
         draw_label(canvas, &name, ((left + right) / 2.0, bottom + 47.0), 0.0);
-        let name = truncate_to_width(&self.vertical.label, LABEL_SIZE, bottom - top);
+        let name = truncate_to_width(&self.vertical.label, LABEL_SIZE_PX, bottom - top);
         draw_label(canvas, &name, (20.0, (bottom + top) / 2.0), -90.0);
-        let room = BOLD_ROOM * (WIDTH - RIGHT_MARGIN - left);
+        let room = REGULAR_OVER_BOLD_WIDTH * (WIDTH_PX - RIGHT_MARGIN - left);
         canvas.verbatim_text(Text {
-            text: &truncate_to_width(title, TITLE_SIZE, room),
+            text: &truncate_to_width(title, TITLE_SIZE_PX, room),
             position: (left, top - 18.0),
-            size: TITLE_SIZE,
+            size: TITLE_SIZE_PX,
             anchor: Anchor::Start,
             is_bold: true,
         });
@@ -198,8 +198,8 @@ impl Frame {
     fn draw_tick_marks(&self, canvas: &mut Canvas, side: Side) {
         let (left, bottom) = (self.horizontal_pixels().0, self.vertical_pixels().0);
         let length = match side {
-            Side::Outside => -TICK_LENGTH,
-            Side::Inside => TICK_LENGTH,
+            Side::Outside => -TICK_LENGTH_PX,
+            Side::Inside => TICK_LENGTH_PX,
         };
         let below = self.horizontal.tick_pixels();
         let below = below.map(|x| ((x, bottom), (x, bottom - length)));
@@ -225,7 +225,7 @@ impl FrameEdge {
 
     /// Returns the ticks at pixel centres, so that lines of 1 px are sharp.
     fn tick_pixels(&self) -> impl Iterator<Item = f64> + '_ {
-        let pixels = self.ticks.iter().map(|tick| self.axis.pixel(tick.place));
+        let pixels = self.ticks.iter().map(|tick| self.axis.pixel(tick.position));
         pixels.map(|pixel| pixel.floor() + 0.5)
     }
 
@@ -248,15 +248,17 @@ impl FrameEdge {
     }
 }
 
-fn find_cell(edges: &[f64], place: f64) -> Option<usize> {
+fn find_cell(edges: &[f64], position: f64) -> Option<usize> {
     let cell = edges
-        .partition_point(|edge| *edge <= place)
+        .partition_point(|edge| *edge <= position)
         .checked_sub(1)?;
     (cell + 1 < edges.len()).then_some(cell)
 }
 
 pub fn widest_label(ticks: &[Tick]) -> f64 {
-    let widths = ticks.iter().map(|tick| text_width(&tick.label, TICK_SIZE));
+    let widths = ticks
+        .iter()
+        .map(|tick| text_width(&tick.label, TICK_SIZE_PX));
     widths.fold(0.0, f64::max)
 }
 

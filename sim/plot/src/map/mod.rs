@@ -17,7 +17,7 @@ use super::canvas::Canvas;
 use super::decimate::Point;
 use super::error::PlotError;
 use super::rendering::encode_png;
-use frame::{Frame, HEIGHT, Side, WIDTH};
+use frame::{Frame, HEIGHT_PX, Side, WIDTH_PX};
 use shades::Bar;
 pub use types::{Coordinate, Map, Scatter, Shades, Spacing};
 use types::{GREY, WHITE, empty_error};
@@ -62,7 +62,7 @@ pub fn draw_map(map: &Map<'_>) -> Result<String, PlotError> {
     frame.draw_image(&mut canvas, &encode_png(size, png::ColorType::Rgb, &bytes)?);
     frame.draw(&mut canvas, &map.title, Side::Outside);
     bar.draw(&mut canvas, &frame)?;
-    Ok(canvas.document(&map.title, WIDTH, HEIGHT))
+    Ok(canvas.document(&map.title, WIDTH_PX, HEIGHT_PX))
 }
 
 /// Draws points over a parameter as an SVG document of 1000 by 760 px, darker where they overlap.
@@ -86,12 +86,12 @@ pub fn draw_scatter(scatter: &Scatter<'_>) -> Result<String, PlotError> {
     );
     let pairs = horizontal.values.iter().zip(vertical.values);
     let points: Vec<Point> = pairs
-        .map(|(x, y)| (units.0.place(*x), units.1.place(*y)))
+        .map(|(x, y)| (units.0.to_position(*x), units.1.to_position(*y)))
         .filter(|(x, y)| x.is_finite() && y.is_finite())
         .collect();
     let spans = (
-        Range::from_places(points.iter().map(|point| point.0)),
-        Range::from_places(points.iter().map(|point| point.1)),
+        Range::from_positions(points.iter().map(|point| point.0)),
+        Range::from_positions(points.iter().map(|point| point.1)),
     );
     let (Some(x), Some(y)) = spans else {
         return Err(empty_error(&vertical.name));
@@ -102,7 +102,7 @@ pub fn draw_scatter(scatter: &Scatter<'_>) -> Result<String, PlotError> {
     frame.draw_grid(&mut canvas);
     points::draw_points(&mut canvas, &frame, &points)?;
     frame.draw(&mut canvas, &scatter.title, Side::Inside);
-    Ok(canvas.document(&scatter.title, WIDTH, HEIGHT))
+    Ok(canvas.document(&scatter.title, WIDTH_PX, HEIGHT_PX))
 }
 
 fn edge_range(edges: &[f64], map: &Map<'_>) -> Result<Range, PlotError> {

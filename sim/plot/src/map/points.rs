@@ -8,7 +8,7 @@ use crate::error::PlotError;
 use crate::rendering::encode_png;
 
 /// Number of points above which an image replaces them, so that the size of the figure is bounded.
-const MAX_DOTS: usize = 2000;
+const MAX_DRAWN_DISCS: usize = 2000;
 
 /// Draws translucent discs at positions along the axes, darker where they overlap.
 pub fn draw_points(canvas: &mut Canvas, frame: &Frame, points: &[Point]) -> Result<(), PlotError> {
@@ -17,7 +17,7 @@ pub fn draw_points(canvas: &mut Canvas, frame: &Frame, points: &[Point]) -> Resu
     let area = 0.1 * (right - left) * (bottom - top) / points.len() as f64;
     let radius = (area / std::f64::consts::PI).sqrt().clamp(0.7, 3.0);
     let pixels = points.iter().map(|point| frame.pixel(*point));
-    if points.len() <= MAX_DOTS {
+    if points.len() <= MAX_DRAWN_DISCS {
         canvas.dots(pixels, radius, &hexadecimal(INK), OPACITY);
         return Ok(());
     }

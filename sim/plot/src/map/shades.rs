@@ -1,12 +1,12 @@
 //! Colours of values, and the colour bar.
 
-use super::frame::{Frame, TICK_LENGTH, draw_cell_outline, widest_label};
+use super::frame::{Frame, TICK_LENGTH_PX, draw_cell_outline, widest_label};
 use super::types::{Colour, GREY, Map, Shades, WHITE, empty_error, hexadecimal};
 use crate::axis::{Range, Scale, Tick, ticks};
 use crate::bars::{draw_label, write_text};
 use crate::canvas::{Anchor, Canvas, FRAME_STROKE};
 use crate::error::{PlotError, is_drawable};
-use crate::layout::{LABEL_SIZE, TICK_SIZE};
+use crate::layout::{LABEL_SIZE_PX, TICK_SIZE_PX};
 use crate::lettering::truncate_to_width;
 use crate::quantity::Quantity;
 use crate::rendering::encode_png;
@@ -45,12 +45,12 @@ const MAX_NOISE_RATIO: f64 = 1e-6;
 const MIN_LOPSIDED_RATIO: f64 = 3.0;
 
 /// Distances from the frame to the bar and from the bar to its labels, in px.
-const GAP: f64 = 28.0;
-const LABEL_GAP: f64 = TICK_LENGTH + 6.0;
+const BAR_GAP_PX: f64 = 28.0;
+const LABEL_GAP: f64 = TICK_LENGTH_PX + 6.0;
 /// Width of the colour bar, in px.
-const BAR: f64 = 24.0;
+const BAR_WIDTH_PX: f64 = 24.0;
 /// Space for the name of the quantity next to the labels, in px.
-const LABEL: f64 = 34.0;
+const LABEL_SPACE_PX: f64 = 34.0;
 
 /// Colour scale of a map with its colour bar.
 #[derive(Debug)]
@@ -68,7 +68,7 @@ impl Bar {
     pub fn new(map: &Map<'_>) -> Result<Self, PlotError> {
         let drawable = map.values.iter().filter(|value| is_drawable(**value));
         let found =
-            Range::from_places(drawable.copied()).ok_or_else(|| empty_error(&map.quantity))?;
+            Range::from_positions(drawable.copied()).ok_or_else(|| empty_error(&map.quantity))?;
         let range = match map.shades {
             Shades::Sequential => found.widen_point(),
             Shades::Signed => widen_around_zero(found),
@@ -104,7 +104,7 @@ impl Bar {
 
     /// Returns the width of the colour bar with its labels, in px.
     pub fn width(&self) -> f64 {
-        GAP + BAR + LABEL_GAP + widest_label(&self.ticks) + LABEL
+        BAR_GAP_PX + BAR_WIDTH_PX + LABEL_GAP + widest_label(&self.ticks) + LABEL_SPACE_PX
     }
 
     /// Returns the position of a value on the colour bar, from 0 at its lower end to 1.
@@ -126,26 +126,29 @@ impl Bar {
 
     /// Draws the colour bar to the right of a frame.
     pub fn draw(&self, canvas: &mut Canvas, frame: &Frame) -> Result<(), PlotError> {
-        let (left, (bottom, top)) = (frame.horizontal_pixels().1 + GAP, frame.vertical_pixels());
-        let (right, height) = (left + BAR, bottom - top);
+        let (left, (bottom, top)) = (
+            frame.horizontal_pixels().1 + BAR_GAP_PX,
+            frame.vertical_pixels(),
+        );
+        let (right, height) = (left + BAR_WIDTH_PX, bottom - top);
         let colours = (0..height as u32).map(|row| {
             let from_top = (f64::from(row) + 0.5) / height;
             self.colour_at(1.0 - from_top)
         });
         let bytes: Vec<u8> = colours.flatten().collect();
         let png = encode_png((1, height as u32), png::ColorType::Rgb, &bytes)?;
-        canvas.image((left, top), (BAR, height), &png);
+        canvas.image((left, top), (BAR_WIDTH_PX, height), &png);
         draw_cell_outline(canvas, (left, right), (bottom, top));
         let mut marks = Vec::with_capacity(self.ticks.len());
         for tick in &self.ticks {
-            let y = bottom - self.position_on_bar(tick.place) * height;
+            let y = bottom - self.position_on_bar(tick.position) * height;
             let middle = y.floor() + 0.5;
-            marks.push(((right, middle), (right + TICK_LENGTH, middle)));
-            let at = (right + LABEL_GAP, y + 0.35 * TICK_SIZE);
+            marks.push(((right, middle), (right + TICK_LENGTH_PX, middle)));
+            let at = (right + LABEL_GAP, y + 0.35 * TICK_SIZE_PX);
             write_text(canvas, &tick.label, at, Anchor::Start);
         }
         canvas.segments(&marks, FRAME_STROKE);
-        let name = truncate_to_width(&self.quantity.label, LABEL_SIZE, height);
+        let name = truncate_to_width(&self.quantity.label, LABEL_SIZE_PX, height);
         let beyond = right + LABEL_GAP + widest_label(&self.ticks) + 22.0;
         draw_label(canvas, &name, (beyond, (top + bottom) / 2.0), -90.0);
         if self.has_gaps {
@@ -156,7 +159,7 @@ impl Bar {
 }
 
 fn draw_gap_key(canvas: &mut Canvas, (left, top): (f64, f64)) {
-    let (right, bottom) = (left + BAR, top + 16.0);
+    let (right, bottom) = (left + BAR_WIDTH_PX, top + 16.0);
     canvas.rectangle(
         (left, top),
         (right - left, bottom - top),
@@ -195,7 +198,7 @@ fn signed_ticks(range: Range) -> Vec<Tick> {
     let upper = Range { low: 0.0, ..range };
     let below = ticks(Scale::Linear, lower, 4).into_iter();
     below
-        .filter(|tick| tick.place < 0.0)
+        .filter(|tick| tick.position < 0.0)
         .chain(ticks(Scale::Linear, upper, 4))
         .collect()
 }

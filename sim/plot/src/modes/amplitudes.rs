@@ -5,14 +5,14 @@ use super::types::Bar;
 use crate::axis::{Axis, Range, Scale};
 use crate::bars::{draw_outline, write_text};
 use crate::canvas::{Anchor, Canvas, FRAME_STROKE, GRID_STROKE};
-use crate::layout::TICK_SIZE;
+use crate::layout::TICK_SIZE_PX;
 use crate::lettering::{text_width, truncate_to_width};
 use crate::quantity::scaled_unit;
 
 /// Width of the bars with their names and numbers, in px.
-pub(super) const BARS: f64 = 420.0;
+pub(super) const BARS_WIDTH_PX: f64 = 420.0;
 /// Distance between rows and height of a bar, in px.
-pub(super) const ROW: (f64, f64) = (21.0, 13.0);
+pub(super) const ROW_PX: (f64, f64) = (21.0, 13.0);
 /// Amplitudes below this value are shown as 0.
 const MIN_SHOWN_AMPLITUDE: f64 = 5e-5;
 
@@ -22,9 +22,9 @@ pub(super) fn draw_amplitudes(
     later: bool,
     (left, top): (f64, f64),
 ) {
-    let names = bars.iter().map(|bar| text_width(&bar.name, TICK_SIZE));
+    let names = bars.iter().map(|bar| text_width(&bar.name, TICK_SIZE_PX));
     let widest = names.fold(0.0, f64::max).min(130.0);
-    let edges = (left + widest + 24.0, left + BARS - 130.0);
+    let edges = (left + widest + 24.0, left + BARS_WIDTH_PX - 130.0);
     let x = Axis {
         scale: Scale::Linear,
         range: Range {
@@ -33,20 +33,20 @@ pub(super) fn draw_amplitudes(
         },
         pixels: edges,
     };
-    let bottom = top + ROW.0 * bars.len() as f64 + 4.0;
-    for place in [-1.0, 0.0, 1.0] {
-        let at = x.pixel(place);
-        let line = if place == 0.0 {
+    let bottom = top + ROW_PX.0 * bars.len() as f64 + 4.0;
+    for end in [-1.0, 0.0, 1.0] {
+        let at = x.pixel(end);
+        let line = if end == 0.0 {
             FRAME_STROKE
         } else {
             GRID_STROKE
         };
         canvas.segments(&[((at, bottom), (at, top))], line);
     }
-    for (place, bar) in bars.iter().enumerate() {
-        let y = top + 5.0 + ROW.0 * place as f64;
-        let base = y + 0.5 * ROW.1 + 0.36 * TICK_SIZE;
-        let name = truncate_to_width(&bar.name, TICK_SIZE, 130.0);
+    for (index, bar) in bars.iter().enumerate() {
+        let y = top + 5.0 + ROW_PX.0 * index as f64;
+        let base = y + 0.5 * ROW_PX.1 + 0.36 * TICK_SIZE_PX;
+        let name = truncate_to_width(&bar.name, TICK_SIZE_PX, 130.0);
         write_text(canvas, &name, (edges.0 - 8.0, base), Anchor::End);
         let [re, im] = bar
             .amplitude
@@ -56,10 +56,14 @@ pub(super) fn draw_amplitudes(
             canvas.rectangle((zero.min(end), from), ((end - zero).abs(), tall), colour);
         };
         if later {
-            fill(re, (y, 0.55 * ROW.1), IN_PHASE_COLOUR);
-            fill(-im, (y + 0.6 * ROW.1, 0.4 * ROW.1), OUT_OF_PHASE_COLOUR);
+            fill(re, (y, 0.55 * ROW_PX.1), IN_PHASE_COLOUR);
+            fill(
+                -im,
+                (y + 0.6 * ROW_PX.1, 0.4 * ROW_PX.1),
+                OUT_OF_PHASE_COLOUR,
+            );
         } else {
-            fill(re, (y, ROW.1), IN_PHASE_COLOUR);
+            fill(re, (y, ROW_PX.1), IN_PHASE_COLOUR);
         }
         write_text(
             canvas,

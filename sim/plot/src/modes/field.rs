@@ -6,15 +6,15 @@ use crate::axis::{Axis, Range, Scale, ticks};
 use crate::bars::{draw_label, draw_outline, write_text};
 use crate::canvas::{Anchor, Canvas, FRAME_STROKE, GRID_STROKE, Stroke};
 use crate::decimate::Point;
-use crate::layout::TICK_SIZE;
+use crate::layout::TICK_SIZE_PX;
 use crate::quantity::Quantity;
 
 /// Width of a frame with its labels, in px.
-pub(super) const FIELD: f64 = 400.0;
+pub(super) const FIELD_WIDTH_PX: f64 = 400.0;
 /// Margins to the left and right of a field's frame, in px.
-const MARGINS: (f64, f64) = (80.0, 24.0);
+const MARGINS_PX: (f64, f64) = (80.0, 24.0);
 /// Amplitude below which a field is at rest; relative to amplitudes of 1 it is rounding.
-const ROUNDING: f64 = 1e-12;
+const MIN_FIELD_AMPLITUDE: f64 = 1e-12;
 
 struct Axes {
     x: Axis,
@@ -54,7 +54,7 @@ fn field_axes(shape: &Shape, (left, top, height): (f64, f64, f64)) -> Axes {
     let size =
         |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most, v| v.abs().max(most));
     let largest = size(&mut shape.amplitudes.iter().flatten().copied());
-    let moves = largest > ROUNDING;
+    let moves = largest > MIN_FIELD_AMPLITUDE;
     let up = Quantity::with_prefix(&shape.name, &shape.unit, if moves { largest } else { 1.0 });
     let reach = if moves {
         1.08 * largest / up.scale
@@ -63,8 +63,8 @@ fn field_axes(shape: &Shape, (left, top, height): (f64, f64, f64)) -> Axes {
     };
     let furthest = size(&mut shape.positions.iter().copied());
     let along = Quantity::with_prefix(&shape.position_name, "m", furthest);
-    let places = shape.positions.iter().map(|x| x / along.scale);
-    let range = Range::from_places(places).unwrap_or(Range {
+    let positions = shape.positions.iter().map(|x| x / along.scale);
+    let range = Range::from_positions(positions).unwrap_or(Range {
         low: 0.0,
         high: 1.0,
     });
@@ -80,7 +80,7 @@ fn field_axes(shape: &Shape, (left, top, height): (f64, f64, f64)) -> Axes {
     Axes {
         x: axis(
             range.widen_point(),
-            (left + MARGINS.0, left + FIELD - MARGINS.1),
+            (left + MARGINS_PX.0, left + FIELD_WIDTH_PX - MARGINS_PX.1),
         ),
         y: axis(both, (top + height, top)),
         horizontal_quantity: along,
@@ -100,14 +100,14 @@ fn draw_frame(
 ) {
     let (edges, (bottom, top)) = (x.pixels, y.pixels);
     for tick in ticks(x.scale, x.range, 5) {
-        let at = x.pixel(tick.place);
+        let at = x.pixel(tick.position);
         canvas.segments(&[((at, bottom), (at, top))], GRID_STROKE);
         write_text(canvas, &tick.label, (at, bottom + 18.0), Anchor::Middle);
     }
     for tick in ticks(y.scale, y.range, 4) {
-        let at = y.pixel(tick.place);
+        let at = y.pixel(tick.position);
         canvas.segments(&[((edges.0, at), (edges.1, at))], GRID_STROKE);
-        let base = (edges.0 - 7.0, at + 0.35 * TICK_SIZE);
+        let base = (edges.0 - 7.0, at + 0.35 * TICK_SIZE_PX);
         write_text(canvas, &tick.label, base, Anchor::End);
     }
     let middle = y.pixel(0.0);

@@ -7,17 +7,17 @@ mod types;
 
 pub use types::{Bar, Mode, Modes, Shape};
 
-use self::amplitudes::{BARS, ROW};
-use self::field::FIELD;
+use self::amplitudes::{BARS_WIDTH_PX, ROW_PX};
+use self::field::FIELD_WIDTH_PX;
 use super::PlotError;
 use super::bars::{draw_title, write_text};
 use super::canvas::{Anchor, Canvas};
 use super::error::is_drawable;
-use super::layout::TICK_SIZE;
+use super::layout::TICK_SIZE_PX;
 use super::lettering::truncate_to_width;
 
 /// Minimum height of a frame in px, and space above it (title) and below it (ticks and label).
-const FRAME_HEIGHT: f64 = 110.0;
+const FRAME_HEIGHT_PX: f64 = 110.0;
 const SPACE_ABOVE_PX: f64 = 32.0;
 const SPACE_BELOW_PX: f64 = 50.0;
 /// Relative imaginary part above which the imaginary part is drawn.
@@ -35,14 +35,18 @@ pub fn modes(of: &Modes) -> Result<String, PlotError> {
     for (panel, mode) in of.modes.iter().enumerate() {
         check_mode(panel, mode)?;
     }
-    let bars = if first.bars.is_empty() { 0.0 } else { BARS };
-    let whole = (FIELD * first.fields.len() as f64 + bars).max(560.0);
+    let bars = if first.bars.is_empty() {
+        0.0
+    } else {
+        BARS_WIDTH_PX
+    };
+    let whole = (FIELD_WIDTH_PX * first.fields.len() as f64 + bars).max(560.0);
     let mut canvas = Canvas::default();
     let mut y = 24.0;
     draw_title(&mut canvas, &of.title, (16.0, y));
     for note in notes(of) {
         y += 20.0;
-        let note = truncate_to_width(&note, TICK_SIZE, whole - 32.0);
+        let note = truncate_to_width(&note, TICK_SIZE_PX, whole - 32.0);
         write_text(&mut canvas, &note, (16.0, y), Anchor::Start);
     }
     y += 8.0;
@@ -104,13 +108,13 @@ fn has_out_of_phase_part(mode: &Mode) -> bool {
 
 fn draw_mode(canvas: &mut Canvas, mode: &Mode, top: f64) -> f64 {
     let later = has_out_of_phase_part(mode);
-    let bars = ROW.0 * mode.bars.len() as f64 + 8.0;
-    let (upper, height) = (top + SPACE_ABOVE_PX, bars.max(FRAME_HEIGHT));
+    let bars = ROW_PX.0 * mode.bars.len() as f64 + 8.0;
+    let (upper, height) = (top + SPACE_ABOVE_PX, bars.max(FRAME_HEIGHT_PX));
     draw_title(canvas, &mode.title, (16.0, top + 22.0));
     let mut left = 0.0;
     for shape in &mode.fields {
         field::draw_field(canvas, shape, later, (left, upper, height));
-        left += FIELD;
+        left += FIELD_WIDTH_PX;
     }
     if !mode.bars.is_empty() {
         amplitudes::draw_amplitudes(canvas, &mode.bars, later, (left, upper));

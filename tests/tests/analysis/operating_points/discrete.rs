@@ -101,7 +101,7 @@ fn inadmissible_periods_and_prescribed_motion_are_rejected() {
         ("0", "period 0.0 s: expected a time in s above 0"),
         ("-1e-3", "expected a time in s above 0"),
         ("nan", "expected a time in s above 0"),
-        ("1e12", "give a shorter period"),
+        ("1e12", "use a shorter period"),
         ("1 kg", "a time is in s, not in kg"),
     ] {
         let period = format!("--discrete={period}");

@@ -16,30 +16,30 @@ pub enum Status {
 
 /// Rejection of a call, with a message for the importer's logger.
 #[derive(Clone, Debug)]
-pub struct Refusal {
+pub struct Rejection {
     pub status: Status,
     pub message: String,
 }
 
-pub type Outcome<T = ()> = Result<T, Refusal>;
+pub type Outcome<T = ()> = Result<T, Rejection>;
 
 /// Returns the rejection of an invalid call.
-pub fn invalid(message: impl Into<String>) -> Refusal {
-    Refusal {
+pub fn invalid(message: impl Into<String>) -> Rejection {
+    Rejection {
         status: Status::Error,
         message: message.into(),
     }
 }
 
 /// Returns the rejection of a value that the unit cannot compute at the current time and state.
-pub fn unavailable(message: impl Into<String>) -> Refusal {
-    Refusal {
+pub fn unavailable(message: impl Into<String>) -> Rejection {
+    Rejection {
         status: Status::Discard,
         message: message.into(),
     }
 }
 
-impl From<Error> for Refusal {
+impl From<Error> for Rejection {
     fn from(error: Error) -> Self {
         match &error {
             Error::Stopped { .. } => unavailable(error.to_string()),
