@@ -235,7 +235,7 @@ impl Adams {
         }
         // Initial step of Shampine and Gordon; if it is rejected at order 1, it is corrected at once.
         self.step = self.step.min(0.25 / norm.sqrt());
-        self.now.history.evaluate_start(&rates);
+        self.now.history.begin(&rates);
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 use eomgen_codegen::program::evaluator::Enclosure;
 
 use super::bernstein::Piece;
-use super::driver::{Driver, SHORTENED, StepVerdict};
+use super::driver::{Driver, SHORTENING_FACTOR, StepVerdict};
 use super::event_search::{Crossing, SwitchingFunctions, find_crossing};
 use super::grazing::find_passed_surface;
 use super::resolution::SAMPLE_FRACTIONS;
@@ -177,7 +177,9 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             self.run.stepper.set_step(step.min(longest * length));
         } else {
             self.run.stepper.undo_step();
-            self.run.stepper.set_step(longest.max(SHORTENED) * length);
+            self.run
+                .stepper
+                .set_step(longest.max(SHORTENING_FACTOR) * length);
             self.trajectory.statistics.rejected_steps += 1;
         }
         !is_resolved

@@ -115,7 +115,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 
     /// Returns the error allowed to each state.
     fn allowed_errors(&self, y: &[f64]) -> Vec<f64> {
-        self.run.stepper.magnitudes().allowed_errors(y).collect()
+        self.run.stepper.magnitudes().allowed(y).collect()
     }
 
     /// Applies the event at the crossed surfaces between `start` and `point`, and records the surfaces that
