@@ -13,7 +13,7 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src dat
 const SCRIPT_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
                              script-src 'unsafe-inline' 'wasm-unsafe-eval'";
 
-/// Style without JavaScript: hides elements whose content is computed by a script, and lets the controls have
+/// Style without JavaScript: hides elements whose content is computed by a script, and gives the controls
 /// their natural height.
 const UNSCRIPTED_STYLE: &str = ".scripted { display: none; } .controls { contain: none; }";
 

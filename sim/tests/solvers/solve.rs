@@ -136,7 +136,7 @@ fn dry_friction_reduces_amplitude_equally_per_half_cycle() {
 
 #[test]
 fn sticking_without_support_is_an_error() {
-    // The motion turns at pi and stops at 2 pi, where the spring force is below the friction.
+    // The motion turns at pi and stops at 2 pi, because the spring force there is below the friction.
     let error = run(&dry_friction(0.3), &[1.0, 0.0], 100.0, 1e-9).expect_err("it stops");
     let SolveError::Sticking { t, guard: 0 } = error else {
         panic!("{error:?}")
@@ -464,7 +464,7 @@ fn rows_between_steps_meet_tolerance_at_a_cost_per_step() {
         let (with, without) = (at(&rows), at(&[]));
         let (work, steps) = (with.statistics, without.statistics);
         let interiors = work.evaluations - steps.evaluations;
-        // Three evaluations for the dense output, and about 40 where it is not accurate enough; rows need none.
+        // Three evaluations for the dense output, and about 40 if it is not accurate enough; rows need none.
         assert!(interiors <= 12 * steps.steps, "{work:?} for {steps:?}");
         assert_eq!(work.trial_steps, 0);
         assert_eq!(

@@ -377,7 +377,7 @@ fn singularities_are_reported_at_their_times() {
 
 #[test]
 fn singular_iteration_matrix_is_avoided() {
-    // y' = a y, where a h equals the real eigenvalue of the method in the first step.
+    // y' = a y. In the first step, a h equals the real eigenvalue of the method.
     let rate = 3.637_834_252_744_496 / 1e-6;
     let system = stiff(
         1,
