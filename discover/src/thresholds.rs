@@ -19,7 +19,7 @@ pub const INITIAL_STATE_PRIOR_IN_RANGES: f64 = 0.02;
 
 /// Ratio of two estimates of a state's range above which the larger one is used. It only limits the
 /// number of repeated fits of first states.
-pub const MUCH_LARGER_RANGE: f64 = 2.0;
+pub const MAX_RANGE_RATIO: f64 = 2.0;
 
 /// Maximum number of fits of first states that estimate the ranges of the states. The free decay of
 /// a drive with an initially twisted shaft needs two.
@@ -27,7 +27,7 @@ pub const MAX_RANGE_FITS: usize = 6;
 
 /// Output change that defines the range of a state that nothing excites, as a fraction of the
 /// noise.
-pub const UNMOVED_STATE_IN_NOISE: f64 = 1e-3;
+pub const INVISIBLE_CHANGE_IN_NOISE: f64 = 1e-3;
 
 /// Maximum number of halvings of a record for the estimate of the ranges. A record is halved if its
 /// motion diverges.
@@ -109,28 +109,28 @@ pub const MAX_FLOOR_RATIO_TO_STOP: f64 = 1.5;
 
 /// Remaining fraction of the residuals below which an accepted effect explains most of the gap.
 /// Further effects show more clearly once this effect is in the model.
-pub const MAX_LEFT_OF_RESIDUALS: f64 = 0.3;
+pub const MAX_REMAINING_FRACTION: f64 = 0.3;
 
 /// Predicted reduction of the squares above which a candidate is fitted: a fifth of the reduction
 /// that corresponds to `MIN_HELD_OUT_REDUCTION`, because the linear prediction is too low for
 /// saturating effects such as damping.
-pub const MIN_PROMISED_REDUCTION: f64 = 0.02;
+pub const MIN_PREDICTED_REDUCTION: f64 = 0.02;
 
 /// Minimum predicted reduction if the residuals are much larger than the noise. Effects are then
 /// large, and the linear prediction is too low.
-pub const MIN_PROMISED_REDUCTION_FAR: f64 = 0.005;
+pub const MIN_PREDICTED_REDUCTION_FAR_FROM_NOISE: f64 = 0.005;
 
 /// RMS residual above which the residuals are much larger than the noise, in standard deviations.
-pub const FAR_FROM_NOISE: f64 = 3.0;
+pub const MIN_RMS_FAR_FROM_NOISE: f64 = 3.0;
 
 /// Maximum remaining fraction of the squares after a preliminary fit that is continued with a full
 /// fit, if the gap exceeds `MAX_FLOOR_RATIO_TO_STOP` floors. None of a hundred candidates above
 /// this limit was accepted.
-pub const MAX_LEFT_BY_PRELIMINARY_FIT: f64 = 0.95;
+pub const MAX_REMAINING_AFTER_PRELIMINARY_FIT: f64 = 0.95;
 
 /// Number of candidates that are fitted in parallel before the next decision: the number of cores
 /// of a small computer.
-pub const FITS_IN_PARALLEL: usize = 2;
+pub const PARALLEL_FIT_COUNT: usize = 2;
 
 /// Predicted ratio of the squares of a pair to those of the best single candidate, below which the
 /// pair is fitted.
@@ -220,15 +220,15 @@ pub const MAX_OUTPUTS_PER_SAMPLE: usize = 4;
 
 /// Cut-off frequency of the zero-phase smoothing, as a fraction of the sampling frequency. Faster
 /// components of an initial value are noise or quantisation.
-pub const SMOOTHING_CUT_OFF: f64 = 0.02;
+pub const SMOOTHING_CUT_OFF_FRACTION: f64 = 0.02;
 
 /// Number of samples for the initial value and slope of a column. A dozen samples average the
 /// noise, and a parabola still fits the motion.
-pub const INITIAL_SLOPE_SAMPLES: usize = 12;
+pub const INITIAL_SLOPE_SAMPLE_COUNT: usize = 12;
 
 /// Number of samples at the beginning of a record that are compared with the model. Later the
 /// motion deviates too much because of missing effects.
-pub const CHECKED_SAMPLES: usize = 1000;
+pub const CHECKED_SAMPLE_COUNT: usize = 1000;
 
 /// Minimum detrended motion of a channel that is compared with the model, in standard deviations of
 /// its noise.
@@ -258,7 +258,7 @@ pub const MAX_SWITCHES_PER_SECOND: f64 = 1e5;
 pub const MAX_PARTS_PER_STEP: f64 = 4096.0;
 
 /// Number of samples on which the number of steps per sample is tested.
-pub const STEP_TEST_SAMPLES: usize = 100;
+pub const STEP_TEST_SAMPLE_COUNT: usize = 100;
 
 /// Base-2 logarithm of the maximum number of fixed steps per sample. Above it a solver with error
 /// control is used.
@@ -296,7 +296,7 @@ pub const OTHER_INITIAL_STATE_HORIZONS: [f64; 5] = [0.05, 0.12, 0.3, 0.7, 1.0];
 
 /// Number of chains of windows that are estimated in parallel, each from initial states of another
 /// estimate. It does not depend on the machine, so that results do not either.
-pub const PARALLEL_CHAINS: usize = 2;
+pub const PARALLEL_CHAIN_COUNT: usize = 2;
 
 /// Relative decrease of the cost below which the continuation ends: each step simulates all windows
 /// again.
@@ -361,11 +361,11 @@ pub const MIN_REFRESH_DECREASE: f64 = 0.005;
 pub const MAX_SCREENING_WINDOWS: usize = 40;
 
 /// Number of windows for the comparison of a few equations of motion.
-pub const FEW_WINDOWS: usize = 20;
+pub const COMPARISON_WINDOW_COUNT: usize = 20;
 
 /// Number of blocks of time for standard errors of a set of windows. Each block is longer than the
 /// correlation of the residuals.
-pub const TIME_BLOCKS: usize = 40;
+pub const TIME_BLOCK_COUNT: usize = 40;
 
 /// Maximum number of steps of the continuation.
 pub const MAX_CONTINUATION_STEPS: usize = 5;
@@ -385,7 +385,7 @@ pub const MAX_QUOTIENT_IN_RANGES: f64 = 0.03;
 pub const PRELIMINARY_FRACTION: f64 = 0.25;
 
 /// Number of initial-state horizons of a preliminary fit.
-pub const PRELIMINARY_HORIZONS: usize = 2;
+pub const PRELIMINARY_HORIZON_COUNT: usize = 2;
 
 /// Relative decrease of the cost of a window below which the steps of its initial state end.
 pub const MIN_INNER_DECREASE: f64 = 1e-2;
@@ -493,7 +493,7 @@ pub const FORCE_ORDERS: [u32; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 36];
 pub const MAX_FORCE_FREQUENCIES: usize = 12;
 
 /// Number of knots of a force over a whole turn.
-pub const TURN_KNOTS: usize = 12;
+pub const TURN_KNOT_COUNT: usize = 12;
 
 /// Width of the transition at the reversal of the rate, as a fraction of the largest rate.
 pub const TURNING_RATE_FRACTION: f64 = 1e-3;
@@ -512,25 +512,25 @@ pub const FORCE_REDUCTION_FACTOR: f64 = 1e3;
 
 /// Number of iterations for the variance of a force that differs between windows. After these
 /// iterations it changes by less than 1 %.
-pub const VARIANCE_ITERATIONS: usize = 12;
+pub const VARIANCE_ITERATION_COUNT: usize = 12;
 
 /// Maximum standard deviation of a drawn point of a profile, as a fraction of the largest force.
 pub const MAX_DRAWN_SD: f64 = 0.5;
 
 /// Minimum number of points of a drawn profile.
-pub const MIN_DRAWN_POINTS: usize = 2;
+pub const MIN_DRAWN_POINT_COUNT: usize = 2;
 
 /// Number of knots of a force over the rate for each direction of motion.
-pub const RATE_KNOTS: usize = 5;
+pub const RATE_KNOT_COUNT: usize = 5;
 
 /// Number of knots of a force over the position.
-pub const POSITION_KNOTS: usize = 9;
+pub const POSITION_KNOT_COUNT: usize = 9;
 
 /// Number of knots of a force over the time of a window.
-pub const TIME_KNOTS: usize = 8;
+pub const TIME_KNOT_COUNT: usize = 8;
 
 /// Number of profile frequencies that are the lowest whole numbers of periods per window.
-pub const HARMONIC_FREQUENCIES: usize = 4;
+pub const HARMONIC_FREQUENCY_COUNT: usize = 4;
 
 /// Ratio between successive higher frequencies.
 pub const FREQUENCY_RATIO: f64 = 1.6;
@@ -720,10 +720,10 @@ pub const SIZE_SCAN_DECADES: (f64, f64) = (-6.0, 4.0);
 pub const SCANNED_VALUES_PER_DECADE: f64 = 4.0;
 
 /// Number of refinements around the best scanned value; each halves the logarithmic interval.
-pub const SCAN_REFINEMENTS: usize = 4;
+pub const SCAN_REFINEMENT_COUNT: usize = 4;
 
 /// Number of knots of a curve. They resolve a twentieth of the range, and less around zero.
-pub const CURVE_KNOTS: usize = 21;
+pub const CURVE_KNOT_COUNT: usize = 21;
 
 /// Fraction of the samples beyond the knots of a curve at each end.
 pub const CURVE_TAIL: f64 = 0.002;
@@ -753,4 +753,4 @@ pub const MAX_HELD_OUT_RATIO: f64 = 1.5;
 /// Maximum remaining fraction of the residual with an adequate curve. Also the maximum remaining
 /// fraction of the gap to the noise floor with a law, along the reference motion. With a correct
 /// law, up to 0.06 remained (a stop).
-pub const MAX_LEFT_BY_CURVE: f64 = 0.3;
+pub const MAX_REMAINING_WITH_CURVE: f64 = 0.3;

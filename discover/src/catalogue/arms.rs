@@ -50,7 +50,7 @@ pub(super) fn find_arms(model: &Model) -> Vec<Site> {
             ("field", declared.name.clone()),
             ("x", declared.along.clone()),
             ("end", format_expression(model, &declared.to)),
-            ("lever", lever(model, &declared.from, &declared.to)),
+            ("lever", format_lever(model, &declared.from, &declared.to)),
         ]
         .into();
         arguments.extend(root.map(|root| ("root", root)));
@@ -58,7 +58,7 @@ pub(super) fn find_arms(model: &Model) -> Vec<Site> {
         let moving = model
             .kinetic
             .iter()
-            .filter(|term| holds_field(&term.value, field));
+            .filter(|term| contains_field(&term.value, field));
         let moving = moving.map(|term| term.name.clone()).collect();
         Some(Site {
             kind: SiteKind::Arm,
@@ -82,14 +82,14 @@ fn find_integrand(expr: &Expr) -> Option<&Expr> {
 }
 
 /// Returns true if an expression contains a field.
-fn holds_field(expr: &Expr, field: FieldId) -> bool {
+fn contains_field(expr: &Expr, field: FieldId) -> bool {
     let mut found = false;
     expr.visit(&mut |part| found |= part.kind == ExprKind::Field(field));
     found
 }
 
 /// Returns the distance between the root and the end of a body.
-fn lever(model: &Model, from: &Expr, to: &Expr) -> String {
+fn format_lever(model: &Model, from: &Expr, to: &Expr) -> String {
     match from.kind {
         ExprKind::Number(0.0) => format_expression(model, to),
         _ => format!(

@@ -10,7 +10,7 @@ use crate::catalogue::effect::{Change, Effect, SiteKind};
 use crate::catalogue::loads::{Load, find_loads};
 use crate::catalogue::site::Site;
 use crate::catalogue::template::{
-    fill_placeholders, instantiate_change, names_of_terms, reserve_name,
+    fill_placeholders, instantiate_change, list_term_names, reserve_name,
 };
 use crate::catalogue::usual_motion::UsualMotion;
 use crate::error::DiscoverError;
@@ -40,7 +40,9 @@ pub struct Candidate {
     pub on_mesh: bool,
     /// Stiffness parameter of an effect that only scales a stiffness.
     pub scaled_stiffness: Option<String>,
+    /// Parameters that the effect adds or shifts.
     pub parameters: Vec<CandidateParameter>,
+    /// Description that completes a sentence.
     pub description: String,
     /// Experiment that shows the effect best.
     pub experiment: String,
@@ -123,7 +125,7 @@ impl CandidateParameter {
         self.offset.as_ref().map_or(1.0, |offset| offset.per_si)
     }
 
-    fn edit(&self, value: f64, source: &str) -> Edit {
+    fn to_edit(&self, value: f64, source: &str) -> Edit {
         match &self.offset {
             Some(offset) if !offset.is_new => Edit::SetParameter(SetParameter {
                 name: self.name.clone(),
@@ -200,7 +202,7 @@ impl Candidate {
     ) -> Result<String, EditError> {
         let pairs = self.parameters.iter().zip(values);
         let mut edits: Vec<Edit> = pairs
-            .map(|(parameter, value)| parameter.edit(*value, source))
+            .map(|(parameter, value)| parameter.to_edit(*value, source))
             .collect();
         edits.extend(changes.iter().cloned());
         edit::apply(&edited_source(name, text), &edits)
@@ -253,7 +255,7 @@ pub fn list_candidates<'e>(
     for effect in effects {
         for site in sites
             .iter()
-            .filter(|site| fits(effect.site_kind, site.kind))
+            .filter(|site| accepts_site_kind(effect.site_kind, site.kind))
         {
             let own = [site];
             let turning: &[&Site] = match effect.has_orders {
@@ -262,7 +264,7 @@ pub fn list_candidates<'e>(
                 false => &[],
             };
             let orders = turning.iter().flat_map(|angle| {
-                let orders = orders(model, motion.orders(angle)).into_iter();
+                let orders = list_orders(model, motion.orders(angle)).into_iter();
                 let covered = orders.filter(|order| motion.covers_period(angle, *order));
                 covered.map(|order| Some((*angle, order)))
             });
@@ -276,7 +278,13 @@ pub fn list_candidates<'e>(
             };
             for load in loads {
                 for order in &orders {
-                    found.extend(candidate(model, effect, site, (*order, load), motion));
+                    found.extend(create_candidate(
+                        model,
+                        effect,
+                        site,
+                        (*order, load),
+                        motion,
+                    ));
                 }
             }
         }
@@ -284,13 +292,13 @@ pub fn list_candidates<'e>(
     found
 }
 
-fn fits(wanted: SiteKind, there: SiteKind) -> bool {
+fn accepts_site_kind(wanted: SiteKind, there: SiteKind) -> bool {
     wanted == there || (wanted == SiteKind::Axis && there == SiteKind::Angle)
 }
 
 /// Returns the usual shaft orders, the orders `seen` in the residual force, and the numbers of
 /// teeth of the model: whole numbers without a unit.
-fn orders(model: &Model, seen: &[u32]) -> Vec<u32> {
+fn list_orders(model: &Model, seen: &[u32]) -> Vec<u32> {
     let mut orders = [&thresholds::SHAFT_ORDERS[..], seen].concat();
     for parameter in &model.parameters {
         if let ParameterValue::Number(value) = parameter.value
@@ -306,7 +314,7 @@ fn orders(model: &Model, seen: &[u32]) -> Vec<u32> {
     orders
 }
 
-fn candidate(
+fn create_candidate(
     model: &Model,
     effect: &Effect,
     site: &Site,
@@ -331,12 +339,12 @@ fn candidate(
         arguments.insert("load".to_owned(), load.force.clone());
         arguments.insert("per_load".to_owned(), per_load.to_owned());
     }
-    let mut taken = names_in_use(model);
+    let mut taken = list_names_in_use(model);
     let mut parameters = Vec::new();
     for parameter in &effect.parameters {
         let name = reserve_name(&parameter.name, &site.name, &mut taken);
         arguments.insert(parameter.name.clone(), name.clone());
-        let unit = plain_unit(&fill_placeholders(&parameter.unit, &arguments)?);
+        let unit = simplify_unit(&fill_placeholders(&parameter.unit, &arguments)?);
         parameters.push(CandidateParameter {
             name,
             typical_size: motion.typical_size(&unit),
@@ -384,7 +392,7 @@ fn candidate(
         parameters,
         description: effect.description.clone(),
         experiment: effect.experiment.clone(),
-        linear_changes: effect.states_linear_part().then_some(linear_changes),
+        linear_changes: effect.declares_linear_part().then_some(linear_changes),
         changes,
         term,
         dropped_prior: None,
@@ -458,7 +466,7 @@ pub fn shift_parameter(parameter: &Parameter) -> Option<Candidate> {
 }
 
 /// Returns the names of all quantities of the model.
-pub(crate) fn names_in_use(model: &Model) -> Vec<String> {
+pub(crate) fn list_names_in_use(model: &Model) -> Vec<String> {
     let lists = [
         model
             .parameters
@@ -475,13 +483,13 @@ pub(crate) fn names_in_use(model: &Model) -> Vec<String> {
             .flat_map(|f| [f.name.clone(), f.along.clone(), f.coordinates.clone()])
             .collect(),
         model.coefficients.iter().map(|c| c.name.clone()).collect(),
-        names_of_terms(model),
+        list_term_names(model),
     ];
     lists.concat()
 }
 
 /// Replaces `N m s/rad` by `N m s`, because angles have no unit of their own.
-fn plain_unit(unit: &str) -> String {
+fn simplify_unit(unit: &str) -> String {
     let powers = ["/rad^3", "/rad^2", "/rad"];
     powers
         .iter()

@@ -11,7 +11,7 @@ use super::placeholders::{Placeholders, read_expression};
 
 /// Kind of entry that an edit adds.
 #[derive(Clone, Copy)]
-enum Added {
+enum AdditionKind {
     Term(Section),
     Definition,
     Force,
@@ -19,19 +19,19 @@ enum Added {
     State,
 }
 
-const ADDED: [(&str, Added); 7] = [
-    ("force", Added::Force),
-    ("kinetic", Added::Term(Section::Kinetic)),
-    ("potential", Added::Term(Section::Potential)),
-    ("dissipation", Added::Term(Section::Dissipation)),
-    ("definition", Added::Definition),
-    ("coordinate", Added::Coordinate),
-    ("state", Added::State),
+const ADDITION_KEYS: [(&str, AdditionKind); 7] = [
+    ("force", AdditionKind::Force),
+    ("kinetic", AdditionKind::Term(Section::Kinetic)),
+    ("potential", AdditionKind::Term(Section::Potential)),
+    ("dissipation", AdditionKind::Term(Section::Dissipation)),
+    ("definition", AdditionKind::Definition),
+    ("coordinate", AdditionKind::Coordinate),
+    ("state", AdditionKind::State),
 ];
 
 /// Scope in which an edit replaces text.
 #[derive(Clone, Copy)]
-enum Replaced {
+enum ReplacementScope {
     Kinetic,
     /// Terms of a site of the given kind.
     Site(SiteKind),
@@ -42,9 +42,9 @@ enum Replaced {
     Input,
 }
 
-impl Replaced {
+impl ReplacementScope {
     /// Returns the kind of site that this scope requires, if any.
-    fn site(self) -> Option<SiteKind> {
+    fn required_site(self) -> Option<SiteKind> {
         match self {
             Self::Site(kind) => Some(kind),
             Self::Dampers => Some(SiteKind::Spring),
@@ -54,14 +54,14 @@ impl Replaced {
     }
 }
 
-const REPLACED: [(&str, Replaced); 7] = [
-    ("kinetic", Replaced::Kinetic),
-    ("mesh", Replaced::Site(SiteKind::Mesh)),
-    ("arm", Replaced::Site(SiteKind::Arm)),
-    ("spring", Replaced::Site(SiteKind::Spring)),
-    ("damper", Replaced::Dampers),
-    ("measured", Replaced::Measured),
-    ("input", Replaced::Input),
+const REPLACEMENT_SCOPES: [(&str, ReplacementScope); 7] = [
+    ("kinetic", ReplacementScope::Kinetic),
+    ("mesh", ReplacementScope::Site(SiteKind::Mesh)),
+    ("arm", ReplacementScope::Site(SiteKind::Arm)),
+    ("spring", ReplacementScope::Site(SiteKind::Spring)),
+    ("damper", ReplacementScope::Dampers),
+    ("measured", ReplacementScope::Measured),
+    ("input", ReplacementScope::Input),
 ];
 
 /// All keys of an edit.
@@ -91,12 +91,12 @@ pub(super) fn read_change(
     let of = |key: &str| entries.iter().find(|entry| entry.name.text == key);
     match (of("add"), of("substitute")) {
         (Some(add), None) => {
-            let what = found.push_error(add.keyword(&ADDED))?;
-            addition(entry, what, placeholders, found)
+            let what = found.push_error(add.keyword(&ADDITION_KEYS))?;
+            read_addition(entry, what, placeholders, found)
         }
         (None, Some(substitute)) => {
-            let within = found.push_error(substitute.keyword(&REPLACED))?;
-            if let Some(kind) = within.site()
+            let within = found.push_error(substitute.keyword(&REPLACEMENT_SCOPES))?;
+            if let Some(kind) = within.required_site()
                 && kind != site
             {
                 let wrong = Diagnostic::error("this effect has another kind of site");
@@ -106,44 +106,44 @@ pub(super) fn read_change(
                     wrong.with_span(substitute.span(), format!("expected site = \"{expected}\"")),
                 );
             }
-            substitution(entry, within, placeholders, found)
+            read_substitution(entry, within, placeholders, found)
         }
         _ => {
             Record::read_with(entry, &KEYS, "{ add = \"force\", ... }", found);
             found.push(
                 Diagnostic::error("an edit needs `add` or `substitute`")
-                    .with_span(entry.span(), "expected one of both keys"),
+                    .with_span(entry.span(), "expected one of these two keys"),
             );
             None
         }
     }
 }
 
-fn addition(
+fn read_addition(
     entry: &Entry<'_>,
-    what: Added,
+    what: AdditionKind,
     placeholders: &mut Placeholders,
     found: &mut Diagnostics,
 ) -> Option<Change> {
     let known: &[&str] = match what {
-        Added::Term(_) | Added::Definition => &["add", "name", "value"],
-        Added::Force => &["add", "name", "on", "value", "linear"],
-        Added::Coordinate => &["add", "name", "unit", "doc"],
-        Added::State => &["add", "name", "unit", "rate", "doc"],
+        AdditionKind::Term(_) | AdditionKind::Definition => &["add", "name", "value"],
+        AdditionKind::Force => &["add", "name", "on", "value", "linear"],
+        AdditionKind::Coordinate => &["add", "name", "unit", "doc"],
+        AdditionKind::State => &["add", "name", "unit", "rate", "doc"],
     };
     let record = Record::read_with(entry, known, "{ add = \"force\", ... }", found)?;
     let name = read_new_name(&record, found);
     Some(match what {
-        Added::Term(section) => Change::Term {
+        AdditionKind::Term(section) => Change::Term {
             section,
             value: read_expression(&record, "value", placeholders, found)?,
             name: name?,
         },
-        Added::Definition => Change::Definition {
+        AdditionKind::Definition => Change::Definition {
             value: read_expression(&record, "value", placeholders, found)?,
             name: name?,
         },
-        Added::Force => Change::Force {
+        AdditionKind::Force => Change::Force {
             target: read_expression(&record, "on", placeholders, found)?,
             value: read_expression(&record, "value", placeholders, found)?,
             linear: match record.get("linear") {
@@ -152,22 +152,22 @@ fn addition(
             },
             name: name?,
         },
-        Added::Coordinate => Change::Coordinate {
-            unit: unit(&record, placeholders, found)?,
-            doc: doc(&record, found)?,
+        AdditionKind::Coordinate => Change::Coordinate {
+            unit: read_unit(&record, placeholders, found)?,
+            doc: read_doc(&record, found)?,
             name: name?,
         },
-        Added::State => Change::State {
-            unit: unit(&record, placeholders, found)?,
+        AdditionKind::State => Change::State {
+            unit: read_unit(&record, placeholders, found)?,
             rate: read_expression(&record, "rate", placeholders, found)?,
-            doc: doc(&record, found)?,
+            doc: read_doc(&record, found)?,
             name: name?,
         },
     })
 }
 
 /// Reads the unit of an added quantity.
-fn unit(
+fn read_unit(
     record: &Record<'_>,
     placeholders: &mut Placeholders,
     found: &mut Diagnostics,
@@ -178,25 +178,26 @@ fn unit(
 }
 
 /// Reads the description of an added quantity.
-fn doc(record: &Record<'_>, found: &mut Diagnostics) -> Option<String> {
+fn read_doc(record: &Record<'_>, found: &mut Diagnostics) -> Option<String> {
     Some(read_text(record, "doc", "\"description of the quantity\"", found)?.text)
 }
 
-fn substitution(
+fn read_substitution(
     entry: &Entry<'_>,
-    within: Replaced,
+    within: ReplacementScope,
     placeholders: &mut Placeholders,
     found: &mut Diagnostics,
 ) -> Option<Change> {
     let known: &[&str] = match within {
-        Replaced::Kinetic => &["substitute", "terms", "find", "replace"],
-        Replaced::Site(_) | Replaced::Dampers | Replaced::Measured | Replaced::Input => {
-            &["substitute", "find", "replace"]
-        }
+        ReplacementScope::Kinetic => &["substitute", "terms", "find", "replace"],
+        ReplacementScope::Site(_)
+        | ReplacementScope::Dampers
+        | ReplacementScope::Measured
+        | ReplacementScope::Input => &["substitute", "find", "replace"],
     };
     let record = Record::read_with(entry, known, "{ substitute = \"mesh\", ... }", found)?;
     // The placeholder of the damper is defined only in this scope.
-    if let Replaced::Dampers = within {
+    if let ReplacementScope::Dampers = within {
         placeholders.known.push(DAMPER_PLACEHOLDER.to_owned());
     }
     let find = read_expression(&record, "find", placeholders, found);
@@ -205,11 +206,11 @@ fn substitution(
         .known
         .retain(|known| known != DAMPER_PLACEHOLDER);
     let within = match within {
-        Replaced::Site(_) => SubstitutionScope::Site,
-        Replaced::Dampers => SubstitutionScope::Dampers,
-        Replaced::Measured => SubstitutionScope::Measured,
-        Replaced::Input => SubstitutionScope::Input,
-        Replaced::Kinetic => {
+        ReplacementScope::Site(_) => SubstitutionScope::Site,
+        ReplacementScope::Dampers => SubstitutionScope::Dampers,
+        ReplacementScope::Measured => SubstitutionScope::Measured,
+        ReplacementScope::Input => SubstitutionScope::Input,
+        ReplacementScope::Kinetic => {
             let mut terms = Vec::new();
             for term in read_nonempty_list(&record, "terms", "[\"{term}\"]", found)? {
                 let term = found.push_error(term.written())?;

@@ -40,7 +40,7 @@ pub(super) fn find_dampers(model: &Model, deflection: &Expr) -> Vec<Damper> {
     }
     for force in model.forces.iter().filter(|f| acts_along(model, f, &rate)) {
         for part in split_terms(&force.value) {
-            if moving_factor(model, part).is_some_and(is_along) {
+            if find_variable_factor(model, part).is_some_and(is_along) {
                 note(Section::Forces, &force.name, part);
             }
         }
@@ -67,19 +67,19 @@ fn split_terms(value: &Expr) -> Vec<&Expr> {
 }
 
 /// Returns the only variable factor of a product.
-fn moving_factor<'m>(model: &Model, product: &'m Expr) -> Option<&'m Expr> {
+fn find_variable_factor<'m>(model: &Model, product: &'m Expr) -> Option<&'m Expr> {
     let is_fixed = |expr: &Expr| is_constant(model, expr, &mut Vec::new());
     match &product.kind {
-        ExprKind::Negate(inner) => moving_factor(model, inner),
+        ExprKind::Negate(inner) => find_variable_factor(model, inner),
         ExprKind::Binary(BinaryOperator::Multiply, left, right) => {
             match (is_fixed(left), is_fixed(right)) {
-                (true, false) => moving_factor(model, right),
-                (false, true) => moving_factor(model, left),
+                (true, false) => find_variable_factor(model, right),
+                (false, true) => find_variable_factor(model, left),
                 _ => None,
             }
         }
         ExprKind::Binary(BinaryOperator::Divide, above, below) if is_fixed(below) => {
-            moving_factor(model, above)
+            find_variable_factor(model, above)
         }
         _ => Some(product),
     }

@@ -73,7 +73,7 @@ impl Effect {
     }
 
     /// Returns true if the effect declares which part of a force is linear between switches.
-    pub(super) fn states_linear_part(&self) -> bool {
+    pub(super) fn declares_linear_part(&self) -> bool {
         let states = |edit: &Change| {
             matches!(
                 edit,

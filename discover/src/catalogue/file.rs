@@ -22,7 +22,7 @@ use super::placeholders::Placeholders;
 pub fn read_effects(source: &Source) -> Result<Vec<Effect>, Diagnostics> {
     toml_file::read(source, |entries, found| {
         let file = Name {
-            text: "the file of effects".to_owned(),
+            text: "the effects file".to_owned(),
             span: Span::new(0, 0),
         };
         let top = Record::with_keys(file, entries.to_vec(), &["effect"], found).as_file();
@@ -30,13 +30,13 @@ pub fn read_effects(source: &Source) -> Result<Vec<Effect>, Diagnostics> {
         let list = found.push_error(list.list("[[effect]]"))?;
         Some(
             list.iter()
-                .filter_map(|entry| effect(entry, found))
+                .filter_map(|entry| read_effect(entry, found))
                 .collect(),
         )
     })
 }
 
-fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
+fn read_effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
     let known = [
         "name",
         "site",
@@ -54,8 +54,8 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
     let site = record.require_with("site", "write site = \"axis\"", found);
     let site = site.cloned().map(|site| site.keyword(&SiteKind::KEYWORDS));
     let site = site.and_then(|site| found.push_error(site));
-    let orders = truth(&record, "orders", found);
-    let loads = truth(&record, "loads", found);
+    let orders = read_flag(&record, "orders", found);
+    let loads = read_flag(&record, "loads", found);
     let parameters = read_nonempty_list(&record, "parameters", "[{ name = ... }]", found)?;
     let edits = read_nonempty_list(&record, "edits", "[{ add = \"force\", ... }]", found)?;
     let (site, orders, loads) = (site?, orders?, loads?);
@@ -99,7 +99,7 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
     };
     let mut listed = Vec::new();
     for entry in &parameters {
-        listed.extend(parameter(entry, &mut placeholders, found));
+        listed.extend(read_parameter(entry, &mut placeholders, found));
     }
     let mut changes = Vec::new();
     for entry in &edits {
@@ -128,7 +128,7 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
 }
 
 /// Reads a boolean key; false if absent.
-fn truth(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option<bool> {
+fn read_flag(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option<bool> {
     let truth = record.get(key).map(|entry| entry.boolean());
     truth.map_or(Some(false), |truth| found.push_error(truth))
 }
@@ -143,7 +143,7 @@ fn read_name(entry: &Entry<'_>) -> Option<StringValue> {
     }
 }
 
-fn parameter(
+fn read_parameter(
     entry: &Entry<'_>,
     placeholders: &mut Placeholders,
     found: &mut Diagnostics,
@@ -165,7 +165,7 @@ fn parameter(
         .cloned()
         .map(|sign| sign.keyword(&[("+", true), ("", false)]));
     let positive = sign.and_then(|sign| found.push_error(sign));
-    let inverse = truth(&record, "inverse", found);
+    let inverse = read_flag(&record, "inverse", found);
     Some(EffectParameter {
         name: name?,
         unit: unit?.text,

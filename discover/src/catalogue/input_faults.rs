@@ -27,7 +27,8 @@ pub(crate) fn describe_fault(fault: InputFault) -> (&'static str, &'static str) 
 /// for messages.
 pub fn list_input_faults(model: &Model, path: &str) -> Vec<Candidate> {
     let inputs = list_replaceable(model);
-    let all = inputs.flat_map(|input| InputFault::ALL.map(|fault| candidate(model, input, fault)));
+    let all =
+        inputs.flat_map(|input| InputFault::ALL.map(|fault| create_candidate(model, input, fault)));
     let text = &model.source.text;
     let is_written = |candidate: &Candidate| {
         let absent = candidate
@@ -40,7 +41,7 @@ pub fn list_input_faults(model: &Model, path: &str) -> Vec<Candidate> {
     all.flatten().filter(is_written).collect()
 }
 
-fn candidate(model: &Model, input: &Input, fault: InputFault) -> Option<Candidate> {
+fn create_candidate(model: &Model, input: &Input, fault: InputFault) -> Option<Candidate> {
     let orders: Vec<usize> = model.fields.iter().map(|field| field.order).collect();
     let name = fault.parameter_name(&input.name);
     let changes = replace_input(model, &input.name, &fault.write_expression(&input.name));

@@ -5,7 +5,7 @@ use eomgen_model_spec::model::{Expr, ExprKind, Function, Model, Term};
 
 use crate::catalogue::products::{Square, find_square, is_constant, split_sum};
 use crate::catalogue::site::format_expression;
-use crate::catalogue::springs::{deflection_units, is_deflection, name_spring};
+use crate::catalogue::springs::{find_deflection_units, is_deflection, name_spring};
 
 /// Force that a spring or a mesh transmits.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,10 +21,12 @@ pub struct Load {
 /// Returns the loads of a model.
 pub fn find_loads(model: &Model) -> Vec<Load> {
     let terms = model.potential.iter();
-    terms.flat_map(|term| of_term(model, term)).collect()
+    terms
+        .flat_map(|term| find_loads_in_term(model, term))
+        .collect()
 }
 
-fn of_term(model: &Model, term: &Term) -> Vec<Load> {
+fn find_loads_in_term(model: &Model, term: &Term) -> Vec<Load> {
     let squares: Vec<(&Expr, Square<'_>)> = split_sum(&term.value)
         .into_iter()
         .filter_map(|summand| Some((summand, find_square(model, summand)?)))
@@ -33,10 +35,10 @@ fn of_term(model: &Model, term: &Term) -> Vec<Load> {
         .collect();
     let is_only = squares.len() == 1;
     let load = |(number, (summand, square)): (usize, &(&Expr, Square<'_>))| {
-        let (_, unit) = deflection_units(model, beyond_play(square.base))?;
+        let (_, unit) = find_deflection_units(model, remove_play(square.base))?;
         Some(Load {
             name: name_spring(term, &square.parameters, number, is_only),
-            force: slope(model, summand, square),
+            force: format_derivative(model, summand, square),
             unit,
         })
     };
@@ -51,11 +53,11 @@ fn is_load(model: &Model, base: &Expr) -> bool {
         }
         _ => true,
     };
-    is_play && is_deflection(model, beyond_play(base))
+    is_play && is_deflection(model, remove_play(base))
 }
 
 /// Returns the argument p of deadzone(p, b), or the expression itself.
-fn beyond_play(base: &Expr) -> &Expr {
+fn remove_play(base: &Expr) -> &Expr {
     match &base.kind {
         ExprKind::Call(Function::Deadzone, arguments) => &arguments[0],
         _ => base,
@@ -64,7 +66,7 @@ fn beyond_play(base: &Expr) -> &Expr {
 
 /// Returns the derivative of a product with respect to the base of its square, in the notation of
 /// the specification.
-fn slope(model: &Model, product: &Expr, square: &Square<'_>) -> String {
+fn format_derivative(model: &Model, product: &Expr, square: &Square<'_>) -> String {
     let source = &model.source.text;
     let part = |from: usize, to: usize| source.get(from..to).unwrap_or_default();
     let before = part(product.span.start, square.square.span.start);
@@ -84,7 +86,7 @@ mod tests {
     use super::{Load, find_loads};
 
     /// Returns the loads of a mass on a spring with the given potential energy.
-    fn loads_of(energy: &str) -> Vec<Load> {
+    fn find_loads_of_energy(energy: &str) -> Vec<Load> {
         let text = format!(
             "[model]\nname = \"one\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
              k = {{ value = 2, unit = \"N/m\" }}\nn = {{ value = 3 }}\nb = {{ value = 1, unit = \"m\" }}\n\
@@ -96,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn a_load_is_the_derivative_of_the_energy_by_the_deflection() {
+    fn load_is_derivative_of_energy_with_respect_to_deflection() {
         for (energy, force) in [
             ("1/2*k*x^2", "k*x"),
             ("0.5*k*(x - y)^2", "k*(x - y)"),
@@ -105,15 +107,15 @@ mod tests {
             ("k*(x - n*y)^2/2", "2*k*(x - n*y)/2"),
             ("(1/2*k)*x^2", "2*(1/2*k)*x"),
         ] {
-            let found = loads_of(energy);
+            let found = find_loads_of_energy(energy);
             let forces: Vec<&str> = found.iter().map(|load| load.force.as_str()).collect();
             assert_eq!(forces, [force], "{energy}");
             assert_eq!((found[0].name.as_str(), found[0].unit), ("spring", "N"));
         }
-        let two = loads_of("1/2*k*x^2 + 1/2*k*n*y^2");
+        let two = find_loads_of_energy("1/2*k*x^2 + 1/2*k*n*y^2");
         let names: Vec<&str> = two.iter().map(|load| load.name.as_str()).collect();
         assert_eq!(names, ["spring_k", "spring_2"]);
-        assert_eq!(loads_of("1/4*k*x^4/b^2"), []);
-        assert_eq!(loads_of("k*x*y"), []);
+        assert_eq!(find_loads_of_energy("1/4*k*x^4/b^2"), []);
+        assert_eq!(find_loads_of_energy("k*x*y"), []);
     }
 }

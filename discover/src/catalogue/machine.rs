@@ -20,13 +20,13 @@ use crate::catalogue::site::{Site, format_expression};
 use crate::catalogue::springs::dimension;
 
 /// Name of the site.
-const MACHINE: &str = "machine";
+const MACHINE_SITE: &str = "machine";
 
 /// Placeholders of the first moments along x, y and z.
-const MOMENTS: [&str; 3] = ["moment_x", "moment_y", "moment_z"];
+const MOMENT_PLACEHOLDERS: [&str; 3] = ["moment_x", "moment_y", "moment_z"];
 
 /// Position of a mass, derived from its velocity.
-enum Place {
+enum MassPosition {
     /// Sum of lengths, along one direction.
     Length(String),
     /// Point at a distance from the origin of a rotating line.
@@ -92,11 +92,11 @@ pub(super) fn find_machine(model: &Model) -> Option<Site> {
             }
         }
     }
-    let along = MOMENTS.iter().zip(moments);
+    let along = MOMENT_PLACEHOLDERS.iter().zip(moments);
     let along = along.filter(|(_, moment)| !moment.is_empty());
     moving.iter().any(|found| found.len() > 1).then(|| Site {
         kind: SiteKind::Machine,
-        name: MACHINE.to_owned(),
+        name: MACHINE_SITE.to_owned(),
         arguments: (along.map(|(key, moment)| (*key, moment.join(" + ")))).collect(),
         terms: Vec::new(),
         dampers: Vec::new(),
@@ -166,15 +166,15 @@ fn find_squares<'m>(product: &'m Expr, number: &mut f64) -> Option<&'m Expr> {
             right,
         ) => match (is_fixed(left), is_fixed(right), operator) {
             (false, true, BinaryOperator::Multiply) => {
-                *number *= numeric_factor(right);
+                *number *= multiply_numbers(right);
                 find_squares(left, number)
             }
             (false, true, _) => {
-                *number /= numeric_factor(right);
+                *number /= multiply_numbers(right);
                 find_squares(left, number)
             }
             (true, false, BinaryOperator::Multiply) => {
-                *number *= numeric_factor(left);
+                *number *= multiply_numbers(left);
                 find_squares(right, number)
             }
             _ => None,
@@ -184,14 +184,14 @@ fn find_squares<'m>(product: &'m Expr, number: &mut f64) -> Option<&'m Expr> {
 }
 
 /// Returns the product of the numbers among the factors of a product.
-fn numeric_factor(expr: &Expr) -> f64 {
+fn multiply_numbers(expr: &Expr) -> f64 {
     match &expr.kind {
         ExprKind::Number(value) => *value,
         ExprKind::Binary(BinaryOperator::Multiply, left, right) => {
-            numeric_factor(left) * numeric_factor(right)
+            multiply_numbers(left) * multiply_numbers(right)
         }
         ExprKind::Binary(BinaryOperator::Divide, left, right) => {
-            numeric_factor(left) / numeric_factor(right)
+            multiply_numbers(left) / multiply_numbers(right)
         }
         _ => 1.0,
     }
@@ -217,11 +217,12 @@ fn is_fixed(expr: &Expr) -> bool {
 /// Returns the position of a mass along x, y and z, for the directions in which it moves.
 fn find_positions(model: &Model, mass: &Mass<'_>) -> Option<Vec<String>> {
     let velocities = mass.velocities.iter();
-    let places: Option<Vec<Place>> = velocities.map(|of| find_place(model, of)).collect();
+    let places: Option<Vec<MassPosition>> =
+        velocities.map(|of| find_mass_position(model, of)).collect();
     let mut places = places?;
-    places.retain(|place| !matches!(place, Place::AlongLine));
+    places.retain(|place| !matches!(place, MassPosition::AlongLine));
     if let [
-        Place::Turning {
+        MassPosition::Turning {
             root,
             lever,
             deflection,
@@ -238,8 +239,8 @@ fn find_positions(model: &Model, mass: &Mass<'_>) -> Option<Vec<String>> {
         });
     }
     let lengths = places.into_iter().map(|place| match place {
-        Place::Length(length) => Some(length),
-        Place::Turning { .. } | Place::AlongLine => None,
+        MassPosition::Length(length) => Some(length),
+        MassPosition::Turning { .. } | MassPosition::AlongLine => None,
     });
     lengths
         .collect::<Option<Vec<String>>>()
@@ -247,7 +248,7 @@ fn find_positions(model: &Model, mass: &Mass<'_>) -> Option<Vec<String>> {
 }
 
 /// Returns the position of a mass with a given velocity.
-fn find_place(model: &Model, velocity: &Expr) -> Option<Place> {
+fn find_mass_position(model: &Model, velocity: &Expr) -> Option<MassPosition> {
     let (mut turning, mut lengths, mut is_deflection) = (None, Vec::new(), true);
     let mut parts = Vec::new();
     split_signed(velocity, false, &mut parts);
@@ -256,25 +257,25 @@ fn find_place(model: &Model, velocity: &Expr) -> Option<Place> {
         let [rate] = rates[..] else { return None };
         if dimension(model, rate)? == Dimension::DIMENSIONLESS {
             let lever = find_lever(part)?;
-            if holds_field(model, lever) && parts.len() == 1 {
-                return Some(Place::AlongLine);
+            if contains_field(model, lever) && parts.len() == 1 {
+                return Some(MassPosition::AlongLine);
             }
             if turning.is_some() || *is_negative || !is_fixed(lever) {
                 return None;
             }
             turning = Some((name_rate(model, rate), format_expression(model, lever)));
         } else {
-            is_deflection &= holds_field(model, rate);
+            is_deflection &= contains_field(model, rate);
             let sign = if *is_negative { "-" } else { "+" };
-            lengths.push(format!("{sign} {}", without_dot(model, part, rate)?));
+            lengths.push(format!("{sign} {}", find_length(model, part, rate)?));
         }
     }
     let length = lengths.join(" ");
     let length = length.strip_prefix("+ ").unwrap_or(&length).to_owned();
     match turning {
-        None => Some(Place::Length(length)),
+        None => Some(MassPosition::Length(length)),
         // A deflection is measured perpendicular to the line; a coordinate may have any direction.
-        Some((root, lever)) if is_deflection => Some(Place::Turning {
+        Some((root, lever)) if is_deflection => Some(MassPosition::Turning {
             root,
             lever,
             deflection: (!lengths.is_empty()).then_some(length),
@@ -323,11 +324,11 @@ fn find_lever(product: &Expr) -> Option<&Expr> {
 }
 
 /// Returns true if an expression contains a field, with definitions expanded.
-fn holds_field(model: &Model, expr: &Expr) -> bool {
+fn contains_field(model: &Model, expr: &Expr) -> bool {
     let mut found = false;
     expr.visit(&mut |part| match part.kind {
         ExprKind::Field(_) | ExprKind::ModeCoordinate(_) => found = true,
-        ExprKind::Definition(id) => found |= holds_field(model, &model.definitions[id].value),
+        ExprKind::Definition(id) => found |= contains_field(model, &model.definitions[id].value),
         _ => {}
     });
     found
@@ -343,7 +344,7 @@ fn name_rate(model: &Model, of: &Expr) -> String {
 
 /// Returns the length whose rate is a constant multiple of the given rate; `None` if the factor is
 /// variable.
-fn without_dot(model: &Model, part: &Expr, rate: &Expr) -> Option<String> {
+fn find_length(model: &Model, part: &Expr, rate: &Expr) -> Option<String> {
     let (mut dots, mut moving) = (Vec::new(), 0);
     part.visit(&mut |inner| match &inner.kind {
         ExprKind::Dot(_) => dots.push(inner.span),
@@ -371,7 +372,7 @@ mod tests {
 
     /// Returns the first moments of a machine with the given kinetic energy and with pairs of
     /// masses.
-    fn moments_of(kinetic: &str) -> Option<Vec<(&'static str, String)>> {
+    fn find_moments(kinetic: &str) -> Option<Vec<(&'static str, String)>> {
         let text = format!(
             "[model]\nname = \"one\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
              J = {{ value = 1, unit = \"kg m^2\" }}\nmu = {{ value = 1, unit = \"kg/m\" }}\n\
@@ -389,7 +390,7 @@ mod tests {
     fn moments_of_an_arm_follow_from_the_velocities_of_beam_and_payload() {
         let beam = "beam = \"1/2*integral(mu*(s*dot(theta) + dot(w))^2, w)\"";
         let load = "load = \"1/2*m*(l*dot(theta) + at(dot(w), l))^2\"";
-        let found = moments_of(&format!("{beam}\n{load}"));
+        let found = find_moments(&format!("{beam}\n{load}"));
         let x = "integral(mu*(s*cos(theta) - (w)*sin(theta)), w) + m*(l*cos(theta) - (at(w, l))*sin(theta))";
         let y = "integral(mu*(s*sin(theta) + (w)*cos(theta)), w) + m*(l*sin(theta) + (at(w, l))*cos(theta))";
         let expected = [("moment_x", x.to_owned()), ("moment_y", y.to_owned())];
@@ -397,17 +398,17 @@ mod tests {
         // The velocity along the line belongs to the same position.
         let exact = "beam = \"1/2*integral(mu*((s*dot(theta) + dot(w))^2 + (w*dot(theta))^2), w)\"";
         assert_eq!(
-            moments_of(&format!("{exact}\n{load}")),
+            find_moments(&format!("{exact}\n{load}")),
             Some(expected.to_vec())
         );
     }
 
     #[test]
     fn moments_of_masses_that_translate_are_sums_of_their_coordinates() {
-        let found = moments_of("a = \"1/2*m*dot(x)^2\"\nb = \"m*(dot(x) - dot(y))^2/2\"");
+        let found = find_moments("a = \"1/2*m*dot(x)^2\"\nb = \"m*(dot(x) - dot(y))^2/2\"");
         let x = "m*(x) + 2*m*(x - y)/2".to_owned();
         assert_eq!(found, Some(vec![("moment_x", x)]));
-        let found = moments_of("a = \"1/2*m*((dot(x) + dot(y))^2 + dot(y)^2)\"");
+        let found = find_moments("a = \"1/2*m*((dot(x) + dot(y))^2 + dot(y)^2)\"");
         let moments = [("moment_x", "m*(x + y)"), ("moment_y", "m*(y)")];
         let moments = moments.map(|(key, moment)| (key, moment.to_owned()));
         assert_eq!(found, Some(moments.to_vec()));
@@ -426,7 +427,7 @@ mod tests {
             // The direction of x relative to the line is unknown.
             "a = \"1/2*m*(l*dot(theta) + dot(x))^2\"\nb = \"1/2*m*dot(x)^2\"",
         ] {
-            assert_eq!(moments_of(kinetic), None, "{kinetic}");
+            assert_eq!(find_moments(kinetic), None, "{kinetic}");
         }
     }
 }

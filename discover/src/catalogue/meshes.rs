@@ -10,23 +10,27 @@ use eomgen_model_spec::model::{Expr, ExprKind, Function, Model};
 
 use crate::catalogue::effect::SiteKind;
 use crate::catalogue::site::{Site, format_expression};
-use crate::catalogue::springs::{deflection_units, is_deflection};
+use crate::catalogue::springs::{find_deflection_units, is_deflection};
 
 /// Returns the meshes of a model.
 pub(super) fn find_meshes(model: &Model) -> Vec<Site> {
-    let deflections = deflections(model);
-    let found = deflections.iter().filter_map(|of| mesh(model, of));
+    let deflections = list_deflections(model);
+    let found = deflections
+        .iter()
+        .filter_map(|of| create_mesh_site(model, of));
     found.collect()
 }
 
 /// Returns the distinct deflections with play. Coordinates are first, in the order of the
 /// specification.
-fn deflections(model: &Model) -> Vec<Expr> {
+fn list_deflections(model: &Model) -> Vec<Expr> {
     let mut found: Vec<Expr> = Vec::new();
-    for (_, _, value) in values(model) {
+    for (_, _, value) in list_expressions(model) {
         visit_play(value, &mut |function, arguments| {
             let deflection = &arguments[0];
-            let is_known = found.iter().any(|known| is_same(model, known, deflection));
+            let is_known = found
+                .iter()
+                .any(|known| is_same_expression(model, known, deflection));
             if function == Function::Deadzone && !is_known && is_deflection(model, deflection) {
                 found.push(deflection.clone());
             }
@@ -52,7 +56,7 @@ fn visit_play(expr: &Expr, each: &mut impl FnMut(Function, &[Expr])) {
 }
 
 /// Returns true if two deflections have the same text apart from spaces.
-fn is_same(model: &Model, one: &Expr, other: &Expr) -> bool {
+fn is_same_expression(model: &Model, one: &Expr, other: &Expr) -> bool {
     let plain = |expr: &Expr| {
         format_expression(model, expr)
             .split_whitespace()
@@ -67,11 +71,14 @@ pub(super) fn find_mesh_coordinates(model: &Model) -> Vec<CoordinateId> {
         ExprKind::Coordinate(id) => Some(id),
         _ => None,
     };
-    deflections(model).iter().filter_map(coordinate).collect()
+    list_deflections(model)
+        .iter()
+        .filter_map(coordinate)
+        .collect()
 }
 
 /// Returns all expressions of the model in which text may be replaced.
-fn values(model: &Model) -> Vec<(Section, &str, &Expr)> {
+fn list_expressions(model: &Model) -> Vec<(Section, &str, &Expr)> {
     let definitions = model
         .definitions
         .iter()
@@ -99,7 +106,7 @@ fn values(model: &Model) -> Vec<(Section, &str, &Expr)> {
 fn has_play(model: &Model, expr: &Expr, deflection: &Expr) -> bool {
     let mut found = false;
     visit_play(expr, &mut |_, arguments| {
-        found |= is_same(model, &arguments[0], deflection);
+        found |= is_same_expression(model, &arguments[0], deflection);
     });
     found
 }
@@ -107,7 +114,7 @@ fn has_play(model: &Model, expr: &Expr, deflection: &Expr) -> bool {
 /// Returns the parameters that define the size of a play.
 pub fn find_play_parameters(model: &Model) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
-    for (_, _, value) in values(model) {
+    for (_, _, value) in list_expressions(model) {
         visit_play(value, &mut |_, arguments| {
             if let Some(ExprKind::Parameter(id)) = arguments.get(1).map(|arg| &arg.kind) {
                 found.push(model.parameters[*id].name.clone());
@@ -119,10 +126,10 @@ pub fn find_play_parameters(model: &Model) -> Vec<String> {
     found
 }
 
-fn mesh(model: &Model, deflection: &Expr) -> Option<Site> {
+fn create_mesh_site(model: &Model, deflection: &Expr) -> Option<Site> {
     let mut terms: Vec<(Section, Vec<String>)> = Vec::new();
     let (mut stiffness, mut of) = (None, None);
-    for (section, name, value) in values(model) {
+    for (section, name, value) in list_expressions(model) {
         if !has_play(model, value, deflection) {
             continue;
         }
@@ -141,7 +148,7 @@ fn mesh(model: &Model, deflection: &Expr) -> Option<Site> {
             None => terms.push((section, vec![name.to_owned()])),
         }
     }
-    let (unit, _) = deflection_units(model, deflection)?;
+    let (unit, _) = find_deflection_units(model, deflection)?;
     let p = format_expression(model, deflection);
     let mut arguments: BTreeMap<&'static str, String> = [
         ("p", p.clone()),
@@ -150,7 +157,7 @@ fn mesh(model: &Model, deflection: &Expr) -> Option<Site> {
         ("unit", unit.to_owned()),
     ]
     .into();
-    arguments.extend(half_play(model, deflection).map(|play| ("b", play)));
+    arguments.extend(format_half_play(model, deflection).map(|play| ("b", play)));
     Some(Site {
         kind: SiteKind::Mesh,
         arguments,
@@ -182,11 +189,13 @@ fn name_of_mesh<'m>(model: &'m Model, deflection: &Expr) -> Option<&'m str> {
 }
 
 /// Returns half the play of a deflection as written in the specification.
-fn half_play(model: &Model, deflection: &Expr) -> Option<String> {
+fn format_half_play(model: &Model, deflection: &Expr) -> Option<String> {
     let mut play = None;
-    for (_, _, value) in values(model) {
+    for (_, _, value) in list_expressions(model) {
         visit_play(value, &mut |function, arguments| {
-            if function == Function::Deadzone && is_same(model, &arguments[0], deflection) {
+            if function == Function::Deadzone
+                && is_same_expression(model, &arguments[0], deflection)
+            {
                 play = arguments.get(1).map(|half| format_expression(model, half));
             }
         });

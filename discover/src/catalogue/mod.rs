@@ -39,7 +39,7 @@ use crate::catalogue::effect::Effect;
 use crate::thresholds;
 
 /// Text of the built-in catalogue.
-const BUILT_IN: &str = include_str!("catalogue.toml");
+const BUILT_IN_CATALOGUE: &str = include_str!("catalogue.toml");
 
 /// Loads the built-in effects and the effects of a user's file. A user-defined effect replaces the
 /// built-in effect of the same name.
@@ -48,7 +48,7 @@ const BUILT_IN: &str = include_str!("catalogue.toml");
 ///
 /// All errors in the user's file, with line and column.
 pub fn load_effects(own: Option<&Path>) -> Result<Vec<Effect>, Diagnostics> {
-    let mut effects = file::read_effects(&Source::new("catalogue.toml", BUILT_IN))?;
+    let mut effects = file::read_effects(&Source::new("catalogue.toml", BUILT_IN_CATALOGUE))?;
     if let Some(path) = own {
         let mut found = file::read_effects(&toml_file::source(
             path,
@@ -64,7 +64,7 @@ pub fn load_effects(own: Option<&Path>) -> Result<Vec<Effect>, Diagnostics> {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn the_built_in_catalogue_can_be_read() {
+    fn built_in_catalogue_can_be_read() {
         let effects = super::load_effects(None).unwrap_or_else(|found| panic!("{found}"));
         assert!(effects.len() >= 16);
     }

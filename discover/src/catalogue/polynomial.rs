@@ -11,7 +11,7 @@ use crate::thresholds;
 
 /// Variable of a polynomial.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Letter {
+enum Variable {
     /// Coordinate.
     Coordinate(CoordinateId),
     /// Rate of a coordinate.
@@ -23,7 +23,7 @@ enum Letter {
 }
 
 /// Product of variables with nonzero powers.
-type Monomial = BTreeMap<Letter, i32>;
+type Monomial = BTreeMap<Variable, i32>;
 
 /// Sum of monomials with their factors.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,7 +32,7 @@ pub(super) struct Polynomial(BTreeMap<Monomial, f64>);
 impl Polynomial {
     /// Expands an expression. `None` if it is not a polynomial or has too many terms.
     pub(super) fn from_expression(model: &Model, expr: &Expr) -> Option<Self> {
-        Reader::new(model).polynomial(expr)
+        Reader::new(model).convert(expr)
     }
 
     /// Returns the time derivative; `None` if the polynomial contains a rate.
@@ -41,13 +41,13 @@ impl Polynomial {
         for (monomial, factor) in &self.0 {
             for (letter, power) in monomial {
                 let rate = match letter {
-                    Letter::Coordinate(id) => Letter::Rate(*id),
-                    Letter::Rate(_) => return None,
-                    Letter::Parameter(_) | Letter::Inverse(_) => continue,
+                    Variable::Coordinate(id) => Variable::Rate(*id),
+                    Variable::Rate(_) => return None,
+                    Variable::Parameter(_) | Variable::Inverse(_) => continue,
                 };
                 let mut term = monomial.clone();
-                raise(&mut term, letter.clone(), -1);
-                raise(&mut term, rate, 1);
+                multiply_by_power(&mut term, letter.clone(), -1);
+                multiply_by_power(&mut term, rate, 1);
                 sum.add_term(term, factor * f64::from(*power));
             }
         }
@@ -57,7 +57,8 @@ impl Polynomial {
     /// Returns true if two rates are proportional: both are linear in the rates of coordinates, and
     /// all coefficients have the same ratio. Zero is not proportional to any rate.
     pub(super) fn is_proportional_to(&self, other: &Self) -> bool {
-        let (Some(own), Some(others)) = (self.coefficients(), other.coefficients()) else {
+        let (Some(own), Some(others)) = (self.collect_coefficients(), other.collect_coefficients())
+        else {
             return false;
         };
         let ids = || own.keys().chain(others.keys());
@@ -66,26 +67,26 @@ impl Polynomial {
             list.get(id).unwrap_or(&zero).clone()
         };
         let agree = |a: &CoordinateId, b: &CoordinateId| {
-            let one = of(&own, a).times(&of(&others, b));
-            let two = of(&own, b).times(&of(&others, a));
+            let one = of(&own, a).multiply(&of(&others, b));
+            let two = of(&own, b).multiply(&of(&others, a));
             matches!((one, two), (Some(one), Some(two)) if one.is_near(&two))
         };
         !own.is_empty() && !others.is_empty() && ids().all(|a| ids().all(|b| agree(a, b)))
     }
 
     /// Returns the coefficient of each rate; `None` if a term has no rate or several rates.
-    fn coefficients(&self) -> Option<BTreeMap<CoordinateId, Self>> {
+    fn collect_coefficients(&self) -> Option<BTreeMap<CoordinateId, Self>> {
         let mut found: BTreeMap<CoordinateId, Self> = BTreeMap::new();
         for (monomial, factor) in &self.0 {
             let mut rates = monomial.iter().filter_map(|(letter, power)| match letter {
-                Letter::Rate(id) => Some((*id, *power)),
+                Variable::Rate(id) => Some((*id, *power)),
                 _ => None,
             });
             let (Some((id, 1)), None) = (rates.next(), rates.next()) else {
                 return None;
             };
             let mut rest = monomial.clone();
-            rest.remove(&Letter::Rate(id));
+            rest.remove(&Variable::Rate(id));
             found.entry(id).or_default().add_term(rest, *factor);
         }
         found.retain(|_, coefficient| !coefficient.0.is_empty());
@@ -104,13 +105,13 @@ impl Polynomial {
         })
     }
 
-    fn number(value: f64) -> Self {
+    fn from_number(value: f64) -> Self {
         let mut sum = Self::default();
         sum.add_term(Monomial::new(), value);
         sum
     }
 
-    fn letter(letter: Letter) -> Self {
+    fn from_variable(letter: Variable) -> Self {
         Self([([(letter, 1)].into(), 1.0)].into())
     }
 
@@ -126,27 +127,27 @@ impl Polynomial {
         for (monomial, factor) in &other.0 {
             self.add_term(monomial.clone(), sign * factor);
         }
-        self.if_short()
+        self.limit_length()
     }
 
-    fn times(&self, other: &Self) -> Option<Self> {
+    fn multiply(&self, other: &Self) -> Option<Self> {
         let mut product = Self::default();
         for (one, factor) in &self.0 {
             for (two, by) in &other.0 {
                 let mut monomial = one.clone();
                 for (letter, power) in two {
-                    raise(&mut monomial, letter.clone(), *power);
+                    multiply_by_power(&mut monomial, letter.clone(), *power);
                 }
                 product.add_term(monomial, factor * by);
             }
         }
-        product.if_short()
+        product.limit_length()
     }
 
     /// Returns the reciprocal. `None` if the polynomial is 0, or contains variables other than
     /// parameters.
-    fn inverse(&self) -> Option<Self> {
-        let is_fixed = |letter: &Letter| matches!(letter, Letter::Parameter(_));
+    fn invert(&self) -> Option<Self> {
+        let is_fixed = |letter: &Variable| matches!(letter, Variable::Parameter(_));
         if self.0.is_empty() || !self.0.keys().flat_map(BTreeMap::keys).all(is_fixed) {
             return None;
         }
@@ -157,15 +158,15 @@ impl Polynomial {
                 .map(|(letter, power)| (letter.clone(), -power));
             return Some(Self([(inverse.collect(), 1.0 / factor)].into()));
         }
-        Some(Self::letter(Letter::Inverse(format!("{self:?}"))))
+        Some(Self::from_variable(Variable::Inverse(format!("{self:?}"))))
     }
 
-    fn if_short(self) -> Option<Self> {
+    fn limit_length(self) -> Option<Self> {
         (self.0.len() <= thresholds::MAX_RATE_TERMS).then_some(self)
     }
 }
 
-fn raise(monomial: &mut Monomial, letter: Letter, by: i32) {
+fn multiply_by_power(monomial: &mut Monomial, letter: Variable, by: i32) {
     let power = monomial.get(&letter).copied().unwrap_or(0) + by;
     match power {
         0 => monomial.remove(&letter),
@@ -187,31 +188,31 @@ impl<'m> Reader<'m> {
         }
     }
 
-    fn polynomial(&mut self, expr: &Expr) -> Option<Polynomial> {
+    fn convert(&mut self, expr: &Expr) -> Option<Polynomial> {
         match &expr.kind {
-            ExprKind::Number(value) => Some(Polynomial::number(*value)),
-            ExprKind::Pi => Some(Polynomial::number(std::f64::consts::PI)),
-            ExprKind::Parameter(id) => Some(Polynomial::letter(Letter::Parameter(*id))),
-            ExprKind::Coordinate(id) => Some(Polynomial::letter(Letter::Coordinate(*id))),
+            ExprKind::Number(value) => Some(Polynomial::from_number(*value)),
+            ExprKind::Pi => Some(Polynomial::from_number(std::f64::consts::PI)),
+            ExprKind::Parameter(id) => Some(Polynomial::from_variable(Variable::Parameter(*id))),
+            ExprKind::Coordinate(id) => Some(Polynomial::from_variable(Variable::Coordinate(*id))),
             ExprKind::Definition(id) => {
                 if self.definitions[*id].is_none() {
                     let model = self.model;
-                    self.definitions[*id] = Some(self.polynomial(&model.definitions[*id].value));
+                    self.definitions[*id] = Some(self.convert(&model.definitions[*id].value));
                 }
                 self.definitions[*id].clone().flatten()
             }
-            ExprKind::Dot(inner) => self.polynomial(inner)?.differentiate(),
+            ExprKind::Dot(inner) => self.convert(inner)?.differentiate(),
             ExprKind::Negate(inner) => {
-                Polynomial::default().add_scaled(&self.polynomial(inner)?, -1.0)
+                Polynomial::default().add_scaled(&self.convert(inner)?, -1.0)
             }
             ExprKind::Binary(operator, left, right) => {
-                let (left, right) = (self.polynomial(left)?, self.polynomial(right)?);
+                let (left, right) = (self.convert(left)?, self.convert(right)?);
                 match operator {
                     BinaryOperator::Add => left.add_scaled(&right, 1.0),
                     BinaryOperator::Subtract => left.add_scaled(&right, -1.0),
-                    BinaryOperator::Multiply => left.times(&right),
-                    BinaryOperator::Divide => left.times(&right.inverse()?),
-                    BinaryOperator::Power => power(&left, &right),
+                    BinaryOperator::Multiply => left.multiply(&right),
+                    BinaryOperator::Divide => left.multiply(&right.invert()?),
+                    BinaryOperator::Power => raise_to_power(&left, &right),
                 }
             }
             _ => None,
@@ -220,8 +221,8 @@ impl<'m> Reader<'m> {
 }
 
 /// Returns a power with a small whole exponent.
-fn power(base: &Polynomial, exponent: &Polynomial) -> Option<Polynomial> {
+fn raise_to_power(base: &Polynomial, exponent: &Polynomial) -> Option<Polynomial> {
     let mut powers = 1..=thresholds::MAX_RATE_POWER;
-    let exponent = powers.find(|n| *exponent == Polynomial::number(f64::from(*n)))?;
-    (1..exponent).try_fold(base.clone(), |product, _| product.times(base))
+    let exponent = powers.find(|n| *exponent == Polynomial::from_number(f64::from(*n)))?;
+    (1..exponent).try_fold(base.clone(), |product, _| product.multiply(base))
 }

@@ -7,17 +7,17 @@ use eomgen_model_spec::model::{Expr, ExprKind, Model};
 /// Returns the summands of a sum; subtracted terms are left out.
 pub(super) fn split_sum(expr: &Expr) -> Vec<&Expr> {
     let mut found = Vec::new();
-    summands_of(expr, &mut found);
+    collect_summands(expr, &mut found);
     found
 }
 
-fn summands_of<'m>(expr: &'m Expr, found: &mut Vec<&'m Expr>) {
+fn collect_summands<'m>(expr: &'m Expr, found: &mut Vec<&'m Expr>) {
     match &expr.kind {
         ExprKind::Binary(BinaryOperator::Add, left, right) => {
-            summands_of(left, found);
-            summands_of(right, found);
+            collect_summands(left, found);
+            collect_summands(right, found);
         }
-        ExprKind::Binary(BinaryOperator::Subtract, left, _) => summands_of(left, found),
+        ExprKind::Binary(BinaryOperator::Subtract, left, _) => collect_summands(left, found),
         _ => found.push(expr),
     }
 }
@@ -35,7 +35,7 @@ pub(super) struct Square<'m> {
 /// Returns the only square in a product; `None` if the product contains another variable factor.
 pub(super) fn find_square<'m>(model: &Model, product: &'m Expr) -> Option<Square<'m>> {
     let (mut found, mut parameters) = (None, Vec::new());
-    factors(model, product, &mut found, &mut parameters)?;
+    read_factors(model, product, &mut found, &mut parameters)?;
     let (whole, base) = found?;
     Some(Square {
         square: whole,
@@ -46,7 +46,7 @@ pub(super) fn find_square<'m>(model: &Model, product: &'m Expr) -> Option<Square
 
 /// Reads the factors of a product: one square of a variable quantity, parameters and numbers.
 /// `None` if there is any other factor.
-fn factors<'m>(
+fn read_factors<'m>(
     model: &Model,
     expr: &'m Expr,
     moving: &mut Option<(&'m Expr, &'m Expr)>,
@@ -54,11 +54,11 @@ fn factors<'m>(
 ) -> Option<()> {
     match &expr.kind {
         ExprKind::Binary(BinaryOperator::Multiply, left, right) => {
-            factors(model, left, moving, parameters)?;
-            factors(model, right, moving, parameters)
+            read_factors(model, left, moving, parameters)?;
+            read_factors(model, right, moving, parameters)
         }
         ExprKind::Binary(BinaryOperator::Divide, above, below) => {
-            factors(model, above, moving, parameters)?;
+            read_factors(model, above, moving, parameters)?;
             is_constant(model, below, parameters).then_some(())
         }
         ExprKind::Binary(BinaryOperator::Power, base, exponent)

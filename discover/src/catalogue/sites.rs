@@ -17,16 +17,16 @@ use crate::model::input_occurrences::list_replaceable;
 
 /// Returns the sites of a model.
 pub fn find_sites(model: &Model) -> Vec<Site> {
-    let mut found = axes(model, &find_mesh_coordinates(model));
+    let mut found = find_axes(model, &find_mesh_coordinates(model));
     found.extend(find_meshes(model));
     found.extend(find_arms(model));
     found.extend(find_springs(model));
-    found.extend(list_replaceable(model).map(input));
+    found.extend(list_replaceable(model).map(create_input_site));
     found.extend(find_machine(model));
     found
 }
 
-fn input(input: &Input) -> Site {
+fn create_input_site(input: &Input) -> Site {
     let arguments = [("on", &input.name), ("unit", &input.unit.text)];
     Site {
         kind: SiteKind::Input,
@@ -68,8 +68,8 @@ fn collect_parts(model: &Model, expr: &Expr, into: &mut Parts) {
 }
 
 /// Returns the degree of an expression in the coordinates; `None` if it is not a polynomial.
-fn degree(model: &Model, expr: &Expr) -> Option<u32> {
-    let of = |expr: &Expr| degree(model, expr);
+fn compute_degree(model: &Model, expr: &Expr) -> Option<u32> {
+    let of = |expr: &Expr| compute_degree(model, expr);
     match &expr.kind {
         ExprKind::Coordinate(_) => Some(1),
         ExprKind::Definition(id) => of(&model.definitions[*id].value),
@@ -94,7 +94,7 @@ fn degree(model: &Model, expr: &Expr) -> Option<u32> {
     }
 }
 
-fn axes(model: &Model, meshes: &[CoordinateId]) -> Vec<Site> {
+fn find_axes(model: &Model, meshes: &[CoordinateId]) -> Vec<Site> {
     let mut found = Vec::new();
     let mut shown = Vec::new();
     for observable in &model.observables {
@@ -111,11 +111,11 @@ fn axes(model: &Model, meshes: &[CoordinateId]) -> Vec<Site> {
         if of.other || only_meshes {
             continue;
         }
-        if let Some(site) = axis(&observable.name, on, &observable.unit.text) {
+        if let Some(site) = create_axis_site(&observable.name, on, &observable.unit.text) {
             // If the observable is linear in a single coordinate, a force on the coordinate has the
             // same form, so the coordinate is not a further site.
             if let [only] = of.coordinates[..]
-                && degree(model, &observable.value) == Some(1)
+                && compute_degree(model, &observable.value) == Some(1)
             {
                 shown.push(only);
             }
@@ -124,7 +124,7 @@ fn axes(model: &Model, meshes: &[CoordinateId]) -> Vec<Site> {
     }
     for (id, coordinate) in CoordinateId::first(model.coordinates.len()).zip(&model.coordinates) {
         if !meshes.contains(&id) && !shown.contains(&id) {
-            found.extend(axis(
+            found.extend(create_axis_site(
                 &coordinate.name,
                 &coordinate.name,
                 &coordinate.unit.text,
@@ -134,7 +134,7 @@ fn axes(model: &Model, meshes: &[CoordinateId]) -> Vec<Site> {
     found
 }
 
-fn axis(name: &str, on: &str, unit: &str) -> Option<Site> {
+fn create_axis_site(name: &str, on: &str, unit: &str) -> Option<Site> {
     let (kind, force) = match unit {
         "rad" => (SiteKind::Angle, "N m"),
         "m" => (SiteKind::Axis, "N"),

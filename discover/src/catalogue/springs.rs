@@ -19,7 +19,7 @@ pub(super) fn find_springs(model: &Model) -> Vec<Site> {
     model
         .potential
         .iter()
-        .flat_map(|term| of_term(model, term))
+        .flat_map(|term| find_springs_in_term(model, term))
         .collect()
 }
 
@@ -31,15 +31,15 @@ struct Spring<'m> {
 
 /// Returns the springs of a term. A single spring has the name of the term; of several springs,
 /// each has the name of its stiffness appended.
-fn of_term(model: &Model, term: &Term) -> Vec<Site> {
+fn find_springs_in_term(model: &Model, term: &Term) -> Vec<Site> {
     let springs: Vec<Spring<'_>> = split_sum(&term.value)
         .into_iter()
-        .filter_map(|summand| spring(model, summand))
+        .filter_map(|summand| read_spring(model, summand))
         .collect();
     let is_only = springs.len() == 1;
     let site = |(number, spring): (usize, &Spring<'_>)| {
         let deflection = format_expression(model, spring.deflection);
-        let (unit, force) = deflection_units(model, spring.deflection)?;
+        let (unit, force) = find_deflection_units(model, spring.deflection)?;
         let mut arguments: Vec<(&'static str, String)> = vec![
             ("on", deflection.clone()),
             ("p", deflection),
@@ -77,7 +77,7 @@ pub(super) fn name_spring(
 
 /// Returns the units of a deflection and of its force; `None` if the deflection is neither an angle
 /// nor a length.
-pub(super) fn deflection_units(
+pub(super) fn find_deflection_units(
     model: &Model,
     deflection: &Expr,
 ) -> Option<(&'static str, &'static str)> {
@@ -93,7 +93,7 @@ pub(super) fn deflection_units(
 }
 
 /// Returns the spring of a product, if the product has the form of a spring energy.
-fn spring<'m>(model: &Model, product: &'m Expr) -> Option<Spring<'m>> {
+fn read_spring<'m>(model: &Model, product: &'m Expr) -> Option<Spring<'m>> {
     let Square {
         base, parameters, ..
     } = find_square(model, product)?;

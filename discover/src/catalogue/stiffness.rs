@@ -58,8 +58,10 @@ impl Product<'_> {
                 }
                 _ => self.push(expr, power),
             },
-            ExprKind::Binary(operator, left, right) if power == 1 && self.holds(expr) => {
-                match (self.holds(left), operator) {
+            ExprKind::Binary(operator, left, right)
+                if power == 1 && self.contains_curvature(expr) =>
+            {
+                match (self.contains_curvature(left), operator) {
                     (true, _) => self.multiply(left, power),
                     (false, BinaryOperator::Subtract) => {
                         self.number = -self.number;
@@ -68,7 +70,7 @@ impl Product<'_> {
                     (false, _) => self.multiply(right, power),
                 }
             }
-            ExprKind::Integral { integrand, .. } if self.holds(integrand) => {
+            ExprKind::Integral { integrand, .. } if self.contains_curvature(integrand) => {
                 self.multiply(integrand, power);
             }
             _ => self.push(expr, power),
@@ -76,7 +78,7 @@ impl Product<'_> {
     }
 
     fn push(&mut self, expr: &Expr, power: i32) {
-        if self.holds(expr) {
+        if self.contains_curvature(expr) {
             self.curvature_power += power;
             return;
         }
@@ -87,7 +89,7 @@ impl Product<'_> {
         }
     }
 
-    fn holds(&self, expr: &Expr) -> bool {
+    fn contains_curvature(&self, expr: &Expr) -> bool {
         let mut found = false;
         expr.visit(&mut |part| found |= (self.is_curvature)(part));
         found

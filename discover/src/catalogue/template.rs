@@ -21,7 +21,7 @@ pub(crate) fn instantiate_change(
 ) -> Option<Vec<Edit>> {
     let fill = |text: &String| fill_placeholders(text, arguments);
     let new = |name: &String| arguments.get(name).unwrap_or(name).clone();
-    let free = |name: &String| reserve_name(name, &site.name, &mut names_of_terms(model));
+    let free = |name: &String| reserve_name(name, &site.name, &mut list_term_names(model));
     let term = |section: Section, name: String, value: &String| {
         Some(Edit::AddTerm(NewTerm {
             section,
@@ -72,13 +72,13 @@ pub(crate) fn instantiate_change(
             pattern,
             replacement,
         } => {
-            return substitutions(model, scope, site, (pattern, replacement), arguments);
+            return list_substitutions(model, scope, site, (pattern, replacement), arguments);
         }
     }])
 }
 
 /// Returns the replacements by section, or `None` if the text does not occur.
-fn substitutions(
+fn list_substitutions(
     model: &Model,
     within: &SubstitutionScope,
     site: &Site,
@@ -95,9 +95,9 @@ fn substitutions(
             vec![(Section::Kinetic, terms?)]
         }
         SubstitutionScope::Input => find_occurrences(model, found.as_deref()?),
-        SubstitutionScope::Site => holding(model, site, found.as_deref()?),
+        SubstitutionScope::Site => find_terms_with(model, site, found.as_deref()?),
         // Each damper is replaced separately.
-        SubstitutionScope::Dampers => return dampers(site, (find, replace), arguments),
+        SubstitutionScope::Dampers => return replace_dampers(site, (find, replace), arguments),
         SubstitutionScope::Measured => replace_measured(model, found.as_deref()?),
     };
     let (find, replace) = (found?, fill_placeholders(replace, arguments)?);
@@ -116,7 +116,7 @@ fn substitutions(
 }
 
 /// Returns a replacement for each damper parallel to a spring, or `None` if there is no damper.
-fn dampers(
+fn replace_dampers(
     site: &Site,
     (find, replace): (&str, &str),
     arguments: &BTreeMap<String, String>,
@@ -158,7 +158,7 @@ fn replace_measured(model: &Model, find: &str) -> Vec<(Section, Vec<String>)> {
 }
 
 /// Returns the terms of a site that contain a name.
-fn holding(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)> {
+fn find_terms_with(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)> {
     // The deflection of a spring may be any expression, and its term contains the deflection.
     if site.kind == SiteKind::Spring {
         return site.terms.clone();
@@ -243,7 +243,7 @@ pub(crate) fn reserve_name(wanted: &str, site: &str, taken: &mut Vec<String>) ->
 }
 
 /// Returns the names of the terms and forces of a model.
-pub(crate) fn names_of_terms(model: &Model) -> Vec<String> {
+pub(crate) fn list_term_names(model: &Model) -> Vec<String> {
     let energies = model
         .kinetic
         .iter()

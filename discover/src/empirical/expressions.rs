@@ -92,7 +92,7 @@ impl Function {
 
     /// Returns the text of the function of a quantity divided by its scale. `kink`: parameter for
     /// the position of the kink.
-    fn text(self, quantity: &str, scale: &str, kink: &str) -> String {
+    fn format_function(self, quantity: &str, scale: &str, kink: &str) -> String {
         let times = |order: u32| match order {
             1 => quantity.to_owned(),
             order => format!("{order}*{quantity}"),
@@ -163,14 +163,14 @@ impl Term {
             let factor = match of {
                 FactorArgument::Rate => {
                     let rate = format!("dot({})", arguments.target);
-                    function.text(&rate, &arguments.scales[0], kink)
+                    function.format_function(&rate, &arguments.scales[0], kink)
                 }
                 FactorArgument::Position => {
-                    function.text(&arguments.target, &arguments.scales[1], kink)
+                    function.format_function(&arguments.target, &arguments.scales[1], kink)
                 }
                 FactorArgument::Input(input) => {
                     let (quantity, scale) = &arguments.inputs[*input];
-                    function.text(quantity, scale, kink)
+                    function.format_function(quantity, scale, kink)
                 }
             };
             text += &format!("*{factor}");
@@ -252,7 +252,7 @@ mod tests {
     use crate::residual_force::equations::OperatingPoint;
 
     #[test]
-    fn a_term_is_what_it_writes() {
+    fn term_matches_its_text() {
         let arguments = ExpressionNames {
             target: "theta".to_owned(),
             scales: ["w_0", "theta_0"].map(str::to_owned),
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn constant_quantities_are_in_no_term() {
+    fn terms_omit_constant_quantities() {
         let scales = Scales {
             rate: 1.0,
             position: 0.0,

@@ -10,7 +10,7 @@ use crate::ids::{EffectId, EquationId, UnknownId};
 use eomgen_model_spec::edit::{Edit, NewForce, NewParameter, NewValue};
 use eomgen_model_spec::model::Model;
 
-use crate::catalogue::candidate::{Candidate, CandidateParameter, names_in_use};
+use crate::catalogue::candidate::{Candidate, CandidateParameter, list_names_in_use};
 use crate::catalogue::candidate_unknown::CandidateUnknown;
 use crate::catalogue::template::reserve_name;
 use crate::empirical::expressions::{ExpressionNames, FactorArgument, Term};
@@ -144,7 +144,7 @@ fn find_expression(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Express
 /// parameter with the unit of the force, and each scale is a parameter.
 fn write_candidate(model: &Model, expression: &Expression) -> Candidate {
     let equation = &expression.equation;
-    let mut taken = names_in_use(model);
+    let mut taken = list_names_in_use(model);
     let mut name = |wanted: &str| reserve_name(wanted, &equation.name, &mut taken);
     let mut changes = Vec::new();
     let mut scale = |of: FactorArgument, (wanted, value, unit): (&str, f64, &str), what: &str| {
@@ -348,11 +348,11 @@ fn accept_expression(
     });
     let own: Vec<EffectUnknown> = own.collect();
     let statistics = test_acceptance(before, after, &own)?;
-    let asked = thresholds::MIN_INFORMATION_GAIN * (1 + own.len()) as f64;
-    if statistics.information_gain < asked {
+    let required = thresholds::MIN_INFORMATION_GAIN * (1 + own.len()) as f64;
+    if statistics.information_gain < required {
         return Err(Rejection::Information {
             gain: statistics.information_gain,
-            required: asked,
+            required,
         });
     }
     let closes = |before: f64, after: f64| (before - after) / (before - floor);

@@ -33,7 +33,7 @@ pub struct Expression {
 }
 
 /// Set of terms with its fitted coefficients.
-struct Set {
+struct TermSet {
     terms: Vec<BasisFunctionId>,
     sizes: Coefficients,
 }
@@ -53,7 +53,7 @@ pub fn select_expression(
         fit,
     };
     let operating_points = compute_operating_points(linearisation, &equations);
-    let inputs = largest_inputs(problem);
+    let inputs = find_largest_inputs(problem);
     let of = |equation: &EquationId| {
         let own = operating_points.iter().flatten().map(|all| all[*equation]);
         let range = OperatingRange::from_operating_points(&own.collect::<Vec<OperatingPoint>>());
@@ -68,13 +68,13 @@ pub fn select_expression(
             ),
             inputs: inputs.clone(),
         };
-        in_equation(linearisation, &equations, *equation, range.width(), scales)
+        select_in_equation(linearisation, &equations, *equation, range.width(), scales)
     };
     let found = among.iter().filter_map(of);
     found.max_by(|a, b| a.explained_fraction.total_cmp(&b.explained_fraction))
 }
 
-fn in_equation(
+fn select_in_equation(
     of: Linearisation<'_>,
     equations: &EquationSet,
     equation: EquationId,
@@ -110,11 +110,11 @@ fn select_best_set(
     regression: &Regression,
     of: Linearisation<'_>,
     blocks: &[Option<DMatrix<f64>>],
-) -> Option<Set> {
+) -> Option<TermSet> {
     let count = blocks.iter().flatten().map(DMatrix::ncols).next()?;
-    let mut known: Option<Set> = None;
+    let mut known: Option<TermSet> = None;
     for size in 1..=thresholds::MAX_EXPRESSION_TERMS {
-        let sets = subsets(count, size).into_iter();
+        let sets = list_subsets(count, size).into_iter();
         let sizes = sets.map(|terms| (regression.fit_shared(&terms), terms));
         let Some((sizes, terms)) = sizes.max_by(|a, b| a.0.decrease.total_cmp(&b.0.decrease))
         else {
@@ -134,14 +134,14 @@ fn select_best_set(
             && taken
                 > thresholds::MIN_TERM_REDUCTION * (regression.remaining_squares - gain_before);
         if is_enough {
-            known = Some(Set { terms, sizes });
+            known = Some(TermSet { terms, sizes });
         }
     }
     known
 }
 
 /// Returns all subsets of `size` of `count` terms.
-fn subsets(count: usize, size: usize) -> Vec<Vec<BasisFunctionId>> {
+fn list_subsets(count: usize, size: usize) -> Vec<Vec<BasisFunctionId>> {
     let mut found: Vec<Vec<BasisFunctionId>> = vec![Vec::new()];
     for _ in 0..size {
         let longer = found.iter().flat_map(|set| {
@@ -156,7 +156,7 @@ fn subsets(count: usize, size: usize) -> Vec<Vec<BasisFunctionId>> {
 }
 
 /// Returns the largest absolute value of each input in the training records.
-fn largest_inputs(problem: &EstimationProblem<'_>) -> Vec<f64> {
+fn find_largest_inputs(problem: &EstimationProblem<'_>) -> Vec<f64> {
     let records = &problem.dataset.train;
     let count = records.iter().map(|r| r.input_columns.len()).max();
     let largest = |input: usize| {
@@ -175,8 +175,8 @@ fn round_to_two_digits(value: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn every_set_is_there_once() {
-        let sets = super::subsets(6, 3);
+    fn subsets_are_complete_and_unique() {
+        let sets = super::list_subsets(6, 3);
         assert_eq!(sets.len(), 20);
         for (number, set) in sets.iter().enumerate() {
             assert!(set.is_sorted() && !sets[..number].contains(set));

@@ -66,17 +66,17 @@ impl Bounds {
             .unwrap_or_else(|| longest.min(thresholds::MAX_EXPERIMENT_SAMPLES * sample));
         let mut from_records: Vec<String> = Vec::new();
         let mut input_bounds = Vec::new();
-        for (place, name) in inputs.iter().enumerate() {
+        for (index, name) in inputs.iter().enumerate() {
             if dataset
                 .experiment_units
                 .inputs
-                .get(place)
+                .get(index)
                 .is_none_or(Option::is_none)
             {
                 continue;
             }
-            let of = said.inputs.get(place).copied().unwrap_or_default();
-            let (recorded, fastest) = find_input_range(problem, place);
+            let of = said.inputs.get(index).copied().unwrap_or_default();
+            let (recorded, fastest) = find_input_range(problem, index);
             if of.range.is_none() {
                 from_records.push(format!("the range of {name}"));
             }
@@ -98,7 +98,7 @@ impl Bounds {
             let steepest = std::f64::consts::PI * band.high * (range.high - range.low);
             if range.low < range.high {
                 input_bounds.push(InputBounds {
-                    index: place,
+                    index,
                     name: name.clone(),
                     range,
                     rate: of.rate.unwrap_or(steepest),
@@ -121,7 +121,7 @@ impl Bounds {
         let words = match &from_records[..] {
             [] => "All bounds are from the dataset file.".to_owned(),
             all => format!(
-                "Bounds from the records, because the dataset file does not give them: {}.",
+                "The dataset file does not contain these bounds, so they are from the records: {}.",
                 all.join(", ")
             ),
         };
@@ -157,12 +157,12 @@ impl Bounds {
 
 /// Returns the range of an input over all records, extended to 0, and the frequency below which
 /// nearly all of its power lies.
-fn find_input_range(problem: &EstimationProblem<'_>, place: usize) -> (Interval, f64) {
+fn find_input_range(problem: &EstimationProblem<'_>, index: usize) -> (Interval, f64) {
     let records = || problem.dataset.train.iter().chain(&problem.dataset.test);
     let mut range = Interval::ZERO;
     let mut fastest: f64 = 0.0;
     for record in records() {
-        let column: Vec<f64> = record.input_columns[place]
+        let column: Vec<f64> = record.input_columns[index]
             .iter()
             .copied()
             .filter(|value| value.is_finite())

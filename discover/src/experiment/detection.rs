@@ -21,13 +21,13 @@ use crate::model::unknowns::Unknown;
 use crate::thresholds;
 
 /// Maximum number of trials for a size with a small but measurable change of the outputs.
-const TRIALS: usize = 8;
+const MAX_SIZE_TRIALS: usize = 8;
 
 /// Maximum number of corrections of the detectable size, range of the factor of each correction,
 /// and factors at which the corrections end.
 const MAX_CORRECTIONS: usize = 4;
 const CORRECTION_RANGE: Interval = Interval::new(0.2, 5.0);
-const CLOSE_ENOUGH: Interval = Interval::new(0.9, 1.1);
+const FINAL_CORRECTIONS: Interval = Interval::new(0.9, 1.1);
 
 /// Experiment with its prediction by a fitted model.
 pub struct PredictedExperiment<'p> {
@@ -44,7 +44,7 @@ pub struct HiddenEffect<'f> {
     problem: &'f EstimationProblem<'f>,
     /// Fitted model without the effect.
     without: &'f Rival<'f>,
-    place: Place,
+    representation: EffectRepresentation,
     /// Unknown that scales the effect.
     unknown: Unknown,
     /// Value of the unknown without the effect, SI.
@@ -52,7 +52,7 @@ pub struct HiddenEffect<'f> {
 }
 
 /// Representation of an effect in the model.
-enum Place {
+enum EffectRepresentation {
     /// Separate terms in the equations.
     Model {
         model: Box<EstimationModel>,
@@ -77,8 +77,8 @@ pub struct Detection {
 }
 
 /// Prediction of an experiment with a small size of the effect.
-struct Tried<'t> {
-    place: usize,
+struct SmallEffectTrial<'t> {
+    index: usize,
     proposal: &'t Proposal,
     size: f64,
     /// RMS change of the outputs, in standard deviations.
@@ -109,7 +109,7 @@ impl<'f> HiddenEffect<'f> {
             return Ok(Self {
                 problem,
                 without,
-                place: Place::Unknown(id),
+                representation: EffectRepresentation::Unknown(id),
                 unknown: unknown.clone(),
                 base: theta[id],
             });
@@ -142,7 +142,7 @@ impl<'f> HiddenEffect<'f> {
         Ok(Self {
             problem,
             without,
-            place: Place::Model {
+            representation: EffectRepresentation::Model {
                 model: Box::new(model),
                 values,
             },
@@ -159,9 +159,9 @@ impl<'f> HiddenEffect<'f> {
 
     /// Returns the model with the effect.
     fn model(&self) -> &EstimationModel {
-        match &self.place {
-            Place::Model { model, .. } => model,
-            Place::Unknown(_) => &self.without.fit.model,
+        match &self.representation {
+            EffectRepresentation::Model { model, .. } => model,
+            EffectRepresentation::Unknown(_) => &self.without.fit.model,
         }
     }
 
@@ -174,15 +174,15 @@ impl<'f> HiddenEffect<'f> {
     ) -> Option<Prediction> {
         let fit = self.without.fit;
         let mut theta = fit.train.estimate.theta.clone();
-        let values = match &self.place {
-            Place::Model { model, values } => {
+        let values = match &self.representation {
+            EffectRepresentation::Model { model, values } => {
                 let mut values = values.clone();
                 if let Some(name) = self.unknown.kind.parameter_name() {
                     model.set_value(&mut values, name, self.value_at_size(size));
                 }
                 values
             }
-            Place::Unknown(id) => {
+            EffectRepresentation::Unknown(id) => {
                 theta[*id] = self.base + size;
                 fit.training_shooting(self.problem).parameter_values(&theta)
             }
@@ -197,13 +197,13 @@ impl<'f> HiddenEffect<'f> {
         within: (&Bounds, &[f64]),
         played: &'t PredictedExperiment<'_>,
         start: f64,
-    ) -> Option<Tried<'t>> {
+    ) -> Option<SmallEffectTrial<'t>> {
         let (size, moved, present) = self.find_small_size(within, played, start)?;
         let most = self
             .without
             .predict_unfitted_rms(self.problem, self.model(), &present)?;
-        Some(Tried {
-            place: played.index,
+        Some(SmallEffectTrial {
+            index: played.index,
             proposal: played.proposal,
             size,
             moved,
@@ -221,12 +221,12 @@ impl<'f> HiddenEffect<'f> {
         start: f64,
     ) -> Option<(f64, f64, Prediction)> {
         let mut size = start;
-        for _ in 0..TRIALS {
+        for _ in 0..MAX_SIZE_TRIALS {
             let Some(present) = self.predict_with_effect(within, played.proposal, size) else {
                 size *= 0.1;
                 continue;
             };
-            let moved = self.change_in_noise(&played.prediction, &present);
+            let moved = self.compute_rms_change(&played.prediction, &present);
             if thresholds::SMALL_EFFECT_FACTORS.clamp(moved) == moved {
                 return Some((size, moved, present));
             }
@@ -236,7 +236,7 @@ impl<'f> HiddenEffect<'f> {
     }
 
     /// Returns the RMS difference of two predictions, in standard deviations of the noise.
-    fn change_in_noise(&self, one: &Prediction, other: &Prediction) -> f64 {
+    fn compute_rms_change(&self, one: &Prediction, other: &Prediction) -> f64 {
         let columns = one.records[0]
             .channels
             .iter()
@@ -254,9 +254,12 @@ impl<'f> HiddenEffect<'f> {
     /// Returns the experiment with the largest residual after a linear fit, per unit of size, and
     /// this RMS residual. All experiments have a small size. Derivatives are expensive and
     /// therefore computed only for experiments that may be the best.
-    fn most_shown<'t>(&self, mut tried: Vec<Tried<'t>>) -> Option<(Tried<'t>, f64)> {
+    fn select_most_visible<'t>(
+        &self,
+        mut tried: Vec<SmallEffectTrial<'t>>,
+    ) -> Option<(SmallEffectTrial<'t>, f64)> {
         tried.sort_by(|a, b| b.most.total_cmp(&a.most));
-        let mut best: Option<(Tried<'t>, f64)> = None;
+        let mut best: Option<(SmallEffectTrial<'t>, f64)> = None;
         for of in tried {
             let known = best.as_ref().map(|(best, left)| left / best.size.abs());
             if known.is_some_and(|known| of.most <= known) {
@@ -288,10 +291,10 @@ impl<'f> HiddenEffect<'f> {
         let start = first.as_ref().map_or(usual, |first| first.size);
         let others = others.par_iter();
         let others = others.filter_map(|played| self.try_small_size(within, played, start));
-        let others: Vec<Tried<'_>> = others.collect();
-        let (tried, left) = self.most_shown(first.into_iter().chain(others).collect())?;
-        let Tried {
-            place,
+        let others: Vec<SmallEffectTrial<'_>> = others.collect();
+        let (tried, left) = self.select_most_visible(first.into_iter().chain(others).collect())?;
+        let SmallEffectTrial {
+            index,
             proposal,
             size,
             moved,
@@ -311,18 +314,18 @@ impl<'f> HiddenEffect<'f> {
         };
         let (mut prediction, mut separation) = refitted(size)?;
         for _ in 0..MAX_CORRECTIONS {
-            let off = thresholds::MIN_SEPARATION_IN_NOISE / separation.rms_in_noise;
-            if !is_own || CLOSE_ENOUGH.clamp(off) == off {
+            let factor = thresholds::MIN_SEPARATION_IN_NOISE / separation.rms_in_noise;
+            if !is_own || FINAL_CORRECTIONS.clamp(factor) == factor {
                 break;
             }
-            let Some(found) = refitted(size * CORRECTION_RANGE.clamp(off)) else {
+            let Some(found) = refitted(size * CORRECTION_RANGE.clamp(factor)) else {
                 break;
             };
-            size *= CORRECTION_RANGE.clamp(off);
+            size *= CORRECTION_RANGE.clamp(factor);
             (prediction, separation) = found;
         }
         Some(Detection {
-            proposal: place,
+            proposal: index,
             size,
             separation,
             predictions: prediction.records[0].channels.clone(),

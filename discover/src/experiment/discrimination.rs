@@ -72,13 +72,13 @@ impl Members<'_> {
         times: &[f64],
         family: &[Proposal],
     ) -> Result<Discrimination, NoExperiment> {
-        let promised: Vec<Result<Vec<f64>, Exclusion>> = (family.par_iter())
+        let predicted: Vec<Result<Vec<f64>, Exclusion>> = (family.par_iter())
             .map(|proposal| self.predict_distances(bounds, times, proposal))
             .collect();
-        let count = self.pairs().len();
+        let count = self.list_pairs().len();
         let mut most = vec![0.0_f64; count];
-        for promised in promised.iter().flatten() {
-            for (most, own) in most.iter_mut().zip(promised) {
+        for predicted in predicted.iter().flatten() {
+            for (most, own) in most.iter_mut().zip(predicted) {
                 *most = most.max(*own);
             }
         }
@@ -92,33 +92,33 @@ impl Members<'_> {
             let of_pairs = counted.iter().map(|pair| of(*pair));
             of_pairs.fold(f64::INFINITY, f64::min)
         };
-        let mut ranking: Vec<(f64, usize)> = (promised.iter().enumerate())
-            .filter_map(|(place, promised)| {
-                let promised = promised.as_ref().ok()?;
-                Some((least(&|pair| promised[pair]), place))
+        let mut ranking: Vec<(f64, usize)> = (predicted.iter().enumerate())
+            .filter_map(|(index, predicted)| {
+                let predicted = predicted.as_ref().ok()?;
+                Some((least(&|pair| predicted[pair]), index))
             })
             .collect();
         ranking.sort_by(|a, b| b.0.total_cmp(&a.0));
         ranking.truncate(thresholds::MAX_REFITTED_EXPERIMENTS);
-        let refitted = ranking
-            .iter()
-            .filter_map(|(_, place)| self.refit_members(bounds, times, (*place, &family[*place])));
+        let refitted = ranking.iter().filter_map(|(_, index)| {
+            self.compute_separations(bounds, times, (*index, &family[*index]))
+        });
         let best = refitted.max_by(|a, b| {
             let least = |of: &Discrimination| least(&|pair| of.pairs[pair].smaller_separation());
             least(a).total_cmp(&least(b))
         });
-        best.ok_or_else(|| describe_exclusions(&promised))
+        best.ok_or_else(|| describe_exclusions(&predicted))
     }
 
     /// Returns all pairs of members.
-    fn pairs(&self) -> Vec<[usize; 2]> {
+    fn list_pairs(&self) -> Vec<[usize; 2]> {
         let count = self.rivals.len();
         let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
         pairs.collect()
     }
 
     /// Predicts an experiment with each member.
-    fn predictions(
+    fn predict_members(
         &self,
         bounds: &Bounds,
         times: &[f64],
@@ -139,14 +139,14 @@ impl Members<'_> {
         times: &[f64],
         proposal: &Proposal,
     ) -> Result<Vec<f64>, Exclusion> {
-        let predictions = self.predictions(bounds, times, proposal)?;
+        let predictions = self.predict_members(bounds, times, proposal)?;
         let leaves = |truth: usize, rival: usize| {
             let model = &self.rivals[truth].fit.model;
             let prediction = &predictions[truth];
             self.rivals[rival].predict_linear_rms(self.problem, model, prediction)
         };
         let of = |[a, b]: [usize; 2]| Some(leaves(a, b)?.min(leaves(b, a)?));
-        let pairs = self.pairs().into_iter();
+        let pairs = self.list_pairs().into_iter();
         pairs
             .map(|pair| of(pair).ok_or(Exclusion::SimulationFailed))
             .collect()
@@ -154,13 +154,13 @@ impl Members<'_> {
 
     /// Computes the separation of each pair with fitted rivals; `None` if a motion cannot be
     /// simulated.
-    fn refit_members(
+    fn compute_separations(
         &self,
         bounds: &Bounds,
         times: &[f64],
-        (place, proposal): (usize, &Proposal),
+        (index, proposal): (usize, &Proposal),
     ) -> Option<Discrimination> {
-        let predictions = self.predictions(bounds, times, proposal).ok()?;
+        let predictions = self.predict_members(bounds, times, proposal).ok()?;
         let separation = |truth: usize, rival: usize| {
             let model = &self.rivals[truth].fit.model;
             self.rivals[rival].compute_separation(self.problem, model, &predictions[truth])
@@ -171,10 +171,10 @@ impl Members<'_> {
                 separations: [separation(a, b)?, separation(b, a)?],
             })
         };
-        let pairs: Option<Vec<PairSeparation>> = self.pairs().into_iter().map(of).collect();
+        let pairs: Option<Vec<PairSeparation>> = self.list_pairs().into_iter().map(of).collect();
         let seen = |of: &Prediction| of.records[0].channels.clone();
         Some(Discrimination {
-            proposal: place,
+            proposal: index,
             pairs: pairs?,
             predictions: predictions.iter().map(seen).collect(),
         })
@@ -182,9 +182,9 @@ impl Members<'_> {
 }
 
 /// Summarises why all experiments are excluded, with the most frequent cause.
-fn describe_exclusions<T>(promised: &[Result<T, Exclusion>]) -> NoExperiment {
+fn describe_exclusions<T>(predicted: &[Result<T, Exclusion>]) -> NoExperiment {
     let mut left: Vec<(&str, usize)> = Vec::new();
-    for of in promised {
+    for of in predicted {
         let Err(Exclusion::LeavesLimits(name)) = of else {
             continue;
         };
@@ -194,7 +194,7 @@ fn describe_exclusions<T>(promised: &[Result<T, Exclusion>]) -> NoExperiment {
         }
     }
     match left.iter().max_by_key(|(_, count)| *count) {
-        Some((name, _)) => NoExperiment::LeavesLimits(promised.len(), (*name).to_owned()),
-        None => NoExperiment::SimulationFailed(promised.len()),
+        Some((name, _)) => NoExperiment::LeavesLimits(predicted.len(), (*name).to_owned()),
+        None => NoExperiment::SimulationFailed(predicted.len()),
     }
 }

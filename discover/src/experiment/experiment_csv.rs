@@ -14,9 +14,9 @@ pub(super) fn write_experiment_csv(
     played: &ExperimentUnits,
 ) -> String {
     let driven: Vec<usize> = (0..names.len())
-        .filter(|place| played.inputs.get(*place).is_some_and(Option::is_some))
+        .filter(|index| played.inputs.get(*index).is_some_and(Option::is_some))
         .collect();
-    let heading: Vec<&str> = driven.iter().map(|place| names[*place].as_str()).collect();
+    let heading: Vec<&str> = driven.iter().map(|index| names[*index].as_str()).collect();
     let mut text = format!("t,{}\n", heading.join(","));
     for (t, value) in times
         .iter()
@@ -24,16 +24,16 @@ pub(super) fn write_experiment_csv(
         .step_by(bounds.samples_per_value)
     {
         text += &format!("{}", round_to_twelve_digits(played.time.from_si(*t)));
-        for place in &driven {
-            let own = match *place == proposal.input_index {
+        for index in &driven {
+            let own = match *index == proposal.input_index {
                 true => *value,
                 false => {
                     let mut others = bounds.inputs.iter();
-                    let other = others.find(|other| other.index == *place);
+                    let other = others.find(|other| other.index == *index);
                     other.map_or(0.0, |other| rest_value(other.range))
                 }
             };
-            let unit = played.inputs[*place].as_ref();
+            let unit = played.inputs[*index].as_ref();
             let own = unit.map_or(own, |unit| unit.from_si(own));
             text += &format!(",{}", round_to_twelve_digits(own));
         }

@@ -50,8 +50,8 @@ pub fn fit_equivalents(
     }
     let of = |candidate: &Candidate| {
         let label = candidate.label();
-        let place = fits.iter().position(|(known, _)| *known == label)?;
-        Some(fits.swap_remove(place).1)
+        let index = fits.iter().position(|(known, _)| *known == label)?;
+        Some(fits.swap_remove(index).1)
     };
     let mut of = of;
     equivalent

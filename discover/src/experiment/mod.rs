@@ -62,7 +62,7 @@ pub fn propose_experiments(context: RoundContext<'_>, found: &SearchResult) -> E
         Some(_) => Vec::new(),
         None => Proposal::list_all(&bounds, &times),
     };
-    let plan = Plan {
+    let plan = ExperimentSearch {
         impossible,
         context,
         inputs,
@@ -75,16 +75,16 @@ pub fn propose_experiments(context: RoundContext<'_>, found: &SearchResult) -> E
     for effect in EffectId::first(found.accepted.len()) {
         let next = match found.accepted[effect].equivalents.is_empty() {
             true => None,
-            false => Some(plan.of_class(found, effect, &mut experiments.files)),
+            false => Some(plan.propose_for_class(found, effect, &mut experiments.files)),
         };
         experiments.for_effects.push(next);
     }
-    plan.of_not_testable(found, &mut experiments);
+    plan.propose_for_untestable(found, &mut experiments);
     experiments
 }
 
 /// Search for admissible experiments and their results.
-struct Plan<'r> {
+struct ExperimentSearch<'r> {
     context: RoundContext<'r>,
     /// Names of the inputs of the model.
     inputs: Vec<String>,
@@ -97,7 +97,7 @@ struct Plan<'r> {
     family: Vec<Proposal>,
 }
 
-impl Plan<'_> {
+impl ExperimentSearch<'_> {
     /// Returns a result with the reason if no experiment is possible.
     fn explain_no_experiment(&self) -> Option<NextExperiment> {
         let reason = match (&self.impossible, self.family.is_empty()) {
@@ -109,7 +109,7 @@ impl Plan<'_> {
     }
 
     /// Proposes an experiment that separates the members of an accepted effect's class.
-    fn of_class(
+    fn propose_for_class(
         &self,
         found: &SearchResult,
         effect: EffectId,
@@ -152,14 +152,14 @@ impl Plan<'_> {
             rivals: rivals.collect(),
         };
         match members.find_best_experiment(&self.bounds, &self.times, &self.family) {
-            Ok(best) => self.tell_members_apart(&at, left_out, best, files),
+            Ok(best) => self.report_separations(&at, left_out, best, files),
             Err(reason) => NextExperiment::without_experiment(&reason.to_string(), &self.bounds),
         }
     }
 
     /// Returns the experiment of a class as a result. If the experiment separates a pair, its file
     /// is written.
-    fn tell_members_apart(
+    fn report_separations(
         &self,
         at: &[ClassMember],
         left_out: Vec<ClassMember>,
@@ -192,13 +192,14 @@ impl Plan<'_> {
         let pair = |pair: &PairSeparation| {
             let [a, b] = pair.members.map(|member| at[member].clone());
             let [of_b, of_a] = &pair.separations;
-            let told = |truth: &ClassMember, rival: &ClassMember, of: &Separation| MemberPair {
-                truth: truth.clone(),
-                rival: rival.clone(),
-                separation: of.rms_in_noise,
-                channel: channels[of.channel].name.clone(),
-            };
-            [told(&a, &b, of_b), told(&b, &a, of_a)]
+            let create_pair =
+                |truth: &ClassMember, rival: &ClassMember, of: &Separation| MemberPair {
+                    truth: truth.clone(),
+                    rival: rival.clone(),
+                    separation: of.rms_in_noise,
+                    channel: channels[of.channel].name.clone(),
+                };
+            [create_pair(&a, &b, of_b), create_pair(&b, &a, of_a)]
         };
         NextExperiment {
             file,
@@ -245,24 +246,24 @@ impl Plan<'_> {
 
     /// Proposes experiments that detect the effects that the records cannot show, one for each
     /// effect and site.
-    fn of_not_testable(&self, found: &SearchResult, experiments: &mut Experiments) {
+    fn propose_for_untestable(&self, found: &SearchResult, experiments: &mut Experiments) {
         let problem = self.context.problem;
         experiments.for_rejected = vec![None; found.rejected.len()];
         let mut wanted: Vec<usize> = Vec::new();
-        for (place, rejected) in found.rejected.iter().enumerate() {
+        for (index, rejected) in found.rejected.iter().enumerate() {
             let is_known = |other: &usize| {
                 found.rejected[*other]
                     .candidate
                     .is_same_effect_as(&rejected.candidate)
             };
             if rejected.is_untestable && !wanted.iter().any(is_known) {
-                wanted.push(place);
+                wanted.push(index);
             }
         }
         wanted.truncate(thresholds::MAX_DETECTION_SEARCHES);
         if let Some(none) = self.explain_no_experiment() {
-            for place in &wanted {
-                experiments.for_rejected[*place] = Some(none.clone());
+            for index in &wanted {
+                experiments.for_rejected[*index] = Some(none.clone());
             }
             return;
         }
@@ -270,34 +271,34 @@ impl Plan<'_> {
             return;
         }
         (self.context.progress)(&format!(
-            "searching for experiments that show {} effects the records cannot show",
+            "searching for experiments that show {} effects that the records cannot show",
             wanted.len()
         ));
         let without = Rival::with_priors(found.best_fit());
-        let family = self.largest(found.best_fit());
-        let sought = wanted.par_iter().map(|place| {
-            let candidate = &found.rejected[*place].candidate;
+        let family = self.predict_largest(found.best_fit());
+        let sought = wanted.par_iter().map(|index| {
+            let candidate = &found.rejected[*index].candidate;
             let hidden = HiddenEffect::with_candidate(problem, &without, candidate)?;
             let best = hidden.find_best_experiment((&self.bounds, &self.times), &family);
             Ok((hidden, best))
         });
         let sought: Vec<Result<(HiddenEffect<'_>, Option<Detection>), DiscoverError>> =
             sought.collect();
-        for (place, sought) in wanted.into_iter().zip(sought) {
-            let candidate = &found.rejected[place].candidate;
+        for (index, sought) in wanted.into_iter().zip(sought) {
+            let candidate = &found.rejected[index].candidate;
             let next = match sought {
                 Ok((hidden, best)) => {
                     self.find_detecting(&hidden, candidate, best, &mut experiments.files)
                 }
                 Err(error) => NextExperiment::without_experiment(&error.to_string(), &self.bounds),
             };
-            experiments.for_rejected[place] = Some(next);
+            experiments.for_rejected[index] = Some(next);
         }
     }
 
     /// Returns for each waveform and input the experiment with the largest amplitude that stays
     /// within the limits.
-    fn largest(&self, fit: &Fit) -> Vec<PredictedExperiment<'_>> {
+    fn predict_largest(&self, fit: &Fit) -> Vec<PredictedExperiment<'_>> {
         let numbered: Vec<(usize, &Proposal)> = self.family.iter().enumerate().collect();
         let is_same = |one: &(usize, &Proposal), other: &(usize, &Proposal)| {
             one.1.input_index == other.1.input_index && one.1.waveform == other.1.waveform
@@ -306,17 +307,17 @@ impl Plan<'_> {
         let largest = |sizes: &&[(usize, &'_ Proposal)]| {
             let mut predictor = Predictor::from_fit(self.context.problem, fit)?;
             let mut sizes = sizes.iter();
-            sizes.find_map(|(place, proposal)| {
+            sizes.find_map(|(index, proposal)| {
                 let without = predictor.predict(&self.bounds, &self.times, proposal);
-                Some((*place, without.ok()?))
+                Some((*index, without.ok()?))
             })
         };
         let found: Vec<Option<(usize, Prediction)>> = forms.par_iter().map(largest).collect();
         let admitted = found.into_iter().flatten();
         admitted
-            .map(|(place, without)| PredictedExperiment {
-                index: place,
-                proposal: &self.family[place],
+            .map(|(index, without)| PredictedExperiment {
+                index,
+                proposal: &self.family[index],
                 prediction: without,
             })
             .collect()
@@ -356,7 +357,7 @@ impl Plan<'_> {
             pairs: Vec::new(),
             failed_members: Vec::new(),
             detectable: is_enough
-                .then(|| self.smallest_detectable(candidate, hidden.value_at_size(best.size)))
+                .then(|| self.find_detectable_size(candidate, hidden.value_at_size(best.size)))
                 .flatten(),
             reason: None,
             bounds_source: self.bounds.sources.clone(),
@@ -364,7 +365,7 @@ impl Plan<'_> {
     }
 
     /// Returns the smallest detectable value of the quantity that scales an effect, in its unit.
-    fn smallest_detectable(&self, candidate: &Candidate, value: f64) -> Option<DetectableSize> {
+    fn find_detectable_size(&self, candidate: &Candidate, value: f64) -> Option<DetectableSize> {
         let shown = |what: &str, from: f64, unit: &str| {
             Some(DetectableSize {
                 parameter: what.to_owned(),

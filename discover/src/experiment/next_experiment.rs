@@ -79,10 +79,10 @@ pub struct ExperimentFile {
 
 impl ExperimentFile {
     /// Returns the name of the file with a given index.
-    pub(super) fn numbered_name(place: usize) -> String {
-        match place {
+    pub(super) fn numbered_name(index: usize) -> String {
+        match index {
             0 => "experiment.csv".to_owned(),
-            place => format!("experiment_{}.csv", place + 1),
+            index => format!("experiment_{}.csv", index + 1),
         }
     }
 }
@@ -156,17 +156,16 @@ impl fmt::Display for NoExperiment {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoInput => {
-                f.write_str("no input can be played: the records drive no input that may vary")
+                f.write_str("no experiment is possible: the records contain no input that may vary")
             }
             Self::LeavesLimits(count, name) => write!(
                 f,
-                "none of the {count} tested inputs can be played: most of them violate the limits of {name}; \
+                "none of the {count} tested inputs is admissible: most of them violate the limits of {name}; \
                  expected wider [experiment] limits, or a smaller range"
             ),
-            Self::SimulationFailed(count) => write!(
-                f,
-                "none of the {count} tested inputs can be played: the simulation fails"
-            ),
+            Self::SimulationFailed(count) => {
+                write!(f, "none of the {count} tested inputs can be simulated")
+            }
         }
     }
 }

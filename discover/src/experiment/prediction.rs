@@ -95,7 +95,7 @@ impl<'a> Predictor<'a> {
         (self.simulation).limit_steps(thresholds::MAX_EXPERIMENT_STEPS_PER_SAMPLE * times.len());
         let motion = (self.simulation).simulate_motion(&self.initial, &output_times.times, &inputs);
         let Motion { states, outputs } = motion.map_err(|_| Exclusion::SimulationFailed)?;
-        self.check(bounds, &states, &outputs)?;
+        self.check_limits(bounds, &states, &outputs)?;
         let seen = self
             .shooting
             .apply_sensors(&output_times, &self.sensors, &outputs);
@@ -106,7 +106,7 @@ impl<'a> Predictor<'a> {
     }
 
     /// Returns an error if a motion violates its limits.
-    fn check(
+    fn check_limits(
         &self,
         bounds: &Bounds,
         states: &[Vec<f64>],

@@ -83,7 +83,7 @@ impl<'f> Rival<'f> {
         truth: &EstimationModel,
         prediction: &Prediction,
     ) -> Option<f64> {
-        self.leaves(problem, truth, prediction, |_, _, present| {
+        self.compute_rms(problem, truth, prediction, |_, _, present| {
             Some(present.squares.iter().sum::<f64>().sqrt())
         })
     }
@@ -96,25 +96,25 @@ impl<'f> Rival<'f> {
         truth: &EstimationModel,
         prediction: &Prediction,
     ) -> Option<f64> {
-        self.leaves(problem, truth, prediction, |shooting, begin, present| {
-            let blocks = blocks(shooting, &begin.prior, present)?;
-            let factor = self.factor(&blocks, present);
+        self.compute_rms(problem, truth, prediction, |shooting, begin, present| {
+            let blocks = compute_reduced_blocks(shooting, &begin.prior, present)?;
+            let factor = self.compute_factor(&blocks, present);
             let last = factor[(factor.nrows() - 1, factor.ncols() - 1)];
             Some(last.abs())
         })
     }
 
     /// Returns the RMS over all channels of a residual. `of` computes its norm.
-    fn leaves(
+    fn compute_rms(
         &self,
         problem: &EstimationProblem<'_>,
         truth: &EstimationModel,
         prediction: &Prediction,
-        of: impl FnOnce(&Shooting<'_>, &Beginning, &Estimate) -> Option<f64>,
+        of: impl FnOnce(&Shooting<'_>, &WindowInitialStates, &Estimate) -> Option<f64>,
     ) -> Option<f64> {
         let windows = Windows::split_records(&prediction.records, problem.dataset.window);
-        let begin = self.begin_windows(problem, truth, prediction, &windows);
-        let shooting = self.shooting(problem, &windows, &begin);
+        let begin = self.map_initial_states(problem, truth, prediction, &windows);
+        let shooting = self.create_shooting(problem, &windows, &begin);
         let theta = self.theta().to_vec();
         let present = evaluate_cost(&shooting, &begin.prior, theta, begin.states.clone());
         let left = of(&shooting, &begin, &present)? / windows.measurement_count().sqrt();
@@ -130,8 +130,8 @@ impl<'f> Rival<'f> {
         prediction: &Prediction,
     ) -> Option<Separation> {
         let windows = Windows::split_records(&prediction.records, problem.dataset.window);
-        let begin = self.begin_windows(problem, truth, prediction, &windows);
-        let shooting = self.shooting(problem, &windows, &begin);
+        let begin = self.map_initial_states(problem, truth, prediction, &windows);
+        let shooting = self.create_shooting(problem, &windows, &begin);
         let fitted = self.fit_windows(&shooting, &begin)?;
         let residuals = Residuals::compute(&shooting, fitted).or_infinite();
         let sizes = residuals.normalised_rms.iter().copied().enumerate();
@@ -155,11 +155,11 @@ impl<'f> Rival<'f> {
     }
 
     /// Creates the shooting problem of the rival on the windows of a prediction.
-    fn shooting<'s>(
+    fn create_shooting<'s>(
         &'s self,
         problem: &'s EstimationProblem<'s>,
         windows: &'s Windows<'s>,
-        begin: &'s Beginning,
+        begin: &'s WindowInitialStates,
     ) -> Shooting<'s> {
         let ranges = &begin.ranges;
         Shooting::new(problem, &self.fit.model, windows, &self.unknowns, ranges)
@@ -170,13 +170,13 @@ impl<'f> Rival<'f> {
     }
 
     /// Returns the initial states of the windows, taken from the prediction.
-    fn begin_windows(
+    fn map_initial_states(
         &self,
         problem: &EstimationProblem<'_>,
         truth: &EstimationModel,
         prediction: &Prediction,
         windows: &Windows<'_>,
-    ) -> Beginning {
+    ) -> WindowInitialStates {
         let model = &self.fit.model;
         let states: Vec<Vec<f64>> = (windows.windows.iter())
             .map(|window| {
@@ -196,7 +196,7 @@ impl<'f> Rival<'f> {
             range.max(spread)
         });
         let ranges: Vec<f64> = ranges.collect();
-        Beginning {
+        WindowInitialStates {
             prior: prior_from_states(problem, &states, &ranges),
             states,
             ranges,
@@ -205,15 +205,19 @@ impl<'f> Rival<'f> {
 
     /// Fits the unknowns to the windows of a prediction and to the information of the rival's
     /// records.
-    fn fit_windows(&self, shooting: &Shooting<'_>, begin: &Beginning) -> Option<Estimate> {
-        let Beginning { states, prior, .. } = begin;
+    fn fit_windows(
+        &self,
+        shooting: &Shooting<'_>,
+        begin: &WindowInitialStates,
+    ) -> Option<Estimate> {
+        let WindowInitialStates { states, prior, .. } = begin;
         let total = |estimate: &Estimate| {
-            estimate.cost + (&self.information * self.deviation(estimate)).norm_squared()
+            estimate.cost + (&self.information * self.compute_deviation(estimate)).norm_squared()
         };
         let mut present = evaluate_cost(shooting, prior, self.theta().to_vec(), states.clone());
         for _ in 0..thresholds::MAX_REFIT_STEPS {
-            let blocks = blocks(shooting, prior, &present)?;
-            let factor = self.factor(&blocks, &present);
+            let blocks = compute_reduced_blocks(shooting, prior, &present)?;
+            let factor = self.compute_factor(&blocks, &present);
             let count = self.unknowns.len();
             let bounds: Vec<Interval> = (self.unknowns.iter().zip(&present.theta))
                 .map(|(unknown, value)| unknown.bounds.shift_origin_to(*value).extend_to_zero())
@@ -241,19 +245,22 @@ impl<'f> Rival<'f> {
     }
 
     /// Returns the unknowns of an estimate minus those of the fit to the records.
-    fn deviation(&self, estimate: &Estimate) -> DVector<f64> {
+    fn compute_deviation(&self, estimate: &Estimate) -> DVector<f64> {
         let pairs = estimate.theta.iter().zip(self.theta());
         DVector::from_iterator(self.unknowns.len(), pairs.map(|(a, b)| a - b))
     }
 
     /// Returns the triangular factor of [unknowns | residual] from the windows and the information
     /// of the rival's records.
-    fn factor(&self, blocks: &[Option<ReducedBlock>], present: &Estimate) -> DMatrix<f64> {
+    fn compute_factor(&self, blocks: &[Option<ReducedBlock>], present: &Estimate) -> DMatrix<f64> {
         let count = self.unknowns.len();
         let mut rows = DMatrix::zeros(count, count + 1);
         rows.view_mut((0, 0), (count, count))
             .copy_from(&self.information);
-        rows.set_column(count, &(&self.information * self.deviation(present)));
+        rows.set_column(
+            count,
+            &(&self.information * self.compute_deviation(present)),
+        );
         let empty = DMatrix::zeros(count + 1, count + 1);
         let factor = compute_triangular_factor(&empty, &rows);
         let windows = blocks.iter().flatten();
@@ -264,7 +271,7 @@ impl<'f> Rival<'f> {
 }
 
 /// Initial states of the rival in the windows of a prediction.
-struct Beginning {
+struct WindowInitialStates {
     states: Vec<Vec<f64>>,
     /// Ranges of the states, in the records or in the experiment.
     ranges: Vec<f64>,
@@ -273,7 +280,7 @@ struct Beginning {
 
 /// Returns the derivatives of each window with its initial state eliminated; `None` if a window
 /// cannot be simulated.
-fn blocks(
+fn compute_reduced_blocks(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
     present: &Estimate,

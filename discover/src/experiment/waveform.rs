@@ -6,10 +6,10 @@ use std::f64::consts::PI;
 use crate::interval::Interval;
 
 /// Number of tones of a multisine.
-const TONES: usize = 12;
+const TONE_COUNT: usize = 12;
 
 /// Levels of a staircase, relative to each end.
-const LEVELS: [f64; 10] = [0.2, 0.4, 0.6, 0.8, 1.0, -0.2, -0.4, -0.6, -0.8, -1.0];
+const STAIRCASE_LEVELS: [f64; 10] = [0.2, 0.4, 0.6, 0.8, 1.0, -0.2, -0.4, -0.6, -0.8, -1.0];
 
 /// Waveform of an input.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +69,7 @@ impl Waveform {
     pub fn sample(&self, times: &[f64], duration: f64) -> Option<Vec<f64>> {
         let at = |of: &dyn Fn(f64) -> f64| times.iter().map(|t| of(t / duration)).collect();
         Some(match *self {
-            Self::Multisine(band) => multisine(band, times, duration)?,
+            Self::Multisine(band) => sample_multisine(band, times, duration)?,
             Self::Chirp(band) => {
                 let octaves = (band.high / band.low).ln();
                 let phase = |part: f64| {
@@ -81,15 +81,15 @@ impl Waveform {
                 };
                 at(&|part| phase(part).cos())
             }
-            Self::Square(times) => at(&|part| match phase(part, times) < 0.5 {
+            Self::Square(times) => at(&|part| match compute_phase(part, times) < 0.5 {
                 true => 1.0,
                 false => -1.0,
             }),
-            Self::DoubleReversal(times) => at(&|part| match phase(part, times) {
+            Self::DoubleReversal(times) => at(&|part| match compute_phase(part, times) {
                 phase if (0.25..0.75).contains(&phase) => -1.0,
                 _ => 1.0,
             }),
-            Self::Triangle(times) => at(&|part| match phase(part, times) {
+            Self::Triangle(times) => at(&|part| match compute_phase(part, times) {
                 phase if phase < 0.25 => 4.0 * phase,
                 phase if phase < 0.75 => 2.0 - 4.0 * phase,
                 phase => 4.0 * phase - 4.0,
@@ -103,8 +103,8 @@ impl Waveform {
                 false => f64::NAN,
             }),
             Self::Staircase => at(&|part| {
-                let step = (part * LEVELS.len() as f64) as usize;
-                LEVELS[step.min(LEVELS.len() - 1)]
+                let step = (part * STAIRCASE_LEVELS.len() as f64) as usize;
+                STAIRCASE_LEVELS[step.min(STAIRCASE_LEVELS.len() - 1)]
             }),
         })
     }
@@ -149,7 +149,7 @@ impl Waveform {
 
 /// Returns the phase of a signal with `periods` periods, at a fraction of the duration. The final
 /// time belongs to the last period.
-fn phase(part: f64, periods: u32) -> f64 {
+fn compute_phase(part: f64, periods: u32) -> f64 {
     (part.min(1.0 - 1e-12) * f64::from(periods)).fract()
 }
 
@@ -158,10 +158,10 @@ fn end(is_upper: bool) -> f64 {
 }
 
 /// Returns a sum of tones with whole numbers of periods, scaled to a maximum of 1.
-fn multisine(band: Interval, times: &[f64], duration: f64) -> Option<Vec<f64>> {
-    let mut periods: Vec<u64> = (0..TONES)
+fn sample_multisine(band: Interval, times: &[f64], duration: f64) -> Option<Vec<f64>> {
+    let mut periods: Vec<u64> = (0..TONE_COUNT)
         .map(|tone| {
-            let part = tone as f64 / (TONES - 1) as f64;
+            let part = tone as f64 / (TONE_COUNT - 1) as f64;
             band.low * (band.high / band.low).powf(part)
         })
         .map(|frequency| (frequency * duration).round() as u64)

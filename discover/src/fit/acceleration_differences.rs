@@ -4,7 +4,7 @@
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::exponential::DrivingAccelerations;
 
-use crate::model::simulation::NeighbourDrives;
+use crate::model::simulation::TangentDrives;
 
 /// Model with one changed parameter.
 pub(crate) struct PerturbedEvaluator<'c> {
@@ -34,8 +34,8 @@ impl<'c> AccelerationDifferences<'c> {
     }
 
     /// Returns the differences as drives of tangent vectors.
-    pub fn as_drives(&mut self) -> NeighbourDrives<'_> {
-        NeighbourDrives {
+    pub fn as_drives(&mut self) -> TangentDrives<'_> {
+        TangentDrives {
             count: self.moved.len(),
             drives: self,
         }

@@ -6,10 +6,10 @@ use nalgebra::{DMatrix, DVector};
 
 /// Maximum number of changes of the active set. Each change decreases the sum of squares, so the
 /// maximum is reached only because of rounding.
-const MOST_CHANGES: usize = 200;
+const MAX_ACTIVE_SET_CHANGES: usize = 200;
 
 /// Ratio to the largest slope below which a slope counts as 0.
-const FLAT: f64 = 1e-10;
+const FLAT_SLOPE_RATIO: f64 = 1e-10;
 
 /// Returns the x that minimises |A x - b| within `bounds`. The bounds must contain 0. Components
 /// without influence remain 0.
@@ -28,8 +28,8 @@ pub fn solve_least_squares(
     for (column, interval) in bounds.iter().enumerate() {
         free[column] = interval.low < interval.high;
     }
-    for _ in 0..MOST_CHANGES {
-        let target = free_solution(a, b, &x, &free, &scale);
+    for _ in 0..MAX_ACTIVE_SET_CHANGES {
+        let target = solve_free(a, b, &x, &free, &scale);
         // Fraction of the step within the bounds.
         let mut reach = 1.0;
         let mut stop = None;
@@ -59,7 +59,7 @@ pub fn solve_least_squares(
             let along = slope[*column] / scale[*column];
             !free[*column]
                 && low < high
-                && along.abs() > FLAT * b.norm().max(largest)
+                && along.abs() > FLAT_SLOPE_RATIO * b.norm().max(largest)
                 && ((x[*column] <= low && along > 0.0) || (x[*column] >= high && along < 0.0))
         };
         let steepest = (0..columns).filter(wants_in).max_by(|p, q| {
@@ -76,7 +76,7 @@ pub fn solve_least_squares(
 }
 
 /// Returns the solution for the free unknowns; the others are fixed.
-fn free_solution(
+fn solve_free(
     a: &DMatrix<f64>,
     b: &DVector<f64>,
     x: &DVector<f64>,
@@ -117,7 +117,7 @@ mod tests {
     use super::{Interval, solve_least_squares};
 
     #[test]
-    fn without_bounds_it_is_least_squares() {
+    fn solution_without_bounds_is_least_squares() {
         let a = DMatrix::from_row_slice(3, 2, &[1.0, 0.0, 1.0, 1.0, 1.0, 2.0]);
         let b = DVector::from_vec(vec![1.0, 3.0, 5.0]);
         let x = solve_least_squares(
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bound_that_holds_one_moves_the_other() {
+    fn active_bound_changes_other_unknown() {
         // Problem: minimise (x + y - 1)^2 + (x - y - 3)^2. The free minimum is (2, -1); with y >= 0
         // it is (2, 0).
         let a = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, -1.0]);
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bound_met_on_the_way_is_left_again() {
+    fn bound_reached_in_a_step_is_released() {
         // The steepest descent from 0 first meets x <= 0.5; the minimum is at (-1, 2).
         let a = DMatrix::from_row_slice(2, 2, &[3.0, 1.0, 0.0, 1.0]);
         let b = DVector::from_vec(vec![-1.0, 2.0]);

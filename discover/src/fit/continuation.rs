@@ -84,7 +84,7 @@ pub fn replace_by_secants(
     mut tangents: Vec<Option<WindowDerivatives>>,
     follow: &EstimateInitialStates<'_>,
 ) -> Vec<Option<WindowDerivatives>> {
-    Continuation::new(shooting, follow).take_secants(estimate, &mut tangents);
+    Continuation::new(shooting, follow).insert_secants(estimate, &mut tangents);
     tangents
 }
 
@@ -115,7 +115,7 @@ impl<'a> Continuation<'a> {
     }
 
     /// Returns the RMS residual, in standard deviations.
-    fn residual_rms(&self, present: &Estimate) -> f64 {
+    fn compute_residual_rms(&self, present: &Estimate) -> f64 {
         let count = self.shooting.fraction * self.shooting.windows.measurement_count();
         (present.squares.iter().sum::<f64>() / count).sqrt()
     }
@@ -129,12 +129,13 @@ impl<'a> Continuation<'a> {
     ) {
         for _ in 0..steps {
             if derivatives == Derivatives::Secants
-                && self.residual_rms(&present.estimate) < thresholds::MAX_FLOOR_RATIO_AT_FLOOR
+                && self.compute_residual_rms(&present.estimate)
+                    < thresholds::MAX_FLOOR_RATIO_AT_FLOOR
             {
                 return;
             }
             let before = present.estimate.cost;
-            let Some(next) = self.step(present, derivatives) else {
+            let Some(next) = self.try_step(present, derivatives) else {
                 present.is_converged = true;
                 return;
             };
@@ -148,7 +149,7 @@ impl<'a> Continuation<'a> {
     }
 
     /// Returns the next estimate, if its cost is lower.
-    fn step(
+    fn try_step(
         &mut self,
         present: &ContinuationResult,
         derivatives: Derivatives,
@@ -157,7 +158,7 @@ impl<'a> Continuation<'a> {
             prior, estimate, ..
         } = present;
         let mut linear = compute_derivatives(self.shooting, estimate);
-        if derivatives == Derivatives::Secants && !self.take_secants(estimate, &mut linear) {
+        if derivatives == Derivatives::Secants && !self.insert_secants(estimate, &mut linear) {
             return None;
         }
         let windows = eliminate_initial_states(prior, estimate, &linear);
@@ -170,43 +171,44 @@ impl<'a> Continuation<'a> {
     }
 
     /// Replaces derivatives by secants. Returns false if no derivative was replaced.
-    fn take_secants(
+    fn insert_secants(
         &mut self,
         estimate: &Estimate,
         linear: &mut [Option<WindowDerivatives>],
     ) -> bool {
         // The lower limit avoids a size that depends on rounding if the residual is far below the
         // noise.
-        let wanted = thresholds::SECANT_OUTPUT_CHANGE * self.residual_rms(estimate).max(1.0);
-        let mut taken = false;
+        let wanted =
+            thresholds::SECANT_OUTPUT_CHANGE * self.compute_residual_rms(estimate).max(1.0);
+        let mut is_replaced = false;
         let all = self.shooting.unknowns;
         for (id, unknown) in UnknownId::first(all.len()).zip(all) {
             if unknown.prior.is_some() || unknown.bounds.is_point() {
                 continue;
             }
-            let mut secant = self.secant(estimate, linear, id);
-            let moved = secant.change_rms();
+            let mut secant = self.compute_secant(estimate, linear, id);
+            let moved = secant.compute_change_rms();
             if moved > 0.0
                 && !(wanted / thresholds::SECANT_CHANGE_TOLERANCE
                     ..wanted * thresholds::SECANT_CHANGE_TOLERANCE)
                     .contains(&moved)
             {
                 self.sizes[id] = secant.size * wanted / moved;
-                secant = self.secant(estimate, linear, id);
+                secant = self.compute_secant(estimate, linear, id);
             }
             for (linear, change) in linear.iter_mut().zip(&secant.changes) {
                 if let (Some(linear), Some(change)) = (linear, change) {
                     let column = change / secant.size;
                     linear.by_unknown.set_column(id.index(), &column);
-                    taken = true;
+                    is_replaced = true;
                 }
             }
         }
-        taken
+        is_replaced
     }
 
     /// Computes the change of the residuals of each window due to a change of an unknown.
-    fn secant(
+    fn compute_secant(
         &self,
         estimate: &Estimate,
         linear: &[Option<WindowDerivatives>],
@@ -241,7 +243,7 @@ struct Secant {
 
 impl Secant {
     /// Returns the RMS change, in standard deviations.
-    fn change_rms(&self) -> f64 {
+    fn compute_change_rms(&self) -> f64 {
         let all = || self.changes.iter().flatten();
         let count: usize = all().map(DVector::len).sum();
         (all().map(DVector::norm_squared).sum::<f64>() / count.max(1) as f64).sqrt()

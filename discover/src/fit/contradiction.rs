@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::fit::fit_result::Fit;
 use crate::fit::single_record::{
-    SingleRecordFit, fit_record_separately, largest_record_rms, list_records,
+    SingleRecordFit, compute_largest_record_rms, fit_record_separately, list_records,
 };
 use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{Unknown, UnknownKind, bounds_with_sign};
@@ -15,7 +15,7 @@ use crate::thresholds;
 
 /// Number of records that are fitted in parallel between two checks whether further fits can
 /// matter.
-const AT_ONCE: usize = 2;
+const PARALLEL_FIT_COUNT: usize = 2;
 
 /// Returns sentences about contradicting records of a fit with a gap. Two records contradict each
 /// other if their single fits give different values of a declared or found parameter and each
@@ -29,36 +29,36 @@ pub fn describe_contradictions(
     progress: &(dyn Fn(&str) + Sync),
 ) -> Vec<String> {
     // If records contradict each other, the joint residual of at least one record is large.
-    if largest_record_rms(problem, fit) < thresholds::MIN_CONTRADICTION_RATIO * floor {
+    if compute_largest_record_rms(problem, fit) < thresholds::MIN_CONTRADICTION_RATIO * floor {
         return Vec::new();
     }
-    let places = list_records(problem.dataset);
-    let mut records: Vec<SingleRecordFit> = Vec::with_capacity(places.len());
+    let indices = list_records(problem.dataset);
+    let mut records: Vec<SingleRecordFit> = Vec::with_capacity(indices.len());
     let mut tried = 0;
-    // The first record is fitted alone, because with two records its fit may be sufficient.
-    let (first, others) = places.split_at(1.min(places.len()));
-    for some in std::iter::once(first).chain(others.chunks(AT_ONCE)) {
-        if !may_contradict(&records, places.len() - tried, floor) {
+    // The first record is fitted before the others: with two records its fit may be sufficient.
+    let (first, others) = indices.split_at(1.min(indices.len()));
+    for some in std::iter::once(first).chain(others.chunks(PARALLEL_FIT_COUNT)) {
+        if !may_contradict(&records, indices.len() - tried, floor) {
             return Vec::new();
         }
         progress(&format!(
             "fitting records separately, {} of {}",
             tried + some.len(),
-            places.len()
+            indices.len()
         ));
         let of_its_own = some
             .par_iter()
-            .map(|place| fit_record_separately(problem, fit, *place, None));
+            .map(|index| fit_record_separately(problem, fit, *index, None));
         let of_its_own: Vec<Option<SingleRecordFit>> = of_its_own.collect();
         records.extend(of_its_own.into_iter().flatten());
         tried += some.len();
     }
     let mut sentences = Vec::new();
-    for (place, unknown) in fit.unknowns.iter().enumerate() {
+    for (index, unknown) in fit.unknowns.iter().enumerate() {
         if let UnknownKind::Parameter(name) = &unknown.kind
-            && let Some((a, b)) = furthest(&records, place)
+            && let Some((a, b)) = find_largest_contradiction(&records, index)
         {
-            sentences.push(describe_shift(fit, name, place, a, b));
+            sentences.push(describe_shift(fit, name, index, a, b));
         }
     }
     match sentences.is_empty() {
@@ -77,7 +77,7 @@ fn may_contradict(records: &[SingleRecordFit], more: usize, floor: f64) -> bool 
         return records.len() + more > 2;
     }
     let left: Vec<f64> = records.iter().map(|record| record.rms).collect();
-    !Oddness::of(&left, floor).odd.is_empty()
+    !RecordClasses::classify(&left, floor).odd.is_empty()
 }
 
 /// Returns true if a single fit explains a record much better than the joint fit.
@@ -86,28 +86,29 @@ fn is_better_alone(record: &SingleRecordFit) -> bool {
 }
 
 /// Records whose single fits have much larger residuals than those of the other records.
-struct Oddness {
+struct RecordClasses {
     /// Indices of the records with large residuals; empty if they are not a minority.
     odd: Vec<usize>,
     /// Indices of the records with usual residuals.
     explained: Vec<usize>,
 }
 
-impl Oddness {
+impl RecordClasses {
     /// Classifies records by the RMS residuals of their single fits, in standard deviations. A
     /// residual is large if it is far above the median and far above the noise floor. If an effect
     /// is missing, all records have similar residuals.
-    fn of(alone: &[f64], floor: f64) -> Self {
-        let mut sorted = alone.to_vec();
+    fn classify(fits: &[f64], floor: f64) -> Self {
+        let mut sorted = fits.to_vec();
         sorted.sort_by(f64::total_cmp);
         let median = sorted.get(sorted.len().saturating_sub(1) / 2);
         let usual = median.map_or(floor, |median| median.max(floor));
-        let such = |is: &dyn Fn(f64) -> bool| {
-            let places = 0..alone.len();
-            places.filter(|place| is(alone[*place])).collect()
+        let select = |is: &dyn Fn(f64) -> bool| {
+            let indices = 0..fits.len();
+            indices.filter(|index| is(fits[*index])).collect()
         };
-        let explained: Vec<usize> = such(&|rms| rms < thresholds::MAX_FLOOR_RATIO_TO_STOP * usual);
-        let odd: Vec<usize> = such(&|rms| rms > thresholds::FAR_FROM_NOISE * usual);
+        let explained: Vec<usize> =
+            select(&|rms| rms < thresholds::MAX_FLOOR_RATIO_TO_STOP * usual);
+        let odd: Vec<usize> = select(&|rms| rms > thresholds::MIN_RMS_FAR_FROM_NOISE * usual);
         // If most records have a large residual, an effect is missing and shows in these records
         // only.
         match odd.len() < explained.len() {
@@ -124,21 +125,21 @@ impl Oddness {
 fn find_odd_records(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
-    alone: &[SingleRecordFit],
+    fits: &[SingleRecordFit],
     floor: f64,
 ) -> Vec<String> {
-    let left: Vec<f64> = alone.iter().map(|record| record.rms).collect();
-    let Oddness { odd, explained } = Oddness::of(&left, floor);
+    let left: Vec<f64> = fits.iter().map(|record| record.rms).collect();
+    let RecordClasses { odd, explained } = RecordClasses::classify(&left, floor);
     let names: Vec<&str> = (explained.iter())
-        .map(|place| alone[*place].name.as_str())
+        .map(|index| fits[*index].name.as_str())
         .collect();
     let most = explained
         .iter()
-        .map(|place| left[*place])
+        .map(|index| left[*index])
         .fold(0.0, f64::max);
-    let sentence = |place: &usize| {
-        let record = &alone[*place];
-        let by = explaining(problem, fit, record, floor);
+    let sentence = |index: &usize| {
+        let record = &fits[*index];
+        let by = find_explaining_parameters(problem, fit, record, floor);
         let by = match by.is_empty() {
             true => String::new(),
             false => format!(" Its separate fit is explained by {}.", by.join(", or by ")),
@@ -156,7 +157,7 @@ fn find_odd_records(
 }
 
 /// Returns the single parameters that explain a record, with their values.
-fn explaining(
+fn find_explaining_parameters(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     record: &SingleRecordFit,
@@ -199,16 +200,16 @@ fn explaining(
 
 /// Returns the two records with the most significant difference of an unknown. The difference must
 /// exceed the uncertainty, and the single fits of both records must explain them.
-fn furthest(
-    alone: &[SingleRecordFit],
-    place: usize,
+fn find_largest_contradiction(
+    fits: &[SingleRecordFit],
+    index: usize,
 ) -> Option<(&SingleRecordFit, &SingleRecordFit)> {
-    let explained: Vec<&SingleRecordFit> = alone
+    let explained: Vec<&SingleRecordFit> = fits
         .iter()
         .filter(|record| is_better_alone(record))
         .collect();
     let apart = |a: &SingleRecordFit, b: &SingleRecordFit| {
-        let ((x, sx), (y, sy)) = (a.estimates[place], b.estimates[place]);
+        let ((x, sx), (y, sy)) = (a.estimates[index], b.estimates[index]);
         let is_large =
             (x - y).abs() > thresholds::MIN_CONTRADICTION_DIFFERENCE * x.abs().max(y.abs());
         ((x - y).abs() / f64::hypot(sx, sy), is_large)
@@ -225,13 +226,13 @@ fn furthest(
 fn describe_shift(
     fit: &Fit,
     name: &str,
-    place: usize,
+    index: usize,
     a: &SingleRecordFit,
     b: &SingleRecordFit,
 ) -> String {
     let mut parameters = fit.model.specification().parameters.iter();
     let parameter = parameters.find(|parameter| parameter.name == name);
-    let value = |record: &SingleRecordFit| format_estimate(parameter, record.estimates[place]);
+    let value = |record: &SingleRecordFit| format_estimate(parameter, record.estimates[index]);
     format!(
         "{} and {} contradict each other: separate fits give `{name}` as {} and {} with residuals of {:.1} and \
          {:.1} standard deviations, and the joint fit has {:.1} and {:.1}. Check if they were measured on one \
@@ -279,12 +280,12 @@ mod tests {
     fn contradicts(records: &[SingleRecordFit]) -> bool {
         let own = records.iter().filter(|of| is_better_alone(of)).count();
         let left: Vec<f64> = records.iter().map(|of| of.rms).collect();
-        own > 1 || !Oddness::of(&left, 1.0).odd.is_empty()
+        own > 1 || !RecordClasses::classify(&left, 1.0).odd.is_empty()
     }
 
     #[test]
-    fn a_record_is_odd_that_leaves_much_more_than_most() {
-        let odd = |alone: &[f64]| Oddness::of(alone, 1.0).odd;
+    fn record_with_much_larger_residual_is_odd() {
+        let odd = |fits: &[f64]| RecordClasses::classify(fits, 1.0).odd;
         let none: [usize; 0] = [];
         assert_eq!(odd(&[1.0, 1.1, 9.0]), [2]);
         assert_eq!(odd(&[1.8, 14.6, 2.8]), [1]);
@@ -299,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn no_record_is_left_out_that_could_contradict_others() {
+    fn all_possible_contradictions_are_examined() {
         // Each kind is (RMS of the single fit, RMS of the joint fit).
         let kinds = [
             (1.0, 1.2),
@@ -313,7 +314,7 @@ mod tests {
         let all = |count: usize| {
             (0..kinds.len().pow(count as u32)).map(move |number| {
                 let kind =
-                    |place: usize| kinds[number / kinds.len().pow(place as u32) % kinds.len()];
+                    |index: usize| kinds[number / kinds.len().pow(index as u32) % kinds.len()];
                 (0..count).map(kind).collect::<Vec<(f64, f64)>>()
             })
         };

@@ -11,14 +11,14 @@ use crate::fit::gauss_newton::{
 use crate::fit::initial_states::update_carried_prior;
 use crate::fit::jump_free_quotients::limit_quotient;
 use crate::fit::prior::InitialStatePrior;
-use crate::fit::sensitivity::{WindowDerivatives, move_along, range_along};
+use crate::fit::sensitivity::{WindowDerivatives, compute_range_along, move_along};
 use crate::fit::shooting::{Residual, Shooting};
 use crate::fit::variable_projection::compute_triangular_factor;
 use crate::ids::{UnknownId, WindowId};
 use crate::thresholds;
 
 /// Standard deviation of the initial value of a constant state, as a fraction of its range.
-const LEAST_RANGE: f64 = 1e-6;
+const MIN_STATE_SD_IN_RANGES: f64 = 1e-6;
 
 /// Returns rows that transform the deviation of a state from its mean along the windows to unit
 /// covariance. Both ends of a stiff spring move together, so their initial states must be
@@ -48,7 +48,7 @@ pub(crate) fn compute_whitening(
     let deviations = DMatrix::from_fn(states.len(), ranges.len(), |row, state| {
         (scaled[(row, state)] - mean[state]) / count.sqrt()
     });
-    let least = DMatrix::from_diagonal_element(ranges.len(), ranges.len(), LEAST_RANGE);
+    let least = DMatrix::from_diagonal_element(ranges.len(), ranges.len(), MIN_STATE_SD_IN_RANGES);
     let factor = compute_triangular_factor(&deviations, &least);
     let inverse = factor.transpose().try_inverse()?;
     Some(DMatrix::from_fn(
@@ -67,17 +67,17 @@ pub(crate) fn run_final_steps(
     let values = shooting.parameter_values(&from.theta);
     let simulation = shooting.model.create_simulation(&values);
     if simulation.is_ok_and(|simulation| simulation.has_exact_derivatives()) {
-        return steps(shooting, prior, from, compute_derivatives);
+        return take_steps(shooting, prior, from, compute_derivatives);
     }
     let near = compute_derivatives(shooting, &from);
-    steps(shooting, prior, from, |shooting, estimate| {
-        central_differences(shooting, estimate, &near)
+    take_steps(shooting, prior, from, |shooting, estimate| {
+        compute_central_differences(shooting, estimate, &near)
     })
 }
 
 /// Takes Gauss-Newton steps with the given derivatives, until the decrease of the cost is
 /// negligible. Returns the estimate and its derivatives.
-fn steps(
+fn take_steps(
     shooting: &Shooting<'_>,
     prior: &mut InitialStatePrior,
     from: Estimate,
@@ -107,7 +107,7 @@ fn steps(
 /// Returns residuals and derivatives of every window; `None` if its simulation failed. The
 /// derivatives in `near` limit the differences: each output changes by less than a fraction of its
 /// noise, because a motion with dry friction is linear only in this range.
-fn central_differences(
+fn compute_central_differences(
     shooting: &Shooting<'_>,
     estimate: &Estimate,
     near: &[Option<WindowDerivatives>],
@@ -130,7 +130,7 @@ fn central_differences(
                 .flatten()
                 .map(|of| of.by_unknown.column(id.index()));
             let steepest = columns.map(|column| column.amax()).fold(0.0, f64::max);
-            let size = small_change(unknown.scale, steepest);
+            let size = choose_change(unknown.scale, steepest);
             // A bound that comes only from a prior does not limit the difference quotient: the
             // model can be simulated beyond it.
             let reach = unknown.bounds.join(unknown.bounds_without_prior);
@@ -157,8 +157,8 @@ fn central_differences(
                     return 0.0;
                 }
                 let steepest = of.as_ref().map(|of| of.by_state.column(number).amax());
-                let range = range_along(&directions.column(number), ranges);
-                small_change(range, steepest.unwrap_or(0.0))
+                let range = compute_range_along(&directions.column(number), ranges);
+                choose_change(range, steepest.unwrap_or(0.0))
             });
             let sizes: Vec<f64> = sizes.collect();
             let ends = [1.0, -1.0].map(|sign| {
@@ -205,7 +205,7 @@ type Columns = Vec<Option<DVector<f64>>>;
 
 /// Returns the step of a difference quotient. `scale`: scale of the unknown; `steepest`: largest
 /// derivative of an output, in standard deviations of its noise.
-fn small_change(scale: f64, steepest: f64) -> f64 {
+fn choose_change(scale: f64, steepest: f64) -> f64 {
     (thresholds::CENTRAL_QUOTIENT_IN_SCALES * scale)
         .min(thresholds::QUOTIENT_OUTPUT_CHANGE / steepest)
 }

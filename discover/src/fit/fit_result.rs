@@ -111,14 +111,14 @@ impl Fit {
     pub fn is_at_floor(&self, floor: f64) -> bool {
         let freedom = |of: &Residuals| (of.measurement_count * floor.powi(2).min(1.0)).max(1.0);
         let (train, test) = (freedom(&self.train), freedom(&self.test));
-        let by_unknowns = f64::sqrt(1.0 + self.determined_unknowns() / train);
-        self.train.rms < floor * largest_ratio_by_chance(train)
-            && self.test.rms < floor * by_unknowns * largest_ratio_by_chance(test)
+        let by_unknowns = f64::sqrt(1.0 + self.count_determined_unknowns() / train);
+        self.train.rms < floor * compute_largest_chance_ratio(train)
+            && self.test.rms < floor * by_unknowns * compute_largest_chance_ratio(test)
     }
 
     /// Returns the number of unknowns that the records determine: the sum of the fractions of prior
     /// variance that the records remove.
-    fn determined_unknowns(&self) -> f64 {
+    fn count_determined_unknowns(&self) -> f64 {
         let of = |(unknown, sd): (&Unknown, &f64)| {
             let left = unknown.prior.map_or(0.0, |prior| sd / prior.sd);
             (1.0 - left * left).clamp(0.0, 1.0)
@@ -142,8 +142,8 @@ impl Fit {
 
 /// Returns the largest RMS residual of a correct model, in noise floors. It is exceeded with the
 /// probability of [`thresholds::FALSE_ALARM_QUANTILE`].
-fn largest_ratio_by_chance(freedom: f64) -> f64 {
-    let quantile = chi_squared_quantile(freedom, thresholds::FALSE_ALARM_QUANTILE);
+fn compute_largest_chance_ratio(freedom: f64) -> f64 {
+    let quantile = compute_chi_squared_quantile(freedom, thresholds::FALSE_ALARM_QUANTILE);
     (quantile / freedom)
         .sqrt()
         .max(thresholds::MAX_FLOOR_RATIO_AT_FLOOR)
@@ -151,21 +151,21 @@ fn largest_ratio_by_chance(freedom: f64) -> f64 {
 
 /// Converts a quantile of the normal distribution to the quantile of the chi-squared distribution
 /// with the same probability, by the approximation of Wilson and Hilferty (1931).
-fn chi_squared_quantile(freedom: f64, normal: f64) -> f64 {
+fn compute_chi_squared_quantile(freedom: f64, normal: f64) -> f64 {
     let variance = 2.0 / (9.0 * freedom);
     freedom * (1.0 - variance + normal * variance.sqrt()).powi(3)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{chi_squared_quantile, largest_ratio_by_chance};
+    use super::{compute_chi_squared_quantile, compute_largest_chance_ratio};
     use crate::thresholds;
 
     #[test]
     fn quantile_of_chi_squared_matches_tables() {
         // 99 % quantiles: 23.209, 76.154 and 1106.969 for 10, 50 and 1000 degrees of freedom.
         for (freedom, right) in [(10.0, 23.209), (50.0, 76.154), (1000.0, 1106.969)] {
-            let found = chi_squared_quantile(freedom, thresholds::FALSE_ALARM_QUANTILE);
+            let found = compute_chi_squared_quantile(freedom, thresholds::FALSE_ALARM_QUANTILE);
             assert!((found / right - 1.0).abs() < 5e-3, "{freedom}: {found}");
         }
     }
@@ -173,9 +173,9 @@ mod tests {
     #[test]
     fn short_records_have_a_wider_limit() {
         // Expected values: sqrt(76.154/50), and the limit of long records.
-        assert!((largest_ratio_by_chance(50.0) - 1.2341).abs() < 1e-3);
+        assert!((compute_largest_chance_ratio(50.0) - 1.2341).abs() < 1e-3);
         assert_eq!(
-            largest_ratio_by_chance(1e5),
+            compute_largest_chance_ratio(1e5),
             thresholds::MAX_FLOOR_RATIO_AT_FLOOR
         );
     }

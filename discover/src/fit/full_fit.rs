@@ -15,7 +15,7 @@ use crate::fit::residuals::Residuals;
 use crate::fit::sensitivity::WindowDerivatives;
 use crate::fit::shooting::Shooting;
 use crate::fit::step_refinement::{
-    combine, compute_step_errors, root_of_squares, shift_measurements,
+    combine, compute_root_of_squares, compute_step_errors, shift_measurements,
 };
 use crate::fit::uncertainty::compute_uncertainties;
 use crate::ids::WindowId;
@@ -39,7 +39,7 @@ struct StartingPoint {
 }
 
 /// Result of the fit to whole windows.
-struct Converged {
+struct ConvergedFit {
     /// Prior of the initial states.
     prior: InitialStatePrior,
     /// Residuals.
@@ -61,7 +61,7 @@ pub fn fit_specification(
 ) -> Result<Fit, DiscoverError> {
     complete_fit(
         problem,
-        preliminary_fit::fit_beginnings(problem, texts, unknowns, &[theta.to_vec()])?,
+        preliminary_fit::fit_initial_segments(problem, texts, unknowns, &[theta.to_vec()])?,
     )
 }
 
@@ -84,7 +84,7 @@ pub fn complete_fit(
     );
     let near = evaluate_whole_windows(problem, &all, &preliminary);
     let is_followed = near.is_followed;
-    let Converged {
+    let ConvergedFit {
         mut prior,
         residuals: mut train,
         is_far,
@@ -186,7 +186,7 @@ fn take_final_steps<'d>(
         let mut has_settled = true;
         if let Some(errors) = compute_step_errors(all, &train.estimate) {
             let moved = corrections.as_ref().map(|before| {
-                root_of_squares(&combine(&errors.corrections, before, |new, old| new - old))
+                compute_root_of_squares(&combine(&errors.corrections, before, |new, old| new - old))
             });
             has_settled = moved
                 .is_some_and(|moved| moved < thresholds::MAX_SUMMED_STEP_ERROR || moved >= change);
@@ -255,7 +255,7 @@ fn evaluate_whole_windows(
         &preliminary.whole_window_prior,
         problem.estimates_initial_states(),
     ) {
-        let theta = continued_unknowns(problem, all, preliminary);
+        let theta = continue_initial_segments(problem, all, preliminary);
         let follow = estimate_for_unknowns(
             problem,
             all,
@@ -302,7 +302,7 @@ fn iterate_to_convergence(
     all: &mut Shooting<'_>,
     near: StartingPoint,
     most: f64,
-) -> Converged {
+) -> ConvergedFit {
     let (mut prior, estimate) = (near.prior, near.estimate);
     let free = match near.is_far {
         true => estimate,
@@ -345,7 +345,7 @@ fn iterate_to_convergence(
             break;
         }
     }
-    Converged {
+    ConvergedFit {
         prior,
         residuals,
         is_far,
@@ -354,7 +354,7 @@ fn iterate_to_convergence(
 
 /// Continues the fit of the initial segments of windows with further steps until it is near the
 /// noise. In longer windows, impacts make the outputs irregular for distant unknowns.
-fn continued_unknowns(
+fn continue_initial_segments(
     problem: &EstimationProblem<'_>,
     all: &Shooting<'_>,
     preliminary: &PreliminaryFit,
@@ -375,7 +375,7 @@ fn continued_unknowns(
         problem,
         &first,
         &preliminary.ranges,
-        thresholds::PRELIMINARY_HORIZONS,
+        thresholds::PRELIMINARY_HORIZON_COUNT,
     );
     let steps = if preliminary.is_converged {
         0

@@ -44,7 +44,7 @@ pub fn run_damped_gauss_newton(
     let mut present = evaluate_cost(shooting, prior, theta.to_vec(), initial_states.to_vec());
     for _ in 0..steps {
         let linear = compute_derivatives(shooting, &present);
-        let Some(next) = step(shooting, prior, &present, &linear) else {
+        let Some(next) = take_step(shooting, prior, &present, &linear) else {
             break;
         };
         let decrease = present.cost - next.cost;
@@ -90,7 +90,7 @@ pub fn evaluate_cost(
 ) -> Estimate {
     let residuals = shooting.compute_residuals(&theta, &initial_states);
     let squares: Vec<f64> = residuals.iter().map(sum_of_squares).collect();
-    total_costs(shooting, prior, theta, initial_states, squares)
+    compute_total_costs(shooting, prior, theta, initial_states, squares)
 }
 
 /// Returns the sum of squares of a window; infinite if the simulation failed.
@@ -101,7 +101,7 @@ pub(crate) fn sum_of_squares(residual: &Option<Residual>) -> f64 {
 }
 
 /// Returns the contribution of the priors of unknowns to the cost.
-fn prior_of_unknowns(shooting: &Shooting<'_>, theta: &[f64]) -> f64 {
+fn compute_prior_cost(shooting: &Shooting<'_>, theta: &[f64]) -> f64 {
     let terms = shooting.unknowns.iter().zip(theta).map(|(unknown, value)| {
         let unknown_before = NormalPrior {
             mean: *value,
@@ -113,7 +113,7 @@ fn prior_of_unknowns(shooting: &Shooting<'_>, theta: &[f64]) -> f64 {
     shooting.prior_weight * terms.sum::<f64>()
 }
 
-fn total_costs(
+fn compute_total_costs(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
     theta: Vec<f64>,
@@ -126,7 +126,7 @@ fn total_costs(
         .map(|(window, state)| prior.compute_cost(window, state));
     let cost = squares.iter().sum::<f64>()
         + of_initial_states.sum::<f64>()
-        + prior_of_unknowns(shooting, &theta);
+        + compute_prior_cost(shooting, &theta);
     Estimate {
         theta,
         initial_states,
@@ -172,7 +172,7 @@ pub(crate) fn eliminate_initial_states(
 }
 
 /// Returns the next estimate, if its cost is lower.
-fn step(
+fn take_step(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
     present: &Estimate,
@@ -258,7 +258,7 @@ pub(crate) fn follow_unknowns(
             .map(|(id, (start, window))| {
                 let window = window.as_ref().filter(|_| shooting.ranges.is_some());
                 let step = window.and_then(|w| w.solve_initial_state_step(&change, damping, prior));
-                moved_start(shooting, &mut admissible, (id, start), step)
+                move_initial_state(shooting, &mut admissible, (id, start), step)
             })
             .collect()
     };
@@ -275,16 +275,18 @@ pub(crate) fn follow_unknowns(
     // of them at once.
     for damping in &thresholds::INITIAL_STATE_DAMPING[1..] {
         let stuck: Vec<WindowId> = WindowId::first(best.squares.len())
-            .filter(|w| total(&best, prior, *w) > total(present, prior, *w))
+            .filter(|w| {
+                compute_window_cost(&best, prior, *w) > compute_window_cost(present, prior, *w)
+            })
             .collect();
         if stuck.is_empty() {
             break;
         }
         let damped = moved(*damping);
-        let squares = some_squares(shooting, &theta, &damped, &stuck);
+        let squares = compute_squares(shooting, &theta, &damped, &stuck);
         for (window, square) in stuck.iter().zip(squares) {
             let with_prior = square + prior.compute_cost(*window, &damped[*window]);
-            if with_prior < total(&best, prior, *window) {
+            if with_prior < compute_window_cost(&best, prior, *window) {
                 best.squares[*window] = square;
                 best.initial_states[*window].clone_from(&damped[*window]);
             }
@@ -295,7 +297,7 @@ pub(crate) fn follow_unknowns(
         squares,
         ..
     } = best;
-    total_costs(shooting, prior, theta, initial_states, squares)
+    compute_total_costs(shooting, prior, theta, initial_states, squares)
 }
 
 /// Corrects the initial states after a long step of the unknowns. The derivatives are those before
@@ -328,7 +330,7 @@ pub(crate) fn correct_initial_states(
                 eliminate_initial_state(&here, prior, window, start)
                     .solve_initial_state_step(&held, 0.0, prior)
             });
-            moved_start(shooting, &mut admissible, (window, start), step)
+            move_initial_state(shooting, &mut admissible, (window, start), step)
         });
         let moved: Vec<Vec<f64>> = moved.collect();
         let corrected = shooting.compute_residuals(&best.theta, &moved);
@@ -336,7 +338,9 @@ pub(crate) fn correct_initial_states(
         let windows = WindowId::first(residuals.len()).zip(corrected).zip(moved);
         for (((window, corrected), start), residual) in windows.zip(&mut residuals) {
             let square = sum_of_squares(&corrected);
-            if square + prior.compute_cost(window, &start) < total(&best, prior, window) {
+            if square + prior.compute_cost(window, &start)
+                < compute_window_cost(&best, prior, window)
+            {
                 best.squares[window] = square;
                 best.initial_states[window] = start;
                 *residual = corrected;
@@ -348,7 +352,7 @@ pub(crate) fn correct_initial_states(
             squares,
             ..
         } = best;
-        best = total_costs(shooting, prior, theta, initial_states, squares);
+        best = compute_total_costs(shooting, prior, theta, initial_states, squares);
         if before - best.cost < thresholds::MIN_FINAL_DECREASE * shooting.prior_weight {
             break;
         }
@@ -358,7 +362,7 @@ pub(crate) fn correct_initial_states(
 
 /// Returns the initial state of a window after a step, moved to the nearest admissible state.
 /// Without a step the state is unchanged.
-fn moved_start(
+fn move_initial_state(
     shooting: &Shooting<'_>,
     admissible: &mut AdmissibleStates<'_>,
     (window, start): (WindowId, &[f64]),
@@ -373,12 +377,12 @@ fn moved_start(
     admissible.find_nearest(moved.collect(), at)
 }
 
-fn total(estimate: &Estimate, prior: &InitialStatePrior, window: WindowId) -> f64 {
+fn compute_window_cost(estimate: &Estimate, prior: &InitialStatePrior, window: WindowId) -> f64 {
     estimate.squares[window] + prior.compute_cost(window, &estimate.initial_states[window])
 }
 
 /// Returns the sums of squares of the listed windows.
-fn some_squares(
+fn compute_squares(
     shooting: &Shooting<'_>,
     theta: &[f64],
     initial_states: &[Vec<f64>],
@@ -428,12 +432,12 @@ pub fn fit_initial_state(
     let mut present = start;
     for horizon in horizons {
         sensitivities.truncate(*horizon);
-        present = inner_solve_on_part(sensitivities, prior, window, present)?;
+        present = fit_on_segment(sensitivities, prior, window, present)?;
     }
     Some(present)
 }
 
-fn inner_solve_on_part(
+fn fit_on_segment(
     sensitivities: &mut SensitivityEvaluator<'_>,
     prior: &InitialStatePrior,
     window: WindowId,
@@ -453,7 +457,7 @@ fn inner_solve_on_part(
             .find_map(|damping| {
                 let step = block.solve_initial_state_step(&held, *damping, prior)?;
                 let moved = present.iter().zip(step.iter()).map(|(x, d)| x + d);
-                let moved = sensitivities.admissible_state(window, moved.collect());
+                let moved = sensitivities.find_admissible_state(window, moved.collect());
                 let total = total(&sensitivities.compute_residual(window, &moved)?, &moved);
                 (total < cost).then_some((moved, total))
             });

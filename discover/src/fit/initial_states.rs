@@ -41,10 +41,10 @@ pub fn estimate_at_unknowns(
     let firsts: Vec<Vec<f64>> = records
         .map(|r| problem.estimate_first_state(shooting.model, r))
         .collect();
-    let known = Known {
+    let known = WindowPriors {
         firsts: &firsts,
         sd: &prior_sd(ranges),
-        sources: &sources(problem, shooting.windows),
+        sources: &list_sources(problem, shooting.windows),
     };
     Ok(follow_windows(shooting, theta, known, horizons, before))
 }
@@ -109,17 +109,17 @@ pub fn fit_first_states(
         .collect();
     let chain = Chain {
         shooting,
-        known: Known {
+        known: WindowPriors {
             firsts: &firsts,
             sd: &prior_sd(ranges),
-            sources: &sources(problem, windows),
+            sources: &list_sources(problem, windows),
         },
         horizons: &thresholds::INITIAL_STATE_HORIZONS,
     };
     let mut fitted = firsts.clone();
-    for (place, window) in windows.windows.iter().enumerate() {
+    for (index, window) in windows.windows.iter().enumerate() {
         if window.follows.is_none() {
-            let followed = chain.follow(theta, WindowId::range(place..place + 1), None);
+            let followed = chain.estimate_states(theta, WindowId::range(index..index + 1), None);
             fitted[window.record] = followed
                 .into_iter()
                 .map(|of| of.state)
@@ -171,7 +171,7 @@ pub fn prior_from_states(
 }
 
 /// Returns the source of the prior mean of each window.
-fn sources(problem: &EstimationProblem<'_>, windows: &Windows<'_>) -> Vec<PriorSource> {
+fn list_sources(problem: &EstimationProblem<'_>, windows: &Windows<'_>) -> Vec<PriorSource> {
     let of = |window: &Window| {
         let is_stated = window.first == 0
             && !windows.records[window.record].is_continued
@@ -187,7 +187,7 @@ fn sources(problem: &EstimationProblem<'_>, windows: &Windows<'_>) -> Vec<PriorS
 
 /// Prior of the initial states of windows.
 #[derive(Clone, Copy)]
-struct Known<'a> {
+struct WindowPriors<'a> {
     /// First state of each record.
     firsts: &'a [Vec<f64>],
     /// Standard deviation of each state, if its mean is from the dataset or the preceding window.
@@ -202,13 +202,13 @@ struct Known<'a> {
 fn follow_windows(
     shooting: &Shooting<'_>,
     theta: &[f64],
-    known: Known<'_>,
+    known: WindowPriors<'_>,
     horizons: &[f64],
     before: Option<&[Vec<f64>]>,
 ) -> InitialStates {
     let count = shooting.windows.windows.len();
     let chains = before
-        .map_or(1, |_| thresholds::PARALLEL_CHAINS)
+        .map_or(1, |_| thresholds::PARALLEL_CHAIN_COUNT)
         .min(count)
         .max(1);
     let parts: Vec<std::ops::Range<usize>> = (0..chains)
@@ -226,7 +226,7 @@ fn follow_windows(
                 known,
                 horizons,
             };
-            chain.follow(theta, WindowId::range(windows), carried)
+            chain.estimate_states(theta, WindowId::range(windows), carried)
         })
         .collect();
     let followed = followed.into_iter().flatten();
@@ -268,7 +268,7 @@ pub fn propagate_to_next_windows(
 /// Estimation of consecutive windows.
 struct Chain<'a> {
     shooting: &'a Shooting<'a>,
-    known: Known<'a>,
+    known: WindowPriors<'a>,
     horizons: &'a [f64],
 }
 
@@ -281,7 +281,7 @@ struct FollowedState {
 impl Chain<'_> {
     /// Estimates the initial states of consecutive windows. `carried`: prior mean of the first
     /// window, if known.
-    fn follow(
+    fn estimate_states(
         &self,
         theta: &[f64],
         windows: WindowRange,
@@ -341,7 +341,7 @@ fn read_smoothed(
         let shown = (channels.iter()).position(|channel| channel.quantity == quantity);
         shown.ok_or_else(|| DiscoverError::StateNotMeasured(model.states[state].clone()))
     };
-    let coordinates = (0..degrees).map(|place| source(Quantity::Coordinate(place), place));
+    let coordinates = (0..degrees).map(|index| source(Quantity::Coordinate(index), index));
     let first_order = 2 * degrees..model.states.len();
     let first_order = first_order.map(|state| source(Quantity::State(state - 2 * degrees), state));
     let sources = coordinates

@@ -21,7 +21,7 @@ mod tests {
     use super::limit_quotient;
 
     #[test]
-    fn a_jump_on_one_side_is_left_out() {
+    fn jump_on_one_side_is_ignored() {
         for (slope, jump, step) in [(2.0, 50.0, 1e-3), (-3.0, 50.0, 1e-3), (4.0, -1.0, 1e-6)] {
             let jumped = slope + jump / step;
             let expected = if slope * jump > 0.0 { slope } else { 0.0 };

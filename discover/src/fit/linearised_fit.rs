@@ -44,7 +44,7 @@ pub struct Linearisation<'a> {
 impl LinearisedFit {
     /// Linearises a fit over a fraction of each window.
     pub fn linearise_fit(problem: &EstimationProblem<'_>, fit: &Fit, part: f64) -> Self {
-        let (prior, estimate) = beginnings(problem, fit, part);
+        let (prior, estimate) = estimate_initial_segments(problem, fit, part);
         let whole = fit.training_shooting(problem);
         let shooting = Shooting {
             fraction: part,
@@ -74,7 +74,11 @@ impl LinearisedFit {
 
     /// Removes every second window if there are many.
     pub fn thin_out(&self) -> Self {
-        let every = self.windows.len().div_ceil(thresholds::FEW_WINDOWS).max(1);
+        let every = self
+            .windows
+            .len()
+            .div_ceil(thresholds::COMPARISON_WINDOW_COUNT)
+            .max(1);
         let windows = self.windows.iter().step_by(every).copied();
         Self {
             fraction: self.fraction,
@@ -88,7 +92,7 @@ impl LinearisedFit {
 
 /// Returns the priors of the initial states for a fraction of each window, and initial states that
 /// fit these segments.
-fn beginnings(
+fn estimate_initial_segments(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     part: f64,
@@ -106,7 +110,7 @@ fn beginnings(
         problem,
         &shooting,
         &fit.ranges,
-        thresholds::PRELIMINARY_HORIZONS,
+        thresholds::PRELIMINARY_HORIZON_COUNT,
     );
     let InitialStates {
         prior,

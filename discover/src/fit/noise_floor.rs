@@ -33,7 +33,7 @@ pub fn compute_noise_floor(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64
         channels: problem.noise.clone(),
         rms: 1.0,
     };
-    let Some(replicas) = replicas(problem, fit, seed) else {
+    let Some(replicas) = generate_replicas(problem, fit, seed) else {
         return noise_alone;
     };
     let windows = Windows::split_records(&replicas.records, problem.dataset.window);
@@ -54,7 +54,7 @@ pub fn compute_noise_floor(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64
         return noise_alone;
     }
     let noise = Windows::split_records(&replicas.noise, problem.dataset.window);
-    let drawn = mean_squares_of_noise(&noise, problem.noise.len());
+    let drawn = compute_mean_squares(&noise, problem.noise.len());
     let ratios = residuals.normalised_rms.iter().zip(&drawn);
     let ratios: Vec<f64> = ratios.map(|(rms, drawn)| rms / drawn.sqrt()).collect();
     let squares: f64 = ratios.iter().map(|ratio| ratio * ratio).sum();
@@ -69,7 +69,7 @@ pub fn compute_noise_floor(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64
 
 /// Returns the mean square of the noise of each channel at the compared samples, or 1 for a channel
 /// without measurements. `noise`: noise in standard deviations.
-fn mean_squares_of_noise(noise: &Windows<'_>, channels: usize) -> Vec<f64> {
+fn compute_mean_squares(noise: &Windows<'_>, channels: usize) -> Vec<f64> {
     let mut sums = vec![(0.0, 0.0); channels];
     for window in &noise.windows {
         let rows = window.measured.chunks(channels.max(1));
@@ -95,7 +95,7 @@ struct Replicas {
 }
 
 /// Generates a replica of the training records with the fitted model.
-fn replicas(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Option<Replicas> {
+fn generate_replicas(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Option<Replicas> {
     let shooting = fit.training_shooting(problem);
     let theta = &fit.train.estimate.theta;
     let sensors = shooting.sensor_values(theta);
@@ -103,7 +103,7 @@ fn replicas(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Option<Rep
         .model
         .create_simulation(&shooting.parameter_values(theta))
         .ok()?;
-    let mut draw = Normal::new(seed ^ 0x9e37_79b9_7f4a_7c15);
+    let mut draw = NormalGenerator::new(seed ^ 0x9e37_79b9_7f4a_7c15);
     let mut replicas = Replicas {
         records: Vec::new(),
         noise: Vec::new(),
@@ -133,9 +133,9 @@ fn replicas(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Option<Rep
 
 /// Generator of normal random numbers: sums of twelve uniform numbers, minus six. No number exceeds
 /// 6 in magnitude, which hardly affects sums of squares.
-struct Normal(SplitMix64);
+struct NormalGenerator(SplitMix64);
 
-impl Normal {
+impl NormalGenerator {
     fn new(seed: u64) -> Self {
         Self(SplitMix64::seed_from_u64(seed))
     }
@@ -149,8 +149,8 @@ impl Normal {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn the_noise_is_normal_in_mean_and_variance() {
-        let mut draw = super::Normal::new(1);
+    fn noise_has_normal_mean_and_variance() {
+        let mut draw = super::NormalGenerator::new(1);
         let values: Vec<f64> = (0..20_000).map(|_| draw.next()).collect();
         let mean = values.iter().sum::<f64>() / 2e4;
         let variance = values.iter().map(|v| v * v).sum::<f64>() / 2e4;

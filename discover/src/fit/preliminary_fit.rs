@@ -52,7 +52,7 @@ pub struct WarmStart<'f> {
 /// # Errors
 ///
 /// Errors of [`crate::fit::full_fit::fit_specification`].
-pub fn fit_beginnings(
+pub fn fit_initial_segments(
     problem: &EstimationProblem<'_>,
     texts: SpecificationTexts,
     unknowns: Vec<Unknown>,
@@ -70,7 +70,7 @@ pub fn fit_beginnings(
             problem,
             &shooting,
             &ranges,
-            thresholds::PRELIMINARY_HORIZONS,
+            thresholds::PRELIMINARY_HORIZON_COUNT,
         );
         let found = run_continuation(
             &shooting,
@@ -147,7 +147,7 @@ pub fn start_from_fit(
             .collect()
     };
     let initial_states = mapped(&fit.train.estimate.initial_states);
-    let theta = first_near(&bare, guesses, &initial_states, fit);
+    let theta = choose_initial_values(&bare, guesses, &initial_states, fit);
     let ranges = keep_larger(
         estimate_state_ranges(problem, &model, &bare.parameter_values(&theta)),
         &fit.map_state(&model, &fit.ranges),
@@ -218,7 +218,7 @@ fn keep_larger(ranges: Vec<f64>, others: &[f64]) -> Vec<f64> {
     let pairs = ranges.into_iter().zip(others);
     pairs
         .map(
-            |(range, other)| match *other > thresholds::MUCH_LARGER_RANGE * range {
+            |(range, other)| match *other > thresholds::MAX_RANGE_RATIO * range {
                 true => *other,
                 false => range,
             },
@@ -229,7 +229,7 @@ fn keep_larger(ranges: Vec<f64>, others: &[f64]) -> Vec<f64> {
 /// Returns the first set of unknowns with an acceptable residual relative to a fit, or else the set
 /// with the smallest residual. The residual can be very large: the linear prediction may be wrong,
 /// and initial states are not yet fitted.
-fn first_near(
+fn choose_initial_values(
     shooting: &Shooting<'_>,
     guesses: &[Vec<f64>],
     initial_states: &[Vec<f64>],

@@ -46,7 +46,7 @@ impl InitialStatePrior {
         let source = self.sources.get(window.index());
         match (&self.whitening, source) {
             (Some(rows), Some(PriorSource::FirstSamples)) => rows.clone(),
-            _ => reciprocals(self.window_sd(window)),
+            _ => create_reciprocal_matrix(self.window_sd(window)),
         }
     }
 
@@ -54,7 +54,7 @@ impl InitialStatePrior {
     pub fn damping_rows(&self) -> DMatrix<f64> {
         match &self.whitening {
             Some(rows) => rows / thresholds::INITIAL_STATE_PRIOR_IN_RANGES,
-            None => reciprocals(self.sd.iter().copied()),
+            None => create_reciprocal_matrix(self.sd.iter().copied()),
         }
     }
 
@@ -88,7 +88,7 @@ impl InitialStatePrior {
 }
 
 /// Returns the diagonal matrix of reciprocal standard deviations.
-fn reciprocals(sds: impl Iterator<Item = f64>) -> DMatrix<f64> {
+fn create_reciprocal_matrix(sds: impl Iterator<Item = f64>) -> DMatrix<f64> {
     let weights: Vec<f64> = sds.map(|sd| 1.0 / sd).collect();
     DMatrix::from_diagonal(&DVector::from_vec(weights))
 }

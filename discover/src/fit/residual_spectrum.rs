@@ -56,7 +56,7 @@ pub fn find_training_peak(
         .collect();
     let (spectrum, count) =
         compute_residual_spectrum(&windows, channel.index(), problem.noise.len())?;
-    peak(&spectrum, count)
+    find_peak(&spectrum, count)
 }
 
 /// Returns the residual spectrum of a channel and the number of averaged windows. Each window has
@@ -119,7 +119,7 @@ fn bridge_gaps(column: &[f64]) -> Vec<f64> {
 /// Returns the line with the largest density of a spectrum averaged over `windows` windows, if it
 /// exceeds the level of white noise. The first lines contain all components with periods longer
 /// than a window.
-fn peak(spectrum: &PowerSpectrum, windows: usize) -> Option<SpectralPeak> {
+fn find_peak(spectrum: &PowerSpectrum, windows: usize) -> Option<SpectralPeak> {
     let density = &spectrum.density;
     let lines = 1..density.len();
     let peak = lines
@@ -192,7 +192,7 @@ mod tests {
             .map(|(window, residual)| (window, residual.as_slice()))
             .collect();
         let (spectrum, count) = compute_residual_spectrum(&pairs, 0, 1)?;
-        peak(&spectrum, count)
+        find_peak(&spectrum, count)
     }
 
     fn noise(t: f64) -> f64 {
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn drift_is_no_spectral_line() {
+    fn drift_is_not_a_spectral_line() {
         for samples in [50, 100, 200] {
             // The residual of each window starts at 0 and drifts, as if driven by a slow force.
             let drift = |t: f64, inside: f64| (0.5 * t).sin() * inside * inside + 1e-3 * noise(t);
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_found_in_noise_and_beside_a_drift_and_noise_has_none() {
+    fn line_is_found_in_noise_and_drift_but_not_in_noise_alone() {
         let line =
             |t: f64, inside: f64| (std::f64::consts::TAU * 7.0 * t).sin() + 0.3 * inside + noise(t);
         for samples in [100, 200, 400] {
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn frequencies_between_the_values_of_the_spectrum_are_interpolated() {
+    fn frequency_between_spectral_lines_is_interpolated() {
         for periods in [3.4, 3.5, 4.0, 5.25, 11.7, 30.49] {
             let resolution = 1.0 / (STEP * 200.0);
             let frequency = periods * resolution;

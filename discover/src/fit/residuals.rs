@@ -25,7 +25,7 @@ pub struct Residuals {
     /// Number of measurements, without missing ones.
     pub measurement_count: f64,
     /// Correlation length of the residuals, in samples.
-    pub correlation_samples: f64,
+    pub correlation_length: f64,
     /// Windows whose simulation failed. The other fields contain the remaining windows only.
     pub failed_windows: Vec<WindowId>,
 }
@@ -49,7 +49,7 @@ impl Residuals {
     /// far below the noise do not increase it, because their correlation is due to rounding.
     pub(crate) fn variance_inflation(&self) -> f64 {
         let variance = self.rms * self.rms;
-        variance.max(1.0) + (self.correlation_samples - 1.0) * variance
+        variance.max(1.0) + (self.correlation_length - 1.0) * variance
     }
 
     /// Computes the residuals of an estimate.
@@ -76,7 +76,7 @@ impl Residuals {
         let squares: Vec<f64> = sums.iter().map(|sum| mean_square(*sum)).collect();
         let rms = (squares.iter().sum::<f64>() / channels.max(1) as f64).sqrt();
         Self {
-            block_squares: blocks(&residuals),
+            block_squares: sum_block_squares(&residuals),
             channel_rms: squares
                 .iter()
                 .zip(shooting.noise)
@@ -85,7 +85,7 @@ impl Residuals {
             normalised_rms: squares.iter().map(|s| s.sqrt()).collect(),
             rms,
             measurement_count: sums.iter().map(|(_, count)| count).sum(),
-            correlation_samples: compute_correlation_samples(&residuals, channels),
+            correlation_length: compute_correlation_samples(&residuals, channels),
             window_residuals: residuals,
             estimate,
             failed_windows: unfollowed,
@@ -113,8 +113,8 @@ pub(crate) fn channel_residuals(
 
 /// Returns sums of squares over blocks of time. Windows are split to obtain about
 /// `TIME_BLOCK_COUNT` blocks.
-fn blocks(residuals: &[Vec<f64>]) -> Vec<f64> {
-    let parts = thresholds::TIME_BLOCKS.div_ceil(residuals.len().max(1));
+fn sum_block_squares(residuals: &[Vec<f64>]) -> Vec<f64> {
+    let parts = thresholds::TIME_BLOCK_COUNT.div_ceil(residuals.len().max(1));
     let of_window = |residual: &Vec<f64>| {
         let size = residual.len().div_ceil(parts).max(1);
         let sums = residual
@@ -166,7 +166,7 @@ mod tests {
     fn inflation(rms: f64, correlation: f64) -> f64 {
         let residuals = Residuals {
             rms,
-            correlation_samples: correlation,
+            correlation_length: correlation,
             ..Residuals::default()
         };
         residuals.variance_inflation()

@@ -11,7 +11,7 @@ use crate::fit::jump_free_quotients::limit_quotient;
 use crate::fit::shooting::{Residual, SensorValues, Shooting};
 use crate::model::linear_outputs::LinearOutputs;
 use crate::model::output_times::OutputTimes;
-use crate::model::simulation::{NeighbourDrives, OutputTangents, Outputs, Simulation};
+use crate::model::simulation::{OutputTangents, Outputs, Simulation, TangentDrives};
 use crate::model::unknowns::{Unknown, UnknownKind};
 use crate::thresholds;
 use eomgen_records::windows::Window;
@@ -42,20 +42,20 @@ pub struct SensitivityEvaluator<'a> {
     equations: Evaluator,
     sensors: SensorValues,
     /// Changed model and step for each unknown that is a model parameter.
-    neighbours: Vec<Option<SteppedNeighbour<'a>>>,
+    perturbed_parameters: Vec<Option<PerturbedParameter<'a>>>,
     level: f64,
 }
 
 /// Model with one changed parameter, and the step of the parameter, SI.
-struct SteppedNeighbour<'a> {
-    neighbour: Neighbour<'a>,
+struct PerturbedParameter<'a> {
+    perturbed_model: PerturbedModel<'a>,
     step: f64,
     /// Model with the opposite step, if a channel jumps and the step is admissible.
     opposite: Option<Box<Simulation<'a>>>,
 }
 
 /// Use of a model with one changed parameter.
-enum Neighbour<'a> {
+enum PerturbedModel<'a> {
     /// The model is simulated.
     Runs(Box<Simulation<'a>>),
     /// Its accelerations and outputs drive a tangent vector. Accelerations are not needed if the
@@ -69,7 +69,7 @@ enum Neighbour<'a> {
 impl<'a> SensitivityEvaluator<'a> {
     /// Moves an initial state of a window to the nearest state within the ranges of the model and
     /// onto its constraints.
-    pub fn admissible_state(&self, window: WindowId, state: Vec<f64>) -> Vec<f64> {
+    pub fn find_admissible_state(&self, window: WindowId, state: Vec<f64>) -> Vec<f64> {
         let clamped = self.shooting.model.clamp_state(state);
         let samples = &self.shooting.windows.windows[window];
         let inputs = self.shooting.windows.inputs(samples);
@@ -86,29 +86,29 @@ impl<'a> SensitivityEvaluator<'a> {
         let equations = shooting.model.create_evaluator(&values);
         let is_differentiated = base.has_exact_derivatives();
         if is_differentiated {
-            base.differentiate_by(&values, moved_parameters(shooting, theta));
+            base.differentiate_by(&values, list_moved_parameters(shooting, theta));
         }
         let mut channels = 0..shooting.channel_count();
         let has_jumps =
             !base.has_tangents() && channels.any(|channel| shooting.model.has_jumps(channel));
-        let mut neighbours = Vec::with_capacity(theta.len());
+        let mut perturbed_parameters = Vec::with_capacity(theta.len());
         for (number, unknown) in shooting.unknowns.iter().enumerate() {
             if !unknown.is_model_parameter() {
-                neighbours.push(None);
+                perturbed_parameters.push(None);
                 continue;
             }
-            let step = quotient_step(unknown, theta[number]);
+            let step = choose_quotient_step(unknown, theta[number]);
             let mut moved = theta.to_vec();
             moved[number] += step;
             let values = shooting.parameter_values(&moved);
-            let neighbour = if base.has_tangents() {
+            let perturbed_model = if base.has_tangents() {
                 let evaluator = || Box::new(shooting.model.create_evaluator(&values));
-                Neighbour::Drives {
+                PerturbedModel::Drives {
                     evaluator: (!is_differentiated).then(evaluator),
                     linear_outputs: shooting.model.derive_linear_outputs(&values),
                 }
             } else {
-                Neighbour::Runs(Box::new(shooting.model.create_simulation(&values).ok()?))
+                PerturbedModel::Runs(Box::new(shooting.model.create_simulation(&values).ok()?))
             };
             let opposite = has_jumps.then(|| {
                 let reach = unknown.bounds.join(unknown.bounds_without_prior);
@@ -118,8 +118,8 @@ impl<'a> SensitivityEvaluator<'a> {
                 let opposite = shooting.model.create_simulation(&values).ok();
                 opposite.filter(|_| is_admissible).map(Box::new)
             });
-            neighbours.push(Some(SteppedNeighbour {
-                neighbour,
+            perturbed_parameters.push(Some(PerturbedParameter {
+                perturbed_model,
                 step,
                 opposite: opposite.flatten(),
             }));
@@ -128,7 +128,7 @@ impl<'a> SensitivityEvaluator<'a> {
             base,
             equations,
             sensors: shooting.sensor_values(theta),
-            neighbours,
+            perturbed_parameters,
             level,
             shooting: *shooting,
         })
@@ -141,7 +141,7 @@ impl<'a> SensitivityEvaluator<'a> {
             base: shooting.model.create_simulation(&values).ok()?,
             equations: shooting.model.create_evaluator(&values),
             sensors: shooting.sensor_values(theta),
-            neighbours: Vec::new(),
+            perturbed_parameters: Vec::new(),
             level,
             shooting: *shooting,
         })
@@ -172,8 +172,8 @@ impl<'a> SensitivityEvaluator<'a> {
     /// Computes the residuals and derivatives of a window.
     pub fn linearise(&mut self, window: WindowId, start: &[f64]) -> Option<WindowDerivatives> {
         let found = match self.base.has_tangents() {
-            true => self.by_tangents(window, start)?,
-            false => self.by_quotients(window, start)?,
+            true => self.linearise_by_tangents(window, start)?,
+            false => self.linearise_by_quotients(window, start)?,
         };
         let finite = found.residual.iter().chain(found.by_unknown.iter());
         (finite
@@ -183,22 +183,26 @@ impl<'a> SensitivityEvaluator<'a> {
     }
 
     /// Computes residuals and derivatives with tangent vectors.
-    fn by_tangents(&mut self, window: WindowId, start: &[f64]) -> Option<WindowDerivatives> {
+    fn linearise_by_tangents(
+        &mut self,
+        window: WindowId,
+        start: &[f64],
+    ) -> Option<WindowDerivatives> {
         let shooting = self.shooting;
         let samples = &shooting.windows.windows[window];
         let inputs = shooting.windows.inputs(samples);
         let times = &shooting.output_times(samples);
-        let count = self.neighbours.iter().flatten().count();
-        let moved = self.neighbours.iter_mut().flatten();
-        let moved = moved.filter_map(|of| match &mut of.neighbour {
-            Neighbour::Drives {
+        let count = self.perturbed_parameters.iter().flatten().count();
+        let moved = self.perturbed_parameters.iter_mut().flatten();
+        let moved = moved.filter_map(|of| match &mut of.perturbed_model {
+            PerturbedModel::Drives {
                 evaluator: Some(evaluator),
                 ..
             } => Some(PerturbedEvaluator {
                 evaluator,
                 change: of.step,
             }),
-            Neighbour::Drives { .. } | Neighbour::Runs(_) => None,
+            PerturbedModel::Drives { .. } | PerturbedModel::Runs(_) => None,
         });
         let mut differences = AccelerationDifferences::new(&mut self.equations, moved.collect());
         let driven = differences.as_drives();
@@ -210,26 +214,35 @@ impl<'a> SensitivityEvaluator<'a> {
         let seen = shooting.apply_sensors(times, &self.sensors, &integrated.outputs.values);
         let residual = DVector::from_vec(shooting.normalise_differences(samples, &seen));
         let states = if by_state { start.len() } else { 0 };
-        let by_state = self.columns(samples, times, states, &integrated.by_state);
-        let by_drive = self.columns(samples, times, count, &integrated.by_parameter_and_drive);
-        let mut by_unknown = DMatrix::zeros(residual.len(), self.neighbours.len());
+        let by_state =
+            self.apply_sensors_to_derivatives(samples, times, states, &integrated.by_state);
+        let by_drive = self.apply_sensors_to_derivatives(
+            samples,
+            times,
+            count,
+            &integrated.by_parameter_and_drive,
+        );
+        let mut by_unknown = DMatrix::zeros(residual.len(), self.perturbed_parameters.len());
         let mut drive = 0;
-        for (column, neighbour) in self.neighbours.iter().enumerate() {
+        for (column, perturbed_model) in self.perturbed_parameters.iter().enumerate() {
             let unknown = &shooting.unknowns[column];
-            let Some(SteppedNeighbour {
-                neighbour, step, ..
-            }) = neighbour
+            let Some(PerturbedParameter {
+                perturbed_model,
+                step,
+                ..
+            }) = perturbed_model
             else {
-                let derivative = self.by_sensor(samples, times, unknown, &integrated.outputs);
+                let derivative =
+                    self.differentiate_by_sensor(samples, times, unknown, &integrated.outputs);
                 by_unknown.set_column(column, &derivative);
                 continue;
             };
             by_unknown.set_column(column, &by_drive.column(drive));
             drive += 1;
-            let Neighbour::Drives {
+            let PerturbedModel::Drives {
                 linear_outputs: Some(shown),
                 ..
-            } = neighbour
+            } = perturbed_model
             else {
                 continue;
             };
@@ -240,7 +253,7 @@ impl<'a> SensitivityEvaluator<'a> {
                 }
                 let pairs = moved.iter_mut().zip(&integrated.outputs.values);
                 pairs.for_each(|(moved, own)| *moved = (*moved - own) / step);
-                let own = self.columns(samples, times, 1, &moved);
+                let own = self.apply_sensors_to_derivatives(samples, times, 1, &moved);
                 let mut column = by_unknown.column_mut(column);
                 column += own.column(0);
             }
@@ -260,7 +273,7 @@ impl<'a> SensitivityEvaluator<'a> {
         &mut self,
         window: WindowId,
         start: &[f64],
-        driven: NeighbourDrives<'_>,
+        driven: TangentDrives<'_>,
     ) -> Option<DMatrix<f64>> {
         let shooting = self.shooting;
         let samples = &shooting.windows.windows[window];
@@ -270,11 +283,20 @@ impl<'a> SensitivityEvaluator<'a> {
         let found =
             self.base
                 .simulate_with_tangents(start, &times.times, inputs, (false, 0), driven)?;
-        Some(self.columns(samples, times, count, &found.by_parameter_and_drive))
+        Some(self.apply_sensors_to_derivatives(
+            samples,
+            times,
+            count,
+            &found.by_parameter_and_drive,
+        ))
     }
 
     /// Computes residuals and derivatives by difference quotients.
-    fn by_quotients(&mut self, window: WindowId, start: &[f64]) -> Option<WindowDerivatives> {
+    fn linearise_by_quotients(
+        &mut self,
+        window: WindowId,
+        start: &[f64],
+    ) -> Option<WindowDerivatives> {
         let shooting = self.shooting;
         let samples = &shooting.windows.windows[window];
         let inputs = shooting.windows.inputs(samples);
@@ -310,23 +332,25 @@ impl<'a> SensitivityEvaluator<'a> {
             None => DMatrix::zeros(start.len(), 0),
         };
         let by_state = match derivatives {
-            Some(derivatives) => self.columns(samples, times, start.len(), &derivatives),
-            None => self.by_state(window, start, &residual, &directions)?,
+            Some(derivatives) => {
+                self.apply_sensors_to_derivatives(samples, times, start.len(), &derivatives)
+            }
+            None => self.differentiate_by_state(window, start, &residual, &directions)?,
         };
-        let mut by_unknown = DMatrix::zeros(residual.len(), self.neighbours.len());
+        let mut by_unknown = DMatrix::zeros(residual.len(), self.perturbed_parameters.len());
         let mut sensed = Vec::new();
-        for (column, neighbour) in self.neighbours.iter_mut().enumerate() {
+        for (column, perturbed_model) in self.perturbed_parameters.iter_mut().enumerate() {
             let unknown = &shooting.unknowns[column];
-            let Some(SteppedNeighbour {
-                neighbour,
+            let Some(PerturbedParameter {
+                perturbed_model,
                 step,
                 opposite,
-            }) = neighbour
+            }) = perturbed_model
             else {
                 sensed.push((column, unknown));
                 continue;
             };
-            let Neighbour::Runs(simulation) = neighbour else {
+            let PerturbedModel::Runs(simulation) = perturbed_model else {
                 return None;
             };
             let run = |simulation: &mut Simulation<'_>| {
@@ -351,7 +375,7 @@ impl<'a> SensitivityEvaluator<'a> {
             }
         }
         for (column, unknown) in sensed {
-            let derivative = self.by_sensor(samples, times, unknown, &outputs);
+            let derivative = self.differentiate_by_sensor(samples, times, unknown, &outputs);
             by_unknown.set_column(column, &derivative);
         }
         Some(WindowDerivatives {
@@ -364,7 +388,7 @@ impl<'a> SensitivityEvaluator<'a> {
     }
 
     /// Returns the derivative of the residuals of a window with respect to a sensor unknown.
-    fn by_sensor(
+    fn differentiate_by_sensor(
         &self,
         samples: &Window,
         times: &OutputTimes<'_>,
@@ -373,7 +397,7 @@ impl<'a> SensitivityEvaluator<'a> {
     ) -> DVector<f64> {
         let step = thresholds::SENSOR_QUOTIENT_IN_SCALES * unknown.scale;
         let [after, before] = [step, -step].map(|step| {
-            let sensors = moved_sensors(&self.sensors, unknown, step);
+            let sensors = move_sensors(&self.sensors, unknown, step);
             let seen = self
                 .shooting
                 .apply_sensors(times, &sensors, &outputs.values);
@@ -384,7 +408,7 @@ impl<'a> SensitivityEvaluator<'a> {
 
     /// Applies the sensors to derivatives of channel values, in standard deviations. `derivatives`:
     /// for each time, one row per column of the result.
-    fn columns(
+    fn apply_sensors_to_derivatives(
         &self,
         samples: &Window,
         times: &OutputTimes<'_>,
@@ -400,9 +424,9 @@ impl<'a> SensitivityEvaluator<'a> {
         let mut matrix = DMatrix::zeros(times.samples() * channels, count);
         let mut column = vec![0.0; times.times.len() * channels];
         for number in 0..count {
-            for place in 0..times.times.len() {
-                let from = (place * count + number) * channels;
-                let to = place * channels;
+            for index in 0..times.times.len() {
+                let from = (index * count + number) * channels;
+                let to = index * channels;
                 column[to..to + channels].copy_from_slice(&derivatives[from..from + channels]);
             }
             let seen = shooting.apply_sensors(times, &sensors, &column);
@@ -413,7 +437,7 @@ impl<'a> SensitivityEvaluator<'a> {
     }
 
     /// Returns the derivatives along directions of the initial state.
-    fn by_state(
+    fn differentiate_by_state(
         &mut self,
         window: WindowId,
         start: &[f64],
@@ -423,7 +447,8 @@ impl<'a> SensitivityEvaluator<'a> {
         let ranges = self.shooting.ranges.unwrap_or_default();
         let mut matrix = DMatrix::zeros(residual.len(), directions.ncols());
         for (number, direction) in directions.column_iter().enumerate() {
-            let mut step = thresholds::MAX_QUOTIENT_IN_RANGES * range_along(&direction, ranges);
+            let mut step =
+                thresholds::MAX_QUOTIENT_IN_RANGES * compute_range_along(&direction, ranges);
             // The step is adapted in a few trials, because the influence of states on the outputs
             // differs by orders of magnitude.
             for _ in 0..3 {
@@ -448,7 +473,7 @@ impl<'a> SensitivityEvaluator<'a> {
 }
 
 /// Returns the largest multiple of a direction that changes no state by more than its range.
-pub(crate) fn range_along(direction: &DVectorView<'_, f64>, ranges: &[f64]) -> f64 {
+pub(crate) fn compute_range_along(direction: &DVectorView<'_, f64>, ranges: &[f64]) -> f64 {
     let parts = direction
         .iter()
         .zip(ranges)
@@ -485,7 +510,7 @@ pub fn linearise_windows(
 
 /// Returns the model parameters with a positive and a negative step of each unknown that is a model
 /// parameter, within its bounds.
-fn moved_parameters(shooting: &Shooting<'_>, theta: &[f64]) -> Vec<Vec<MovedParameters>> {
+fn list_moved_parameters(shooting: &Shooting<'_>, theta: &[f64]) -> Vec<Vec<MovedParameters>> {
     let unknowns = shooting.unknowns.iter().enumerate();
     let of_model = unknowns.filter(|(_, unknown)| unknown.is_model_parameter());
     let moved = of_model.map(|(number, unknown)| {
@@ -507,7 +532,7 @@ fn moved_parameters(shooting: &Shooting<'_>, theta: &[f64]) -> Vec<Vec<MovedPara
 }
 
 /// Returns the step of a parameter's difference quotient; it is negative close to the upper bound.
-fn quotient_step(unknown: &Unknown, value: f64) -> f64 {
+fn choose_quotient_step(unknown: &Unknown, value: f64) -> f64 {
     let step = thresholds::PARAMETER_QUOTIENT_IN_SCALES * unknown.scale;
     if value + step > unknown.bounds.high {
         -step
@@ -517,7 +542,7 @@ fn quotient_step(unknown: &Unknown, value: f64) -> f64 {
 }
 
 /// Returns the sensor values with one changed unknown.
-fn moved_sensors(sensors: &SensorValues, unknown: &Unknown, step: f64) -> SensorValues {
+fn move_sensors(sensors: &SensorValues, unknown: &Unknown, step: f64) -> SensorValues {
     let mut moved = sensors.clone();
     match unknown.kind {
         UnknownKind::Gain(channel) => moved.gain[channel] += step,

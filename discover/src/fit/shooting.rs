@@ -5,7 +5,7 @@ use crate::ids::{ChannelId, WindowId, WindowRange};
 use rayon::prelude::*;
 
 use crate::model::estimation_model::EstimationModel;
-use crate::model::output_times::{OutputRate, OutputTimes, lagrange_weight};
+use crate::model::output_times::{OutputRate, OutputTimes, compute_lagrange_weight};
 use crate::model::problem::EstimationProblem;
 use crate::model::simulation::Simulation;
 use crate::model::unknowns::{Unknown, UnknownKind, expected_input_delay};
@@ -217,12 +217,12 @@ impl<'a> Shooting<'a> {
             let (gain, bias) = (sensors.gain[channel], sensors.bias[channel]);
             let delay = sensors.delay[channel];
             for sample in 0..samples {
-                let place = times.of_sample(sample);
+                let index = times.of_sample(sample);
                 let quantity = if delay == 0.0 {
-                    column.values[place * channels + channel.index()]
+                    column.values[index * channels + channel.index()]
                 } else {
-                    let at = times.times[place] - delay;
-                    interpolate_column(&column, at, place)
+                    let at = times.times[index] - delay;
+                    interpolate_column(&column, at, index)
                 };
                 seen[sample * channels + channel.index()] = gain * quantity + bias;
             }
@@ -308,7 +308,7 @@ fn interpolate_column(column: &Column<'_>, at: f64, near: usize) -> f64 {
     nodes
         .clone()
         .map(|i| {
-            let weight = lagrange_weight(times, nodes.clone(), i, at);
+            let weight = compute_lagrange_weight(times, nodes.clone(), i, at);
             weight * column.values[i * column.channels + column.channel.index()]
         })
         .sum()

@@ -34,10 +34,10 @@ pub enum RecordIndex {
 
 impl RecordIndex {
     /// Returns the record.
-    fn of(self, dataset: &Dataset) -> &Record {
+    fn find_record(self, dataset: &Dataset) -> &Record {
         match self {
-            Self::Train(place) => &dataset.train[place],
-            Self::Test(place) => &dataset.test[place],
+            Self::Train(index) => &dataset.train[index],
+            Self::Test(index) => &dataset.test[index],
         }
     }
 }
@@ -54,23 +54,23 @@ pub fn list_records(dataset: &Dataset) -> Vec<RecordIndex> {
 pub fn fit_record_separately(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
-    place: RecordIndex,
+    index: RecordIndex,
     more: Option<&Unknown>,
 ) -> Option<SingleRecordFit> {
-    let together = match place {
-        RecordIndex::Train(record) => left_of(&problem.train, &fit.train, record)?,
-        RecordIndex::Test(record) => left_of(&problem.test, &fit.test, record)?,
+    let together = match index {
+        RecordIndex::Train(record) => compute_record_rms(&problem.train, &fit.train, record)?,
+        RecordIndex::Test(record) => compute_record_rms(&problem.test, &fit.test, record)?,
     };
-    let record = place.of(problem.dataset);
+    let record = index.find_record(problem.dataset);
     let is_fitted_alone =
-        matches!(place, RecordIndex::Train(_)) && problem.dataset.train.len() == 1;
+        matches!(index, RecordIndex::Train(_)) && problem.dataset.train.len() == 1;
     if is_fitted_alone && more.is_none() && !is_held(fit) {
         return Some(SingleRecordFit {
-            record: place,
+            record: index,
             name: record.name.clone(),
             joint_rms: together,
             rms: together,
-            estimates: estimates(fit),
+            estimates: list_estimates(fit),
         });
     }
     let dataset = Dataset {
@@ -94,11 +94,11 @@ pub fn fit_record_separately(
     theta.extend(more.map(|unknown| unknown.start));
     let found = full_fit::fit_specification(&own, fit.texts.clone(), unknowns, &theta).ok()?;
     Some(SingleRecordFit {
-        record: place,
+        record: index,
         name: record.name.clone(),
         joint_rms: together,
         rms: found.train.rms,
-        estimates: estimates(&found),
+        estimates: list_estimates(&found),
     })
 }
 
@@ -112,21 +112,22 @@ fn is_held(fit: &Fit) -> bool {
 }
 
 /// Returns the estimates of a fit and their standard deviations.
-fn estimates(fit: &Fit) -> Vec<(f64, f64)> {
+fn list_estimates(fit: &Fit) -> Vec<(f64, f64)> {
     let pairs = fit.train.estimate.theta.iter().zip(&fit.effect_sd);
     pairs.map(|(value, sd)| (*value, *sd)).collect()
 }
 
 /// Returns the largest RMS residual of a fit over the records, in standard deviations.
-pub fn largest_record_rms(problem: &EstimationProblem<'_>, fit: &Fit) -> f64 {
-    let train =
-        (0..problem.dataset.train.len()).filter_map(|k| left_of(&problem.train, &fit.train, k));
-    let test = (0..problem.dataset.test.len()).filter_map(|k| left_of(&problem.test, &fit.test, k));
+pub fn compute_largest_record_rms(problem: &EstimationProblem<'_>, fit: &Fit) -> f64 {
+    let train = (0..problem.dataset.train.len())
+        .filter_map(|k| compute_record_rms(&problem.train, &fit.train, k));
+    let test = (0..problem.dataset.test.len())
+        .filter_map(|k| compute_record_rms(&problem.test, &fit.test, k));
     train.chain(test).fold(0.0, f64::max)
 }
 
 /// Returns the RMS residual of one record, in standard deviations.
-fn left_of(windows: &Windows<'_>, residuals: &Residuals, record: usize) -> Option<f64> {
+fn compute_record_rms(windows: &Windows<'_>, residuals: &Residuals, record: usize) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0.0);
     for (window, values) in windows.windows.iter().zip(&residuals.window_residuals) {
         if window.record == record {

@@ -21,7 +21,7 @@ pub(crate) struct StepErrors {
 }
 
 /// Outputs of a model for one step size, as residuals of each window.
-struct Run {
+struct StepOutputs {
     model: Option<EstimationModel>,
     outputs: Vec<Vec<f64>>,
 }
@@ -41,10 +41,10 @@ pub(crate) fn compute_step_errors(
             .map(|of| of.map_or_else(Vec::new, |of| of.values));
         values.collect()
     };
-    let gain = shooting.model.step_gain();
+    let gain = shooting.model.step_error_ratio();
     let mut finer = shooting.model.with_halved_steps();
     finer.as_ref()?;
-    let mut runs = vec![Run {
+    let mut runs = vec![StepOutputs {
         model: None,
         outputs: run(shooting.model),
     }];
@@ -55,10 +55,10 @@ pub(crate) fn compute_step_errors(
         let fine = run(&model);
         let extrapolated = combine(&fine, coarse, |fine, coarse| fine + (fine - coarse) / gain);
         let before = limit.as_ref().unwrap_or(&runs[0].outputs);
-        let next = root_of_squares(&combine(&extrapolated, before, |new, old| new - old));
+        let next = compute_root_of_squares(&combine(&extrapolated, before, |new, old| new - old));
         let is_falling = next < change;
         finer = model.with_halved_steps();
-        runs.push(Run {
+        runs.push(StepOutputs {
             model: Some(model),
             outputs: fine,
         });
@@ -76,8 +76,9 @@ pub(crate) fn compute_step_errors(
     let numbers: usize = limit.iter().map(Vec::len).sum();
     let largest = thresholds::MAX_STEP_ERROR * (numbers as f64).sqrt();
     let corrections = combine(&limit, &runs[0].outputs, |right, own| right - own);
-    let is_close =
-        |run: &Run| root_of_squares(&combine(&limit, &run.outputs, |a, b| a - b)) < largest;
+    let is_close = |run: &StepOutputs| {
+        compute_root_of_squares(&combine(&limit, &run.outputs, |a, b| a - b)) < largest
+    };
     let refined = runs.into_iter().find(is_close).and_then(|run| run.model);
     Some(StepErrors {
         corrections,
@@ -115,6 +116,6 @@ pub(crate) fn combine(
 }
 
 /// Returns the root of the sum of squares.
-pub(crate) fn root_of_squares(windows: &[Vec<f64>]) -> f64 {
+pub(crate) fn compute_root_of_squares(windows: &[Vec<f64>]) -> f64 {
     windows.iter().flatten().map(|x| x * x).sum::<f64>().sqrt()
 }

@@ -41,7 +41,7 @@ pub(crate) fn compute_uncertainties(
     found: &Estimate,
     linear: &[Vec<Option<WindowDerivatives>>],
 ) -> Vec<Uncertainty> {
-    let of = |linear: &Vec<_>| by_derivatives(shooting, prior, found, linear);
+    let of = |linear: &Vec<_>| compute_for_derivatives(shooting, prior, found, linear);
     let larger = |some: Vec<Uncertainty>, other: Vec<Uncertainty>| {
         let pairs = some.into_iter().zip(other);
         pairs.map(|(some, other)| some.max(other)).collect()
@@ -49,7 +49,7 @@ pub(crate) fn compute_uncertainties(
     linear.iter().map(of).reduce(larger).unwrap_or_default()
 }
 
-fn by_derivatives(
+fn compute_for_derivatives(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
     found: &Estimate,
@@ -62,14 +62,18 @@ fn by_derivatives(
     });
     let weights = DVector::from_iterator(factor.ncols(), weights);
     (0..factor.ncols())
-        .map(|column| uncertainty(&factor, &weights, column))
+        .map(|column| compute_uncertainty(&factor, &weights, column))
         .collect()
 }
 
 /// The information of records and priors is `R'R = J'J + P`. An estimate changes by `(R'R)^-1 J'`
 /// times the change of the residuals, and by `(R'R)^-1 P` times the error of the prior means. The
 /// variances are therefore `(R'R)^-1 - (R'R)^-1 P (R'R)^-1` and `(R'R)^-1 P (R'R)^-1`.
-fn uncertainty(factor: &DMatrix<f64>, weights: &DVector<f64>, column: usize) -> Uncertainty {
+fn compute_uncertainty(
+    factor: &DMatrix<f64>,
+    weights: &DVector<f64>,
+    column: usize,
+) -> Uncertainty {
     let unit = DVector::from_fn(factor.ncols(), |row, _| f64::from(u8::from(row == column)));
     let half = factor.transpose().solve_lower_triangular(&unit);
     let covariances = half.as_ref().and_then(|v| factor.solve_upper_triangular(v));

@@ -65,14 +65,14 @@ enum Variable {
 
 /// Quantity with its name and unit.
 #[derive(Clone, Debug)]
-struct Named<T> {
+struct NamedQuantity<T> {
     of: T,
     name: String,
     unit: String,
 }
 
 /// Unit responses and values of the variables along a record, at both ends of each step.
-struct Sampled {
+struct RecordSamples {
     /// Accelerations for each direction; one column per end of a step.
     accelerations: Vec<DMatrix<f64>>,
     /// Values of each variable.
@@ -92,7 +92,7 @@ pub(crate) fn fit_curves(scene: &Scene<'_>) -> Vec<Curve> {
         return Vec::new();
     };
     let (directions, variables) = list_pairs(&equations, fit);
-    let sampled: Vec<Sampled> = motion
+    let sampled: Vec<RecordSamples> = motion
         .records
         .iter()
         .map(|record| sample_record(record, &equations, &directions, &variables))
@@ -111,16 +111,17 @@ pub(crate) fn fit_curves(scene: &Scene<'_>) -> Vec<Curve> {
         )
     });
     let built: Vec<PairProducts> = built.collect();
-    let least = |pair: &PairProducts| pair.least_squares() / segments.training_count();
+    let least =
+        |pair: &PairProducts| pair.compute_least_squares() / segments.count_training_values();
     let Some(best) = built.iter().min_by(|a, b| least(a).total_cmp(&least(b))) else {
         return Vec::new();
     };
     // The variance uses the effective sample size. With the plain sample size, every pair would be
     // accepted on coloured noise.
-    let drives = best.drives(motion, &sampled);
+    let drives = best.build_pair_drives(motion, &sampled);
     let none = DMatrix::zeros(drives.len(), drives.len());
     let solution = segments.solve(&best.products, &none);
-    let correlation = segments.correlation_samples(motion, &drives, &solution);
+    let correlation = segments.compute_correlation_length(motion, &drives, &solution);
     let variance = correlation * least(best).max(1.0);
     let curves = built
         .iter()
@@ -141,23 +142,26 @@ struct PairProducts {
 }
 
 /// Lists the directions and variables of a model.
-fn list_pairs(equations: &EquationSet, fit: &Fit) -> (Vec<Named<Direction>>, Vec<Named<Variable>>) {
+fn list_pairs(
+    equations: &EquationSet,
+    fit: &Fit,
+) -> (Vec<NamedQuantity<Direction>>, Vec<NamedQuantity<Variable>>) {
     let model = fit.model.specification();
     let degrees = fit.model.degrees_of_freedom();
     let (mut directions, mut variables) = (Vec::new(), Vec::new());
     for (number, equation) in equations.list.iter().enumerate() {
         let id = EquationId::new(number);
-        directions.push(Named {
+        directions.push(NamedQuantity {
             of: Direction::Equation(id),
             name: equation.name.clone(),
             unit: equation.force_unit().to_owned(),
         });
-        variables.push(Named {
+        variables.push(NamedQuantity {
             of: Variable::Position(id),
             name: equation.name.clone(),
             unit: equation.unit.to_owned(),
         });
-        variables.push(Named {
+        variables.push(NamedQuantity {
             of: Variable::Rate(id),
             name: format!("dot({})", equation.name),
             unit: equation.rate_unit().to_owned(),
@@ -165,12 +169,12 @@ fn list_pairs(equations: &EquationSet, fit: &Fit) -> (Vec<Named<Direction>>, Vec
     }
     for (number, state) in model.states.iter().enumerate() {
         let unit = &state.unit.text;
-        directions.push(Named {
+        directions.push(NamedQuantity {
             of: Direction::State(degrees + number),
             name: format!("dot({})", state.name),
             unit: format!("{unit}/s"),
         });
-        variables.push(Named {
+        variables.push(NamedQuantity {
             of: Variable::State(2 * degrees + number),
             name: state.name.clone(),
             unit: unit.clone(),
@@ -180,13 +184,13 @@ fn list_pairs(equations: &EquationSet, fit: &Fit) -> (Vec<Named<Direction>>, Vec
         // The input is left out if its rates are prescribed too: the rates would not match a
         // changed input.
         if input.rate.is_none() && input.rate_of.is_none() {
-            directions.push(Named {
+            directions.push(NamedQuantity {
                 of: Direction::Input(number),
                 name: input.name.clone(),
                 unit: input.unit.text.clone(),
             });
         }
-        variables.push(Named {
+        variables.push(NamedQuantity {
             of: Variable::Input(number),
             name: input.name.clone(),
             unit: input.unit.text.clone(),
@@ -198,13 +202,13 @@ fn list_pairs(equations: &EquationSet, fit: &Fit) -> (Vec<Named<Direction>>, Vec
 fn sample_record(
     record: &ReferenceRecord,
     equations: &EquationSet,
-    directions: &[Named<Direction>],
-    variables: &[Named<Variable>],
-) -> Sampled {
+    directions: &[NamedQuantity<Direction>],
+    variables: &[NamedQuantity<Variable>],
+) -> RecordSamples {
     let mut evaluator = equations.create_evaluator();
     let columns = 2 * record.steps.len();
     let slots = record.steps.first().map_or(0, |step| step.drive.ncols());
-    let mut sampled = Sampled {
+    let mut sampled = RecordSamples {
         accelerations: vec![DMatrix::zeros(slots, columns); directions.len()],
         values: vec![vec![0.0; columns]; variables.len()],
     };
@@ -270,9 +274,9 @@ impl PairProducts {
     fn build(
         motion: &ReferenceMotion,
         segments: &Segments,
-        sampled: &[Sampled],
+        sampled: &[RecordSamples],
         (direction, variable): (usize, usize),
-        variables: &[Named<Variable>],
+        variables: &[NamedQuantity<Variable>],
     ) -> Option<Self> {
         let mut values: Vec<f64> = sampled[..motion.training]
             .iter()
@@ -292,14 +296,14 @@ impl PairProducts {
         })
     }
 
-    fn drives(&self, motion: &ReferenceMotion, sampled: &[Sampled]) -> Vec<Drive> {
+    fn build_pair_drives(&self, motion: &ReferenceMotion, sampled: &[RecordSamples]) -> Vec<Drive> {
         let pair = (self.direction, self.variable);
         build_drives(motion, sampled, pair, &self.functions)
     }
 
     /// Returns the Gram matrix and the right-hand side of the coefficients, and the sum of squares
     /// without a function.
-    fn parts(&self) -> (DMatrix<f64>, DVector<f64>, f64) {
+    fn split_products(&self) -> (DMatrix<f64>, DVector<f64>, f64) {
         let count = self.reduced.ncols() - 1;
         (
             self.reduced.view((0, 0), (count, count)).into_owned(),
@@ -313,10 +317,11 @@ impl PairProducts {
 
     /// Returns the sum of squares of the training residuals with the smallest penalty on the
     /// function.
-    fn least_squares(&self) -> f64 {
-        let (gram, slope, squares) = self.parts();
+    fn compute_least_squares(&self) -> f64 {
+        let (gram, slope, squares) = self.split_products();
         let small = thresholds::CURVE_PENALTY_DECADES.0;
-        let penalty = self.functions.penalty() * relative_penalty(&gram, &self.functions, small);
+        let penalty =
+            self.functions.penalty() * compute_penalty_weight(&gram, &self.functions, small);
         match (gram + penalty).cholesky() {
             Some(factor) => (squares - slope.dot(&factor.solve(&slope))).max(0.0),
             None => squares,
@@ -329,16 +334,16 @@ impl PairProducts {
         &self,
         segments: &Segments,
         variance: f64,
-        (directions, variables): (&[Named<Direction>], &[Named<Variable>]),
+        (directions, variables): (&[NamedQuantity<Direction>], &[NamedQuantity<Variable>]),
     ) -> Option<Curve> {
-        let (gram, slope, _) = self.parts();
+        let (gram, slope, _) = self.split_products();
         let penalty = self.functions.penalty();
         let base = penalty.clone().cholesky()?.ln_determinant();
         let count = gram.ncols();
         let (low, high) = thresholds::CURVE_PENALTY_DECADES;
         let decades = (0..=(high - low).round() as usize).map(|k| low + k as f64);
         let evidence = |decade: f64| {
-            let weight = relative_penalty(&gram, &self.functions, decade);
+            let weight = compute_penalty_weight(&gram, &self.functions, decade);
             let matrix = &gram + &penalty * weight;
             let factor = matrix.cholesky()?;
             let gain = slope.dot(&factor.solve(&slope)) / (2.0 * variance);
@@ -380,14 +385,14 @@ fn is_own_variable(direction: &Direction, variable: &Variable) -> bool {
 }
 
 /// Returns the weight of the penalty, 10^`decade` times the information of the records.
-fn relative_penalty(gram: &DMatrix<f64>, functions: &HatFunctions, decade: f64) -> f64 {
+fn compute_penalty_weight(gram: &DMatrix<f64>, functions: &HatFunctions, decade: f64) -> f64 {
     let size = gram.trace() / functions.penalty().trace();
     size.max(f64::MIN_POSITIVE.sqrt()) * 10f64.powf(decade)
 }
 
 fn build_drives(
     motion: &ReferenceMotion,
-    sampled: &[Sampled],
+    sampled: &[RecordSamples],
     (direction, variable): (usize, usize),
     functions: &HatFunctions,
 ) -> Vec<Drive> {

@@ -12,7 +12,7 @@ use crate::thresholds;
 pub(crate) struct DrivenModel {
     evaluator: Evaluator,
     /// Index in this model of each state of the reference motion.
-    places: Vec<usize>,
+    indices: Vec<usize>,
     /// Indices of the first-order states that the reference motion does not have.
     added: Vec<usize>,
     degrees_of_freedom: usize,
@@ -28,7 +28,7 @@ impl DrivenModel {
     pub fn new(model: &EstimationModel, values: &[f64]) -> Self {
         Self {
             evaluator: model.create_evaluator(values),
-            places: (0..model.state_count()).collect(),
+            indices: (0..model.state_count()).collect(),
             added: Vec::new(),
             degrees_of_freedom: model.degrees_of_freedom(),
             accelerations: Vec::new(),
@@ -43,16 +43,16 @@ impl DrivenModel {
         model: &EstimationModel,
         values: &[f64],
     ) -> Option<Self> {
-        let place = |name: &String| model.states.iter().position(|state| state == name);
-        let places: Option<Vec<usize>> = reference.states.iter().map(place).collect();
-        let places = places?;
+        let index = |name: &String| model.states.iter().position(|state| state == name);
+        let indices: Option<Vec<usize>> = reference.states.iter().map(index).collect();
+        let indices = indices?;
         let degrees = model.degrees_of_freedom();
         let added: Vec<usize> = (0..model.state_count())
-            .filter(|state| !places.contains(state))
+            .filter(|state| !indices.contains(state))
             .collect();
         (degrees == reference.degrees_of_freedom()).then(|| Self {
             evaluator: model.create_evaluator(values),
-            places,
+            indices,
             added,
             degrees_of_freedom: degrees,
             accelerations: Vec::new(),
@@ -61,12 +61,16 @@ impl DrivenModel {
     }
 
     /// Stores the accelerations and channel values along the reference motion.
-    pub fn record_motion(mut self, motion: &ReferenceMotion, model: &EstimationModel) -> Self {
+    pub fn with_reference_motion(
+        mut self,
+        motion: &ReferenceMotion,
+        model: &EstimationModel,
+    ) -> Self {
         self.outputs = self.measure_outputs(motion, model);
         self.accelerations = motion
             .records
             .iter()
-            .map(|record| self.accelerate_along(record))
+            .map(|record| self.compute_accelerations(record))
             .collect();
         self
     }
@@ -109,10 +113,10 @@ impl DrivenModel {
 
     /// Returns the accelerations and the rates of the first-order states of the reference motion at
     /// both ends of each step. Added states start at 0 and follow their own rates.
-    fn accelerate_along(&mut self, record: &ReferenceRecord) -> DMatrix<f64> {
+    fn compute_accelerations(&mut self, record: &ReferenceRecord) -> DMatrix<f64> {
         let states = self.evaluator.program().states();
         let first = self.degrees_of_freedom;
-        let slots: Vec<usize> = self.places[first..].to_vec();
+        let slots: Vec<usize> = self.indices[first..].to_vec();
         let mut found = DMatrix::zeros(slots.len(), 2 * record.steps.len());
         let mut state = vec![0.0; states];
         let mut rates = vec![0.0; states];
@@ -122,8 +126,8 @@ impl DrivenModel {
                     self.advance_added(record, step, &mut state, &mut rates);
                 }
                 let point = record.end_point(step, is_end);
-                for (place, value) in self.places.iter().zip(point.state) {
-                    state[*place] = *value;
+                for (index, value) in self.indices.iter().zip(point.state) {
+                    state[*index] = *value;
                 }
                 let own = Point {
                     state: &state,
@@ -151,29 +155,29 @@ impl DrivenModel {
         let (begin, end) = (record.end_point(step, false), record.end_point(step, true));
         let length = end.t - begin.t;
         let pairs = begin.state.iter().zip(end.state);
-        for (place, (a, b)) in self.places.iter().zip(pairs) {
-            state[*place] = 0.5 * (a + b);
+        for (index, (a, b)) in self.indices.iter().zip(pairs) {
+            state[*index] = 0.5 * (a + b);
         }
         let t = 0.5 * (begin.t + end.t);
         let pairs = begin.inputs.iter().zip(end.inputs);
         let inputs: Vec<f64> = pairs.map(|(a, b)| 0.5 * (a + b)).collect();
         let inputs = &inputs[..];
         for k in 0..self.added.len() {
-            let place = self.added[k];
-            let old = state[place];
+            let index = self.added[k];
+            let old = state[index];
             self.evaluator.rates(Point { t, state, inputs }, rates);
-            let rate = rates[place];
+            let rate = rates[index];
             let change = (rate * length).abs().max(old.abs());
             let change = thresholds::ADDED_STATE_QUOTIENT * change.max(f64::MIN_POSITIVE.sqrt());
-            state[place] = old + change;
+            state[index] = old + change;
             self.evaluator.rates(Point { t, state, inputs }, rates);
-            let slope = (rates[place] - rate) / change * length;
+            let slope = (rates[index] - rate) / change * length;
             // Mean of exp(s) for s from 0 to `slope`.
             let mean = match slope.abs() < 1e-6 {
                 true => 1.0 + 0.5 * slope,
                 false => slope.exp_m1() / slope,
             };
-            state[place] = old + mean * rate * length;
+            state[index] = old + mean * rate * length;
         }
     }
 }
@@ -188,7 +192,7 @@ pub(crate) fn average_drive(
 ) -> Drive {
     let records = motion.records.iter().zip(&base.accelerations);
     let drive = records.map(|(record, base)| {
-        let moved = moved.accelerate_along(record);
+        let moved = moved.compute_accelerations(record);
         DMatrix::from_fn(moved.nrows(), record.steps.len(), |row, step| {
             let at = |column: usize| moved[(row, column)] - base[(row, column)];
             0.5 * factor * (at(2 * step) + at(2 * step + 1))

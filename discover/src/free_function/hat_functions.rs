@@ -23,7 +23,7 @@ impl HatFunctions {
         if width.is_nan() || width <= 0.0 || !width.is_finite() {
             return None;
         }
-        let count = thresholds::CURVE_KNOTS;
+        let count = thresholds::CURVE_KNOT_COUNT;
         let evenly = |k: usize| low + width * k as f64 / (count - 1) as f64;
         let largest = low.abs().max(high.abs());
         let is_around_zero = bends_at_zero && low < 0.0 && high > 0.0;

@@ -67,7 +67,7 @@ pub(crate) fn scan_laws(scene: &Scene<'_>, candidates: &[Candidate]) -> LawScan 
     laws.sort_by(|a, b| a.rms.total_cmp(&b.rms));
     LawScan {
         laws,
-        rms_without: scene.segments.alone.rms(),
+        rms_without: scene.segments.nuisance_fit.rms(),
     }
 }
 
@@ -145,7 +145,7 @@ impl<'c> DerivedLaw<'c> {
             note(self.try_value(scene, value), &mut best);
         }
         let mut ratio = 10f64.powf(1.0 / per_decade);
-        for _ in 0..thresholds::SCAN_REFINEMENTS {
+        for _ in 0..thresholds::SCAN_REFINEMENT_COUNT {
             ratio = ratio.sqrt();
             let value = best.as_ref()?.value;
             for value in [value / ratio, value * ratio] {

@@ -26,7 +26,7 @@ pub(crate) fn respond_to_unknowns(
         let size = unknown.prior.map_or(unknown.scale, |prior| prior.sd);
         let response = match &unknown.kind {
             UnknownKind::Parameter(_) | UnknownKind::InverseParameter(_) => {
-                let step = parameter_step(unknown, motion.theta[number]);
+                let step = choose_parameter_step(unknown, motion.theta[number]);
                 let mut theta = motion.theta.clone();
                 theta[number] += step;
                 let mut moved = DrivenModel::new(&fit.model, &shooting.parameter_values(&theta));
@@ -88,7 +88,7 @@ pub(crate) fn respond_to_unknowns(
 }
 
 /// Returns the step of a parameter's difference quotient; it is negative close to the upper bound.
-fn parameter_step(unknown: &Unknown, value: f64) -> f64 {
+fn choose_parameter_step(unknown: &Unknown, value: f64) -> f64 {
     let step = thresholds::PARAMETER_QUOTIENT_IN_SCALES * unknown.scale;
     match value + step > unknown.bounds.high {
         true => -step,

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::fit::fit_result::Fit;
 use crate::fit::shooting::{SensorValues, Shooting};
-use crate::free_function::smoother::{LocalModel, LocalOutputs, Smoothed, Widths, smooth};
+use crate::free_function::smoother::{LocalModel, LocalOutputs, SmoothedRecord, Widths, smooth};
 use crate::free_function::transition::Transition;
 use crate::model::allowed_directions::find_allowed_directions;
 use crate::model::estimation_model::EstimationModel;
@@ -215,7 +215,7 @@ impl<'a> ScaledModel<'a> {
             first.len(),
             first.iter().zip(&self.ranges).map(|(x, range)| x / range),
         );
-        let mut best: Option<(Widths, Smoothed)> = None;
+        let mut best: Option<(Widths, SmoothedRecord)> = None;
         for acceleration_step in thresholds::ACCELERATION_STEPS {
             let widths = Widths {
                 first_state: 1.0,
@@ -224,13 +224,14 @@ impl<'a> ScaledModel<'a> {
             let Some(smoothed) = self.smooth_record(used, &first, widths, None) else {
                 continue;
             };
-            let is_better =
-                |(_, best): &(Widths, Smoothed)| smoothed.log_likelihood > best.log_likelihood;
+            let is_better = |(_, best): &(Widths, SmoothedRecord)| {
+                smoothed.log_likelihood > best.log_likelihood
+            };
             if best.as_ref().is_none_or(is_better) {
                 best = Some((widths, smoothed));
             }
         }
-        let (widths, Smoothed { states: along, .. }) = best?;
+        let (widths, SmoothedRecord { states: along, .. }) = best?;
         let along = self.project_all(used, along)?;
         let states = match self.smooth_record(used, &first, widths, Some(&along)) {
             Some(smoothed) => self.project_all(used, smoothed.states)?,
@@ -292,7 +293,7 @@ impl<'a> ScaledModel<'a> {
         first: &DVector<f64>,
         widths: Widths,
         along: Option<&[DVector<f64>]>,
-    ) -> Option<Smoothed> {
+    ) -> Option<SmoothedRecord> {
         let this = std::cell::RefCell::new(self);
         let accelerations = this.borrow().accelerations.len();
         smooth(
@@ -348,7 +349,7 @@ impl<'a> ScaledModel<'a> {
             inputs,
         };
         let jacobian = self.differentiate_rates(point);
-        let transition = Transition::of_step(&(jacobian * length))?;
+        let transition = Transition::from_step_matrix(&(jacobian * length))?;
         let first = self.model.degrees_of_freedom();
         let count = self.accelerations.len();
         let mut drive = transition.integral.columns(first, count)
@@ -397,7 +398,7 @@ impl<'a> ScaledModel<'a> {
     }
 
     /// Returns the sensor outputs of a state, in standard deviations.
-    fn measure(&mut self, point: Point<'_>) -> DVector<f64> {
+    fn compute_outputs(&mut self, point: Point<'_>) -> DVector<f64> {
         let mut values = Vec::with_capacity(self.noise.len());
         let (evaluator, buffers) = (&mut self.evaluator, &mut self.buffers);
         self.model
@@ -419,7 +420,7 @@ impl<'a> ScaledModel<'a> {
         let inputs = &used.record.inputs.evaluate(t);
         let own = self.project(used, sample, state)?;
         let projection = self.differentiate_projection(used, sample, &own)?;
-        let expected = self.measure(Point {
+        let expected = self.compute_outputs(Point {
             t,
             state: &own,
             inputs,
@@ -433,8 +434,8 @@ impl<'a> ScaledModel<'a> {
                 state: &moved,
                 inputs,
             };
-            let slope =
-                (self.measure(point) - &expected) / thresholds::REFERENCE_QUOTIENT_IN_RANGES;
+            let slope = (self.compute_outputs(point) - &expected)
+                / thresholds::REFERENCE_QUOTIENT_IN_RANGES;
             by_state.set_column(column, &slope);
             moved[column] = own[column];
         }

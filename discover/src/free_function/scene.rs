@@ -26,7 +26,8 @@ impl<'s> Scene<'s> {
     /// Follows the records and linearises the model; `None` if the records cannot be followed.
     pub fn follow_records(problem: &'s EstimationProblem<'s>, fit: &'s Fit) -> Option<Self> {
         let motion = ReferenceMotion::follow_records(problem, fit)?;
-        let base = DrivenModel::new(&fit.model, &motion.values).record_motion(&motion, &fit.model);
+        let base =
+            DrivenModel::new(&fit.model, &motion.values).with_reference_motion(&motion, &fit.model);
         let nuisances = respond_to_unknowns(&motion, problem, fit, &base);
         let length = motion
             .records

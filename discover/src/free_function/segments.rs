@@ -35,7 +35,7 @@ pub(crate) struct Segments {
     /// Weight of the prior of each nuisance.
     prior_weights: Vec<f64>,
     /// Fit of the nuisances without added columns.
-    pub alone: LinearFit,
+    pub nuisance_fit: LinearFit,
 }
 
 struct Segment {
@@ -80,7 +80,7 @@ impl Segments {
         nuisances: &[NuisanceResponse],
         length: f64,
     ) -> Self {
-        let mut places = Vec::new();
+        let mut indices = Vec::new();
         for (number, record) in motion.records.iter().enumerate() {
             let steps = record.steps.len();
             let mean_step = (record.times[steps] - record.times[0]) / steps.max(1) as f64;
@@ -91,14 +91,14 @@ impl Segments {
             let mut first = 0;
             while first + samples / 2 <= steps {
                 let end = (first + samples).min(steps + 1);
-                places.push((number, first, end - first));
+                indices.push((number, first, end - first));
                 first = end;
             }
         }
         let build = |&(record, first, samples): &(usize, usize, usize)| {
             build_segment(&motion.records[record], record, first, samples, nuisances)
         };
-        let list: Vec<Segment> = places.par_iter().map(build).collect();
+        let list: Vec<Segment> = indices.par_iter().map(build).collect();
         let weights = nuisances.iter().map(|nuisance| match nuisance.has_prior {
             true => fit.prior_weight,
             false => 0.0,
@@ -107,18 +107,18 @@ impl Segments {
             training: motion.training,
             list,
             prior_weights: weights.collect(),
-            alone: LinearFit {
+            nuisance_fit: LinearFit {
                 coefficients: Vec::new(),
                 train_rms: f64::INFINITY,
                 test_rms: f64::INFINITY,
             },
         };
-        segments.alone = segments.fit_drives(motion, &[], None);
+        segments.nuisance_fit = segments.fit_drives(motion, &[], None);
         segments
     }
 
     /// Returns the number of measured values of the training records and of the test records.
-    fn counts(&self) -> (f64, f64) {
+    fn count_measured_values(&self) -> (f64, f64) {
         let (mut train, mut test) = (0.0, 0.0);
         for segment in &self.list {
             let count = segment.projection.residual.len() as f64;
@@ -190,7 +190,7 @@ impl Segments {
     /// Returns the RMS residuals of the training and of the test records, in standard deviations.
     pub(super) fn evaluate(&self, products: &Products, solution: &DVector<f64>) -> (f64, f64) {
         let left = |products: &DMatrix<f64>| (products * solution).dot(solution).max(0.0);
-        let (train, test) = self.counts();
+        let (train, test) = self.count_measured_values();
         (
             (left(&products.train) / train).sqrt(),
             (left(&products.test) / test).sqrt(),
@@ -217,7 +217,7 @@ impl Segments {
 
     /// Returns the number of samples per independent sample in the training residuals of a
     /// solution: 1 plus twice the sum of the autocorrelations up to the first negligible one.
-    pub(super) fn correlation_samples(
+    pub(super) fn compute_correlation_length(
         &self,
         motion: &ReferenceMotion,
         drives: &[Drive],
@@ -229,7 +229,7 @@ impl Segments {
             let channels = record.differences[segment.first].len();
             let all: Vec<&DMatrix<f64>> =
                 drives.iter().map(|drive| &drive[segment.record]).collect();
-            let response = respond(record, segment.first, segment.samples, &all);
+            let response = compute_responses(record, segment.first, segment.samples, &all);
             let nuisances = segment.nuisances.ncols();
             let residual = &segment.projection.residual
                 + &segment.nuisances * solution.rows(0, nuisances)
@@ -250,8 +250,8 @@ impl Segments {
     }
 
     /// Returns the number of measured values of the training records.
-    pub(super) fn training_count(&self) -> f64 {
-        self.counts().0
+    pub(super) fn count_training_values(&self) -> f64 {
+        self.count_measured_values().0
     }
 
     /// Computes the products of the columns. `fixed`: drive whose size is 1.
@@ -272,7 +272,7 @@ impl Segments {
             let all: Vec<&DMatrix<f64>> = (drives.iter().chain(fixed))
                 .map(|drive| &drive[segment.record])
                 .collect();
-            let response = respond(record, segment.first, segment.samples, &all);
+            let response = compute_responses(record, segment.first, segment.samples, &all);
             let nuisances = segment.nuisances.ncols();
             let mut matrix = DMatrix::zeros(response.nrows(), unknowns + 1);
             matrix
@@ -302,7 +302,7 @@ fn is_missing(record: &ReferenceRecord, first: usize, channels: usize, row: usiz
 }
 
 /// Returns the responses of the outputs of a segment, one column per drive.
-fn respond(
+fn compute_responses(
     record: &ReferenceRecord,
     first: usize,
     samples: usize,
@@ -375,7 +375,7 @@ fn build_segment(
     let mut columns = DMatrix::zeros(rows, nuisances.len());
     for (column, nuisance) in nuisances.iter().enumerate() {
         if let Some(drive) = &nuisance.drive {
-            let response = respond(record, first, samples, &[&drive[number]]);
+            let response = compute_responses(record, first, samples, &[&drive[number]]);
             columns.set_column(column, &response.column(0));
         }
         for row in 0..rows {

@@ -50,7 +50,7 @@ struct FilteredSample {
 }
 
 /// Smoothed record.
-pub(super) struct Smoothed {
+pub(super) struct SmoothedRecord {
     /// States at the samples, scaled.
     pub states: Vec<DVector<f64>>,
     /// Logarithm of the likelihood of the innovations.
@@ -66,7 +66,7 @@ pub(super) fn smooth(
     widths: Widths,
     outputs: &mut dyn FnMut(usize, &DVector<f64>) -> Option<LocalOutputs>,
     model: &mut dyn FnMut(usize, &DVector<f64>) -> Option<LocalModel>,
-) -> Option<Smoothed> {
+) -> Option<SmoothedRecord> {
     let (states, all) = (first.len(), first.len() + accelerations);
     let mut mean = DVector::zeros(all);
     mean.rows_mut(0, states).copy_from(first);
@@ -149,7 +149,7 @@ pub(super) fn smooth(
         smoothed.push(state.rows(0, states).into_owned());
     }
     smoothed.reverse();
-    Some(Smoothed {
+    Some(SmoothedRecord {
         states: smoothed,
         log_likelihood,
     })

@@ -23,7 +23,7 @@ pub(super) struct Transition {
 
 impl Transition {
     /// Computes the transition of `h J`; `None` if an entry is not finite.
-    pub fn of_step(step: &DMatrix<f64>) -> Option<Self> {
+    pub fn from_step_matrix(step: &DMatrix<f64>) -> Option<Self> {
         let count = step.nrows();
         let rows = step
             .row_iter()
@@ -62,7 +62,7 @@ mod tests {
     fn transition_of_an_oscillator_matches_its_closed_form() {
         for (w, h) in [(3.0, 0.01), (40.0, 0.1), (2000.0, 0.01)] {
             let step = DMatrix::from_row_slice(2, 2, &[0.0, h, -w * w * h, 0.0]);
-            let found = Transition::of_step(&step).unwrap();
+            let found = Transition::from_step_matrix(&step).unwrap();
             let (s, c) = f64::sin_cos(w * h);
             let exact = [[c, s / w], [-w * s, c]];
             // Mean of exp(s J) for s from 0 to h.
@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn transition_of_a_stiff_damper_ends_at_rest() {
-        let found = Transition::of_step(&DMatrix::from_element(1, 1, -1e9)).unwrap();
+        let found = Transition::from_step_matrix(&DMatrix::from_element(1, 1, -1e9)).unwrap();
         assert!(found.exponential[(0, 0)].abs() < 1e-12);
         assert!((found.integral[(0, 0)] - 1e-9).abs() < 1e-12);
     }

@@ -5,7 +5,7 @@ use eomgen_codegen::program::{Op, Program, ValueId};
 
 /// Dependence of a value on the state, in increasing order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Form {
+enum Dependence {
     /// The value does not depend on the state.
     Constant,
     /// The value is a weighted sum of states plus a constant.
@@ -17,39 +17,39 @@ enum Form {
 /// Returns true if the values are weighted sums of states plus a constant. The weights depend only
 /// on parameters.
 pub(crate) fn are_affine(program: &Program, values: &[ValueId]) -> bool {
-    let mut forms = vec![Form::Other; program.values.len()];
+    let mut forms = vec![Dependence::Other; program.values.len()];
     for id in program.reachable(values) {
-        forms[id.index()] = form(program, id, &forms);
+        forms[id.index()] = classify(program, id, &forms);
     }
     values
         .iter()
-        .all(|value| forms[value.index()] <= Form::Affine)
+        .all(|value| forms[value.index()] <= Dependence::Affine)
 }
 
 /// Returns the dependence of a value from the dependence of its operands.
-fn form(program: &Program, id: ValueId, forms: &[Form]) -> Form {
+fn classify(program: &Program, id: ValueId, forms: &[Dependence]) -> Dependence {
     let value = program.value(id);
     if value.parameter_only {
-        return Form::Constant;
+        return Dependence::Constant;
     }
     let of = |id: &ValueId| forms[id.index()];
     // A product is affine if one factor is affine and the other is constant.
-    let product = |a: Form, b: Form| match a.min(b) {
-        Form::Constant => a.max(b),
-        Form::Affine | Form::Other => Form::Other,
+    let product = |a: Dependence, b: Dependence| match a.min(b) {
+        Dependence::Constant => a.max(b),
+        Dependence::Affine | Dependence::Other => Dependence::Other,
     };
     match &value.op {
         Op::Coordinate(_)
         | Op::Rate(_)
         | Op::ModeCoordinates(_)
         | Op::ModeRates(_)
-        | Op::State(_) => Form::Affine,
+        | Op::State(_) => Dependence::Affine,
         Op::Negate(a) | Op::Total(a) => of(a),
         Op::Add(a, b) | Op::Subtract(a, b) => of(a).max(of(b)),
         Op::Multiply(a, b) => product(of(a), of(b)),
         Op::Apply { matrix, vector, .. } => product(of(matrix), of(vector)),
-        Op::Divide(a, b) if of(b) == Form::Constant => of(a),
-        Op::CholeskySolve(factor, right) if of(factor) == Form::Constant => of(right),
-        _ => Form::Other,
+        Op::Divide(a, b) if of(b) == Dependence::Constant => of(a),
+        Op::CholeskySolve(factor, right) if of(factor) == Dependence::Constant => of(right),
+        _ => Dependence::Other,
     }
 }

@@ -51,7 +51,7 @@ pub(crate) fn find_allowed_directions(
     let basis = factors.u?;
     let singular = factors.singular_values.iter().enumerate();
     let allowed = singular.filter(|(_, value)| **value > MIN_SINGULAR_VALUE);
-    let mut basis = basis.select_columns(&allowed.map(|(place, _)| place).collect::<Vec<usize>>());
+    let mut basis = basis.select_columns(&allowed.map(|(index, _)| index).collect::<Vec<usize>>());
     for (mut row, range) in basis.row_iter_mut().zip(ranges) {
         row *= *range;
     }

@@ -11,7 +11,7 @@ use crate::thresholds;
 use eomgen_records::Refusal;
 
 /// Factors between units that are often confused.
-const FACTORS: [(f64, &str, &str); 6] = [
+const UNIT_FACTORS: [(f64, &str, &str); 6] = [
     (1e3, "a thousand times", ""),
     (1e-3, "a thousandth of", ""),
     (1e6, "a million times", ""),
@@ -39,7 +39,7 @@ const MIN_INDEPENDENT_PART: f64 = 1e-9;
 /// factors.
 pub(crate) fn describe_unit_factor(factor: f64, expected: &str) -> Option<String> {
     let is_near = |unit: f64| (factor / unit - 1.0).abs() < thresholds::FACTOR_TOLERANCE;
-    let (_, times, as_units) = FACTORS.iter().find(|(unit, _, _)| is_near(*unit))?;
+    let (_, times, as_units) = UNIT_FACTORS.iter().find(|(unit, _, _)| is_near(*unit))?;
     Some(format!("{times} {expected}{as_units}"))
 }
 
@@ -55,7 +55,7 @@ pub fn check_channels(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec
         return Ok(notes);
     };
     let first = problem.estimate_first_state(&model, record);
-    let samples = record.times.len().min(thresholds::CHECKED_SAMPLES);
+    let samples = record.times.len().min(thresholds::CHECKED_SAMPLE_COUNT);
     let times = &record.times[..samples];
     let channels = &problem.dataset.channels;
     // If the model cannot be simulated here, errors appear in its fit.
@@ -94,8 +94,8 @@ pub fn check_channels(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec
         .collect();
     for (own_index, channel) in channels.iter().enumerate() {
         let measured = &record.channels[own_index][..samples];
-        let own = Correspondence::of(times, &expected[own_index], measured, channel.noise);
-        let refuse = |message: String| {
+        let own = Correspondence::compare(times, &expected[own_index], measured, channel.noise);
+        let reject = |message: String| {
             Err(Refusal::file_error(
                 &record.path,
                 format!("channel `{}`: {message}", channel.name),
@@ -104,7 +104,7 @@ pub fn check_channels(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec
         if own.correlation < -thresholds::MIN_SAME_CORRELATION
             && (own.factor + 1.0).abs() < thresholds::UNIT_FACTOR_TOLERANCE
         {
-            return refuse(
+            return reject(
                 "its column has the opposite sign of the model; change the sign of the column or of the \
                  observable"
                     .to_owned(),
@@ -112,25 +112,25 @@ pub fn check_channels(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec
         }
         if own.correlation > thresholds::MIN_SAME_CORRELATION {
             if let Some(words) = describe_unit_factor(own.factor, "the expected value") {
-                return refuse(format!("its column is {words}; check its unit"));
+                return reject(format!("its column is {words}; check its unit"));
             }
             if (own.factor - 1.0).abs() < thresholds::UNIT_FACTOR_TOLERANCE {
                 continue;
             }
         }
         for (other, instead) in channels.iter().enumerate() {
-            let swapped = Correspondence::of(times, &expected[other], measured, channel.noise);
+            let swapped = Correspondence::compare(times, &expected[other], measured, channel.noise);
             if other != own_index
                 && swapped.correlation > thresholds::MIN_SAME_CORRELATION
                 && (swapped.factor - 1.0).abs() < thresholds::FACTOR_TOLERANCE
             {
-                return refuse(format!(
+                return reject(format!(
                     "its column matches the expected values of `{}`; check if columns are exchanged",
                     instead.name
                 ));
             }
         }
-        if own.correlation.abs() < thresholds::MAX_WRONG_CORRELATION && own.shows {
+        if own.correlation.abs() < thresholds::MAX_WRONG_CORRELATION && own.has_motion {
             notes.push(format!(
                 "{}: `{}` does not follow the model (correlation {:.2}); check its column and those of the \
                  inputs",
@@ -177,15 +177,15 @@ struct Correspondence {
     correlation: f64,
     factor: f64,
     /// True if the motion of the column is large enough for the comparison.
-    shows: bool,
+    has_motion: bool,
 }
 
 impl Correspondence {
-    fn of(times: &[f64], expected: &Expectation, measured: &[f64], noise: f64) -> Self {
+    fn compare(times: &[f64], expected: &Expectation, measured: &[f64], noise: f64) -> Self {
         let none = Self {
             correlation: 0.0,
             factor: 0.0,
-            shows: false,
+            has_motion: false,
         };
         let known: Vec<usize> = (0..times.len())
             .filter(|i| measured[*i].is_finite() && expected.values[*i].is_finite())
@@ -200,22 +200,22 @@ impl Correspondence {
             .chain(&expected.free)
             .map(|c| select(c))
             .collect();
-        let basis = orthonormal_basis(removed);
+        let basis = orthonormalise(removed);
         let [a, b] = [&expected.values[..], measured].map(|column| {
             let mut values = select(column);
             remove_components(&mut values, &basis);
             values
         });
         let (aa, ab, bb) = (dot(&a, &a), dot(&a, &b), dot(&b, &b));
-        let shows =
+        let has_motion =
             (bb / known.len() as f64).sqrt() > thresholds::MIN_CHECKED_MOTION_IN_NOISE * noise;
-        if !(shows && aa > 0.0 && ab.is_finite()) {
+        if !(has_motion && aa > 0.0 && ab.is_finite()) {
             return none;
         }
         Self {
             correlation: ab / (aa * bb).sqrt(),
             factor: ab / aa,
-            shows,
+            has_motion,
         }
     }
 }
@@ -225,7 +225,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Returns an orthonormal basis of the columns, by the Gram-Schmidt method with a second pass.
-fn orthonormal_basis(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+fn orthonormalise(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let mut basis: Vec<Vec<f64>> = Vec::new();
     for mut column in columns {
         let before = dot(&column, &column).sqrt();
@@ -256,7 +256,7 @@ mod tests {
     use super::{Correspondence, Expectation, describe_unit_factor};
 
     #[test]
-    fn a_factor_between_units_is_known_and_no_other() {
+    fn only_factors_between_units_are_recognised() {
         let words = |factor: f64| describe_unit_factor(factor, "that");
         assert_eq!(words(998.5).as_deref(), Some("a thousand times that"));
         assert_eq!(
@@ -279,10 +279,10 @@ mod tests {
             free: vec![column(&free), column(&|t| 2.0 * free(t))],
         };
         let measured: Vec<f64> = column(&|t| 5.0 * t - 2.0 * wave(t) + 9.0 * free(t));
-        let found = Correspondence::of(&times, &expected, &measured, 1e-3);
+        let found = Correspondence::compare(&times, &expected, &measured, 1e-3);
         assert!((found.factor + 2.0).abs() < 1e-9 && found.correlation < -0.999_999);
         let only_free: Vec<f64> = column(&|t| 3.0 - 2.0 * t - free(t));
-        let found = Correspondence::of(&times, &expected, &only_free, 1e-3);
-        assert!(!found.shows, "{}", found.correlation);
+        let found = Correspondence::compare(&times, &expected, &only_free, 1e-3);
+        assert!(!found.has_motion, "{}", found.correlation);
     }
 }

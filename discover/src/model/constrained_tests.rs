@@ -63,7 +63,7 @@ fn pendulum(is_stepped: bool) -> EstimationModel {
 }
 
 #[test]
-fn constrained_motion_matches_that_of_the_angle_and_does_not_drift() {
+fn constrained_motion_matches_angle_model_without_drift() {
     let right = integrate_angle([0.9, 0.5]);
     for is_stepped in [true, false] {
         let model = pendulum(is_stepped);
@@ -94,7 +94,7 @@ fn constrained_motion_matches_that_of_the_angle_and_does_not_drift() {
 }
 
 #[test]
-fn derivatives_along_allowed_directions_match_those_by_the_angle() {
+fn derivatives_along_allowed_directions_match_angle_model() {
     let model = pendulum(true);
     let mut simulation = model
         .create_simulation(&model.values)

@@ -50,7 +50,7 @@ pub fn check_constraints(
 
 /// Measured coordinate.
 struct MeasuredCoordinate {
-    place: usize,
+    index: usize,
     channel: usize,
     /// Standard deviations: of noise and bias together, SI, and of the gain.
     sd: [f64; 2],
@@ -73,7 +73,7 @@ fn describe_contradictions(
     for (sample, t) in record.times.iter().enumerate() {
         for own in &measured {
             let value = record.channels[own.channel][sample];
-            state[own.place] = model.sensors[own.channel].quantity(value);
+            state[own.index] = model.sensors[own.channel].quantity(value);
         }
         if state.iter().any(|entry| !entry.is_finite()) {
             continue;
@@ -86,7 +86,7 @@ fn describe_contradictions(
         };
         let (residuals, derivatives) = (rows.residuals(point), rows.derivatives(point));
         for (number, (residual, row)) in residuals.iter().zip(&derivatives).enumerate() {
-            let Some(variance) = variance_along(row, &measured, &state) else {
+            let Some(variance) = compute_variance(row, &measured, &state) else {
                 continue;
             };
             if constraints[number].is_nonholonomic || variance <= 0.0 {
@@ -117,12 +117,12 @@ fn describe_contradictions(
 
 /// Returns the variance of the residual of a constraint. `row`: derivatives of the constraint.
 /// `None` if it depends on an unmeasured coordinate.
-fn variance_along(row: &[f64], measured: &[MeasuredCoordinate], state: &[f64]) -> Option<f64> {
+fn compute_variance(row: &[f64], measured: &[MeasuredCoordinate], state: &[f64]) -> Option<f64> {
     let mut variance = 0.0;
-    for (place, derivative) in row.iter().enumerate().filter(|(_, entry)| **entry != 0.0) {
-        let own = measured.iter().find(|own| own.place == place)?;
+    for (index, derivative) in row.iter().enumerate().filter(|(_, entry)| **entry != 0.0) {
+        let own = measured.iter().find(|own| own.index == index)?;
         let [noise, gain] = own.sd;
-        let sd = noise.hypot(gain * state[place]);
+        let sd = noise.hypot(gain * state[index]);
         variance += (derivative * sd).powi(2);
     }
     Some(variance)
@@ -135,11 +135,11 @@ fn list_measured_coordinates(
 ) -> Vec<MeasuredCoordinate> {
     let step = typical_step(&record.times);
     let channels = problem.dataset.channels.iter().enumerate();
-    let measured = channels.filter_map(|(index, channel)| {
-        let Quantity::Coordinate(place) = channel.quantity else {
+    let measured = channels.filter_map(|(number, channel)| {
+        let Quantity::Coordinate(index) = channel.quantity else {
             return None;
         };
-        let id = ChannelId::new(index);
+        let id = ChannelId::new(number);
         let mut sd = [channel.noise, 0.0];
         for unknown in list_sensor_unknowns(id, channel, model.specification(), step) {
             match unknown.kind {
@@ -149,8 +149,8 @@ fn list_measured_coordinates(
             }
         }
         Some(MeasuredCoordinate {
-            place,
-            channel: index,
+            index,
+            channel: number,
             sd,
         })
     });

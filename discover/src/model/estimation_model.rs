@@ -67,11 +67,11 @@ pub struct EstimationModel {
 
 /// Ratio of the difference between the results of Runge-Kutta steps h and h/2 to the error of the
 /// steps h/2. The error decreases with the fourth power of the step.
-const RUNGE_KUTTA_GAIN: f64 = 15.0;
+const RUNGE_KUTTA_ERROR_RATIO: f64 = 15.0;
 
 /// The corresponding ratio for the exponential integrator, whose error decreases with the second
 /// power of the step.
-const INTEGRATOR_GAIN: f64 = 3.0;
+const INTEGRATOR_ERROR_RATIO: f64 = 3.0;
 
 /// Part of a model that is linear between switches.
 #[derive(Clone)]
@@ -106,7 +106,7 @@ impl EstimationModel {
         let mut model = Self::derive_equations(text, name, order, channels)?;
         model.linear = match (model.compiled.piecewise_linear(), linear) {
             (Ok(_), _) => Some(LinearPart::Whole),
-            (Err(_), Some(linear)) => linear_part(linear, name, order, &model),
+            (Err(_), Some(linear)) => derive_linear_part(linear, name, order, &model),
             (Err(_), None) => None,
         };
         Ok(model)
@@ -267,7 +267,7 @@ impl EstimationModel {
         numbers: f64,
         output_rate: OutputRate,
     ) {
-        let samples = record.times.len().min(thresholds::STEP_TEST_SAMPLES);
+        let samples = record.times.len().min(thresholds::STEP_TEST_SAMPLE_COUNT);
         let times = &output_rate.times(&record.times[..samples]).times;
         self.sample = typical_step(times);
         if self.is_linear() {
@@ -291,7 +291,7 @@ impl EstimationModel {
         };
         let error = match has_linear_part {
             true => thresholds::MAX_STEP_ERROR,
-            false => thresholds::MAX_SUMMED_STEP_ERROR * RUNGE_KUTTA_GAIN / numbers.sqrt(),
+            false => thresholds::MAX_SUMMED_STEP_ERROR * RUNGE_KUTTA_ERROR_RATIO / numbers.sqrt(),
         };
         let mut coarse = run(self, 0);
         for doubling in 1..thresholds::MAX_STEP_DOUBLINGS {
@@ -340,10 +340,10 @@ impl EstimationModel {
 
     /// Returns the ratio of the difference between fixed steps h and h/2 to the error of the steps
     /// h/2.
-    pub(crate) fn step_gain(&self) -> f64 {
+    pub(crate) fn step_error_ratio(&self) -> f64 {
         match self.linear.is_some() {
-            true => INTEGRATOR_GAIN,
-            false => RUNGE_KUTTA_GAIN,
+            true => INTEGRATOR_ERROR_RATIO,
+            false => RUNGE_KUTTA_ERROR_RATIO,
         }
     }
 
@@ -488,14 +488,14 @@ pub fn is_linear(text: &str, name: &str, order: Option<usize>) -> bool {
 
 /// Derives the linear part of a model from its text; `None` if its states differ from those of the
 /// model.
-fn linear_part(
+fn derive_linear_part(
     text: &str,
     name: &str,
     order: Option<usize>,
     model: &EstimationModel,
 ) -> Option<LinearPart> {
     let part = compile_model(text, name, order).ok()?;
-    if part.state_names() != model.states || can_hold_more(&model.compiled, &part) {
+    if part.state_names() != model.states || has_more_sticking_surfaces(&model.compiled, &part) {
         return None;
     }
     let own = part.piecewise_linear().ok()?.parameter_names();
@@ -509,7 +509,7 @@ fn linear_part(
 
 /// Returns true if a model has sticking surfaces, such as dry friction, that its linear part lacks.
 /// The integrator of the linear part would not stop the motion there.
-fn can_hold_more(whole: &CompiledModel, part: &CompiledModel) -> bool {
+fn has_more_sticking_surfaces(whole: &CompiledModel, part: &CompiledModel) -> bool {
     let known = &part.program().guards;
     let is_known = |guard: &ProgramGuard| known.iter().any(|own| own.formula == guard.formula);
     if whole.program().guards.iter().all(is_known) {
@@ -558,7 +558,7 @@ table = "1/2*m*dot(x)^2"
 "#;
 
     #[test]
-    fn motion_stops_where_friction_holds_it() {
+    fn motion_stops_when_friction_sticks() {
         let text = |friction: &str| {
             format!("{STAGE}friction = {{ on = \"x\", value = \"{friction}\" }}\n")
         };
@@ -591,7 +591,7 @@ table = "1/2*m*dot(x)^2"
     }
 
     #[test]
-    fn an_initial_state_stays_where_the_model_lives() {
+    fn initial_state_is_clamped_to_ranges() {
         let model =
             EstimationModel::derive_equations(SPEAKER, "speaker", None, &[]).expect("a model");
         let moved = |x: f64| model.clamp_state(vec![9.0, x, 9.0, 9.0]);

@@ -56,12 +56,12 @@ pub(crate) fn estimate_without_constraints(
 pub fn find_measured_states(model: &EstimationModel, channels: &[Channel]) -> Vec<usize> {
     let degrees = model.degrees_of_freedom();
     let measured = channels.iter();
-    let measured = measured.flat_map(|channel| measured_states(channel.quantity, degrees));
+    let measured = measured.flat_map(|channel| list_measured_states(channel.quantity, degrees));
     measured.flatten().collect()
 }
 
 /// Returns the states that are measured by the value and by the slope of a quantity.
-fn measured_states(quantity: Quantity, degrees: usize) -> [Option<usize>; 2] {
+fn list_measured_states(quantity: Quantity, degrees: usize) -> [Option<usize>; 2] {
     match quantity {
         Quantity::Coordinate(coordinate) => [Some(coordinate), Some(degrees + coordinate)],
         Quantity::Rate(coordinate) => [Some(degrees + coordinate), None],
@@ -88,12 +88,12 @@ fn apply_measurements(
     for ((channel, sensor), column) in sensors.zip(&record.channels) {
         let (value, slope) = fit_first_samples(&record.times, column);
         let (value, slope) = (sensor.quantity(value), slope / sensor.gain);
-        let places = measured_states(channel.quantity, degrees);
-        for (place, number) in places.into_iter().zip([value, slope]) {
+        let indices = list_measured_states(channel.quantity, degrees);
+        for (index, number) in indices.into_iter().zip([value, slope]) {
             // With a sensor gain of 0, the quantity is not finite.
-            if let Some(place) = place.filter(|_| number.is_finite()) {
-                state[place] = number;
-                if let Some(is_measured) = is_measured.get_mut(place) {
+            if let Some(index) = index.filter(|_| number.is_finite()) {
+                state[index] = number;
+                if let Some(is_measured) = is_measured.get_mut(index) {
                     *is_measured = true;
                 }
             }
@@ -125,7 +125,7 @@ fn apply_measurements(
 fn fit_first_samples(times: &[f64], column: &[f64]) -> (f64, f64) {
     let points: Vec<(f64, f64)> = (times.iter().zip(column))
         .filter(|(_, value)| value.is_finite())
-        .take(thresholds::INITIAL_SLOPE_SAMPLES)
+        .take(thresholds::INITIAL_SLOPE_SAMPLE_COUNT)
         .map(|(t, value)| (t - times[0], *value))
         .collect();
     let Some(span) = points.last().map(|(t, _)| *t).filter(|span| *span > 0.0) else {
@@ -157,7 +157,9 @@ pub fn compute_state_ranges(
     let mut of = |(state, range): (usize, f64)| match range > 0.0 {
         true => range,
         false => (records.first().zip(firsts.first()))
-            .and_then(|(record, first)| find_unmoved(&mut simulation, record, first, noise, state))
+            .and_then(|(record, first)| {
+                find_range_from_noise(&mut simulation, record, first, noise, state)
+            })
             .unwrap_or(1.0),
     };
     moved.into_iter().enumerate().map(&mut of).collect()
@@ -181,7 +183,8 @@ fn measure_ranges(
         // For a range, every tenth sample is sufficient.
         let states = motions.flat_map(|states| states.into_iter().step_by(10));
         let states: Vec<Vec<f64>> = states.collect();
-        let of = |state: usize| root_mean_square(states.iter().map(|values| values[state]));
+        let of =
+            |state: usize| compute_standard_deviation(states.iter().map(|values| values[state]));
         let found: Vec<f64> = (0..count_states(firsts)).map(of).collect();
         if !states.is_empty() && found.iter().all(|range| range.is_finite()) {
             return found;
@@ -195,22 +198,22 @@ fn count_states(firsts: &[Vec<f64>]) -> usize {
 }
 
 /// Returns the standard deviation of values.
-fn root_mean_square(values: impl Iterator<Item = f64> + Clone) -> f64 {
+fn compute_standard_deviation(values: impl Iterator<Item = f64> + Clone) -> f64 {
     let count = values.clone().count() as f64;
     let mean = values.clone().sum::<f64>() / count;
     (values.map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
 /// Returns the change of a state for which the outputs change by the fraction
-/// [`thresholds::UNMOVED_STATE_IN_NOISE`] of the noise; `None` if it has no influence.
-fn find_unmoved(
+/// [`thresholds::INVISIBLE_CHANGE_IN_NOISE`] of the noise; `None` if it has no influence.
+fn find_range_from_noise(
     simulation: &mut Simulation<'_>,
     record: &Record,
     initial: &[f64],
     noise: &[f64],
     state: usize,
 ) -> Option<f64> {
-    let times = &record.times[..record.times.len().min(thresholds::STEP_TEST_SAMPLES)];
+    let times = &record.times[..record.times.len().min(thresholds::STEP_TEST_SAMPLE_COUNT)];
     let own = simulation
         .simulate_outputs(initial, times, &record.inputs)
         .ok()?;
@@ -221,14 +224,14 @@ fn find_unmoved(
             .simulate_outputs(&moved, times, &record.inputs)
             .ok()?;
         let pairs = moved.values.iter().zip(&own.values).enumerate();
-        let squares = pairs.map(|(place, (a, b))| ((a - b) / noise[place % noise.len()]).powi(2));
+        let squares = pairs.map(|(index, (a, b))| ((a - b) / noise[index % noise.len()]).powi(2));
         Some((squares.sum::<f64>() / own.values.len() as f64).sqrt())
     };
     let mut size = 1.0;
     for _ in 0..thresholds::MAX_SIZE_ATTEMPTS {
         let factor = match moved_by(size) {
             Some(moved) if moved.is_finite() && moved > 0.0 => {
-                thresholds::UNMOVED_STATE_IN_NOISE / moved
+                thresholds::INVISIBLE_CHANGE_IN_NOISE / moved
             }
             Some(0.0) => thresholds::MAX_SIZE_FACTOR,
             _ => 1e-3,

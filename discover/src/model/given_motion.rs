@@ -52,8 +52,8 @@ impl GivenMotion {
         let state = self.state_of_row(row)?;
         let given = &row[self.inputs + 2 * self.degrees..];
         let mut inputs = row[..self.inputs].to_vec();
-        for MeasuredInput { place, .. } in &self.required {
-            inputs[*place] = 0.0;
+        for MeasuredInput { index, .. } in &self.required {
+            inputs[*index] = 0.0;
         }
         let mut at = |inputs: &[f64]| -> DVector<f64> {
             let point = Point { t, state, inputs };
@@ -64,23 +64,23 @@ impl GivenMotion {
         let mut present = at(&inputs);
         for _ in 0..thresholds::MAX_INVERSE_DYNAMICS_STEPS {
             let mut columns = Vec::with_capacity(self.degrees);
-            for MeasuredInput { place, noise } in &self.required {
-                let here = inputs[*place];
+            for MeasuredInput { index, noise } in &self.required {
+                let here = inputs[*index];
                 let size = noise.max(thresholds::MIN_INVERSE_DYNAMICS_QUOTIENT * here.abs());
-                inputs[*place] = here + size;
+                inputs[*index] = here + size;
                 columns.push((at(&inputs) - &present) / size);
-                inputs[*place] = here;
+                inputs[*index] = here;
             }
             let left = &wanted - &present;
             let matrix = DMatrix::from_columns(&columns);
             let change = matrix.clone().lu().solve(&left)?;
             for (input, change) in self.required.iter().zip(change.iter()) {
-                inputs[input.place] += change;
+                inputs[input.index] += change;
             }
             present = at(&inputs);
             // The tolerance includes terms that nearly cancel, because their rounding remains. Each
             // second rate has its own scale, because units differ.
-            let applied = self.required.iter().map(|input| inputs[input.place].abs());
+            let applied = self.required.iter().map(|input| inputs[input.index].abs());
             let applied = DVector::from_iterator(self.required.len(), applied);
             let sizes = wanted.abs() + left.abs() + matrix.abs() * applied;
             let missed = (&wanted - &present).abs();
@@ -134,7 +134,7 @@ second = { on = "q", value = "v*(2 + sin(v/k)/2)" }
     }
 
     #[test]
-    fn inputs_that_move_a_model_are_found_again() {
+    fn inverse_dynamics_recovers_inputs() {
         let channels = [channel("v", 1), channel("u", 0)];
         let model =
             EstimationModel::derive_equations(ARM, "arm", None, &channels).expect("a model");
@@ -163,7 +163,7 @@ second = { on = "q", value = "v*(2 + sin(v/k)/2)" }
     }
 
     #[test]
-    fn a_model_with_states_that_no_record_gives_is_not_followed() {
+    fn model_with_unrecorded_states_is_rejected() {
         let late = ARM.replace("value = \"u\"", "value = \"F\"")
             + "[states]\nF = { unit = \"N*m\", rate = \"(u - F)*w\" }\n";
         let late = late.replace("k = {", "w = { value = 3, unit = \"1/s\" }\nk = {");

@@ -79,7 +79,7 @@ impl InputFault {
         }
     }
 
-    fn prior(self, priors: &InputPriors) -> Option<PriorInSi> {
+    fn find_prior(self, priors: &InputPriors) -> Option<PriorInSi> {
         match self {
             Self::Gain => priors.gain,
             Self::Bias => priors.bias,
@@ -94,7 +94,7 @@ pub fn find_declared<'p>(
 ) -> Option<(&'p str, InputFault, PriorInSi)> {
     let all = inputs.iter().flat_map(|input| {
         let faults = InputFault::ALL.into_iter();
-        faults.filter_map(move |fault| Some((input.name.as_str(), fault, fault.prior(input)?)))
+        faults.filter_map(move |fault| Some((input.name.as_str(), fault, fault.find_prior(input)?)))
     });
     let mut all = all;
     all.find(|(input, fault, _)| fault.parameter_name(input) == parameter)
@@ -120,7 +120,7 @@ pub fn add_declared_faults(
     let mut text = text.to_owned();
     for priors in inputs {
         for fault in InputFault::ALL {
-            let Some(expected) = fault.prior(priors) else {
+            let Some(expected) = fault.find_prior(priors) else {
                 continue;
             };
             let source = edited_source(path, &text);

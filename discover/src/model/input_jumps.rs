@@ -10,19 +10,19 @@ use crate::model::estimation_model::EstimationModel;
 use crate::model::first_state::estimate_first_state;
 use crate::model::input_faults::find_delayed_input;
 use crate::model::measured_outputs::Output;
-use crate::model::output_times::lagrange_weight;
+use crate::model::output_times::compute_lagrange_weight;
 
 /// Change of a state for the slope of a quantity, relative to the typical size of the state.
 const STATE_CHANGE: f64 = 1e-4;
 
 /// Fractions of a sample interval at which the error is computed.
-const FRACTIONS: [f64; 3] = [0.25, 0.5, 0.75];
+const INTERVAL_FRACTIONS: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// Nodes of the cubic, in sample intervals, relative to the beginning of the interval.
-const NODES: [f64; 4] = [-1.0, 0.0, 1.0, 2.0];
+const CUBIC_NODES: [f64; 4] = [-1.0, 0.0, 1.0, 2.0];
 
 /// Jumps of the first and second derivative of each channel, per unit of an input.
-type Gains = [Vec<f64>; 2];
+type JumpsPerUnit = [Vec<f64>; 2];
 
 /// Returns the RMS error, SI, of a cubic through four samples of each channel due to jumps of the
 /// inputs. It is 0 for a channel without delay, which is not interpolated, and for accelerations,
@@ -32,10 +32,10 @@ pub(crate) fn compute_jump_errors(model: &EstimationModel, dataset: &Dataset) ->
     let channels = dataset.channels.len();
     let (mut squares, mut count) = (vec![0.0; channels], 0.0);
     let mut evaluator = model.create_evaluator(&model.values);
-    let weights = FRACTIONS.map(|at| [1, 2].map(|order| error_of_kinks(order, at)));
+    let weights = INTERVAL_FRACTIONS.map(|at| [1, 2].map(|order| compute_kink_errors(order, at)));
     for record in &dataset.train {
         let first = estimate_first_state(model, record, &dataset.channels, &dataset.initial);
-        let changes = input_changes(record);
+        let changes = compute_input_changes(record);
         let gains = compute_gains(model, &mut evaluator, record, (&first, &changes));
         for (sample, pair) in changes.windows(2).enumerate() {
             let step = record.times[sample + 2] - record.times[sample + 1];
@@ -55,7 +55,7 @@ pub(crate) fn compute_jump_errors(model: &EstimationModel, dataset: &Dataset) ->
                     *square += errors.sum::<f64>().powi(2);
                 }
             }
-            count += FRACTIONS.len() as f64;
+            count += INTERVAL_FRACTIONS.len() as f64;
         }
     }
     let errors = squares.iter().enumerate().map(|(channel, square)| {
@@ -89,7 +89,7 @@ fn is_delayed(model: &EstimationModel, dataset: &Dataset, channel: usize) -> boo
 }
 
 /// Returns the changes of the inputs at the samples of a record, without its first sample.
-fn input_changes(record: &Record) -> Vec<Vec<f64>> {
+fn compute_input_changes(record: &Record) -> Vec<Vec<f64>> {
     let difference = |pair: &[f64]| -> Vec<f64> {
         let [before, after] = [pair[0], pair[1]].map(|t| record.inputs.last_sample(t));
         let changes = after.iter().zip(before).map(|(a, b)| a - b).enumerate();
@@ -109,7 +109,7 @@ fn compute_gains(
     evaluator: &mut Evaluator,
     record: &Record,
     (state, changes): (&[f64], &[Vec<f64>]),
-) -> Vec<Gains> {
+) -> Vec<JumpsPerUnit> {
     let (t, states, degrees) = (record.times[0], state.len(), model.degrees_of_freedom());
     let inputs = record.inputs.evaluate(t).into_owned();
     let mut rates = |inputs: &[f64]| {
@@ -140,13 +140,13 @@ fn compute_gains(
         let mut of_coordinates = vec![0.0; states];
         of_coordinates[..degrees].copy_from_slice(&jump[degrees..2 * degrees]);
         [jump, of_coordinates]
-            .map(|direction| slope_along(model, evaluator, (t, state, &inputs), &direction))
+            .map(|direction| compute_slope(model, evaluator, (t, state, &inputs), &direction))
     });
     slopes.collect()
 }
 
 /// Returns the derivative of each channel along a direction of the state, SI.
-fn slope_along(
+fn compute_slope(
     model: &EstimationModel,
     evaluator: &mut Evaluator,
     (t, state, inputs): (f64, &[f64], &[f64]),
@@ -179,11 +179,11 @@ fn slope_along(
 
 /// Returns the errors of the cubic at a fraction of a sample interval of length 1, if the
 /// derivative of order `order` jumps by 1 at the beginning or at the end of the interval.
-fn error_of_kinks(order: i32, at: f64) -> [f64; 2] {
+fn compute_kink_errors(order: i32, at: f64) -> [f64; 2] {
     [0.0, 1.0].map(|kink| {
         let function = |t: f64| f64::max(t - kink, 0.0).powi(order) / f64::from(order);
-        let weight = |node| lagrange_weight(&NODES, 0..NODES.len(), node, at);
-        let nodes = NODES.iter().enumerate();
+        let weight = |node| compute_lagrange_weight(&CUBIC_NODES, 0..CUBIC_NODES.len(), node, at);
+        let nodes = CUBIC_NODES.iter().enumerate();
         let between: f64 = nodes.map(|(node, t)| weight(node) * function(*t)).sum();
         between - function(at)
     })
@@ -191,15 +191,15 @@ fn error_of_kinks(order: i32, at: f64) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::error_of_kinks;
+    use super::compute_kink_errors;
 
     #[test]
-    fn kinks_at_the_ends_of_an_interval_have_errors_of_opposite_sides() {
+    fn interpolation_errors_of_kinks_match_closed_form() {
         // In the middle of the interval, a slope jump of 1 causes an error of 1/16, and a jump of
         // the second derivative an error of 1/32.
-        let [before, after] = error_of_kinks(1, 0.5);
+        let [before, after] = compute_kink_errors(1, 0.5);
         assert!((before + 1.0 / 16.0).abs() < 1e-15 && (after + 1.0 / 16.0).abs() < 1e-15);
-        let [before, after] = error_of_kinks(2, 0.5);
+        let [before, after] = compute_kink_errors(2, 0.5);
         assert!((before - 1.0 / 32.0).abs() < 1e-15 && (after + 1.0 / 32.0).abs() < 1e-15);
     }
 }

@@ -19,7 +19,7 @@ pub fn find_only_input(model: &Model) -> Option<&Input> {
 }
 
 /// Entry of a specification.
-struct Written<'m> {
+struct SpecificationEntry<'m> {
     section: Section,
     name: &'m str,
     span: Span,
@@ -27,9 +27,9 @@ struct Written<'m> {
 }
 
 /// Returns the entries that may contain an input.
-fn entries(model: &Model) -> Vec<Written<'_>> {
+fn list_entries(model: &Model) -> Vec<SpecificationEntry<'_>> {
     let of = |section: Section| {
-        move |(name, span, value)| Written {
+        move |(name, span, value)| SpecificationEntry {
             section,
             name: written_name(name, span, &model.source),
             span,
@@ -48,7 +48,7 @@ fn entries(model: &Model) -> Vec<Written<'_>> {
         .states
         .iter()
         .map(|s| (s.name.as_str(), s.span, &s.rate));
-    let mut found: Vec<Written<'_>> = Vec::new();
+    let mut found: Vec<SpecificationEntry<'_>> = Vec::new();
     found.extend(model.kinetic.iter().map(term).map(of(Section::Kinetic)));
     found.extend(model.potential.iter().map(term).map(of(Section::Potential)));
     found.extend(
@@ -87,7 +87,10 @@ pub fn find_occurrences(model: &Model, input: &str) -> Vec<(Section, Vec<String>
         found
     };
     let mut found: Vec<(Section, Vec<String>)> = Vec::new();
-    for entry in entries(model).iter().filter(|entry| holds(entry.value)) {
+    for entry in list_entries(model)
+        .iter()
+        .filter(|entry| holds(entry.value))
+    {
         let at = match found
             .iter()
             .position(|(section, _)| *section == entry.section)

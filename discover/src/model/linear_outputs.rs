@@ -117,14 +117,14 @@ flow = "sqrt(1 - p/p_s)"
     }
 
     #[test]
-    fn factors_are_exact_beside_a_large_constant() {
+    fn factors_are_exact_with_a_large_constant() {
         let place = outputs(1).expect("linear");
         assert_eq!(place.constant, [2.0]);
         assert_eq!(place.rows, [[1.0 / 3.0, 0.0, 0.0]]);
     }
 
     #[test]
-    fn a_root_that_is_flat_at_one_pascal_is_not_linear() {
+    fn square_root_of_pressure_is_not_linear() {
         assert_eq!(outputs(2), None);
     }
 }

@@ -20,7 +20,7 @@ mod tests {
     use super::LongestStep;
 
     #[test]
-    fn a_time_of_many_samples_has_as_many_steps_as_they() {
+    fn sample_intervals_need_no_additional_steps() {
         let longest = LongestStep(0.005);
         assert_eq!(longest.count_steps(0.005), 1);
         assert_eq!(longest.count_steps(0.00502), 1);

@@ -14,7 +14,7 @@ use eomgen_sim::inputs::HeldInputs;
 use nalgebra::{DMatrix, DVector};
 
 /// Maximum step of a measured coordinate, relative to its typical size: 0.1 rad for an angle.
-const LONGEST_STEP: f64 = 0.1;
+const MAX_STEP_IN_SIZES: f64 = 0.1;
 
 /// Maximum number of steps: 16 turns of a crank.
 const MAX_STEPS: usize = 1000;
@@ -23,7 +23,7 @@ const MAX_STEPS: usize = 1000;
 const MAX_CORRECTIONS: usize = 20;
 
 /// Weight of the correction of a measured coordinate, relative to the other coordinates.
-const MEASURED_SHARE: f64 = 1e-3;
+const MEASURED_WEIGHT: f64 = 1e-3;
 
 /// Singular value of the scaled constraints, relative to the largest, below which the constraints
 /// depend on each other.
@@ -55,16 +55,16 @@ impl MeasuredCoordinates {
         (t, inputs): (f64, &HeldInputs),
     ) -> Option<()> {
         let inputs = &inputs.evaluate(t);
-        let places = 0..self.sizes.len();
-        let places: Vec<usize> = places.filter(|place| self.is_measured[*place]).collect();
+        let indices = 0..self.sizes.len();
+        let indices: Vec<usize> = indices.filter(|index| self.is_measured[*index]).collect();
         let distance =
-            |place: &usize| (measured[*place] - state[*place]).abs() / self.sizes[*place];
-        let furthest = places.iter().map(distance).fold(0.0, f64::max);
-        let steps = ((furthest / LONGEST_STEP).ceil() as usize).clamp(1, MAX_STEPS);
+            |index: &usize| (measured[*index] - state[*index]).abs() / self.sizes[*index];
+        let furthest = indices.iter().map(distance).fold(0.0, f64::max);
+        let steps = ((furthest / MAX_STEP_IN_SIZES).ceil() as usize).clamp(1, MAX_STEPS);
         for step in 0..steps {
             let part = 1.0 / (steps - step) as f64;
-            for place in &places {
-                state[*place] += part * (measured[*place] - state[*place]);
+            for index in &indices {
+                state[*index] += part * (measured[*index] - state[*index]);
             }
             self.satisfy_constraints(state, (t, inputs))?;
         }
@@ -77,7 +77,7 @@ impl MeasuredCoordinates {
             let point = Point { t, state, inputs };
             let mut rows = self.rows.derivatives(point);
             let mut residuals = self.rows.residuals(point);
-            let shares = self.shares();
+            let shares = self.compute_weights();
             let all = rows.iter_mut().zip(&mut residuals).zip(&self.is_holonomic);
             for ((row, residual), is_holonomic) in all {
                 row.iter_mut()
@@ -94,9 +94,9 @@ impl MeasuredCoordinates {
             let least = MIN_SINGULAR_FRACTION * factors.singular_values.max();
             let change = factors.solve(&DVector::from_vec(residuals), least).ok()?;
             let mut largest = 0.0_f64;
-            for (place, (part, share)) in change.iter().zip(&shares).enumerate() {
-                state[place] -= part * share;
-                largest = largest.max((part * share / self.sizes[place]).abs());
+            for (index, (part, share)) in change.iter().zip(&shares).enumerate() {
+                state[index] -= part * share;
+                largest = largest.max((part * share / self.sizes[index]).abs());
             }
             if largest <= LAST_CORRECTION {
                 return Some(());
@@ -108,10 +108,10 @@ impl MeasuredCoordinates {
         None
     }
 
-    fn shares(&self) -> Vec<f64> {
+    fn compute_weights(&self) -> Vec<f64> {
         let sizes = self.sizes.iter().zip(&self.is_measured);
         let share = |(size, is_measured): (&f64, &bool)| match is_measured {
-            true => MEASURED_SHARE * size,
+            true => MEASURED_WEIGHT * size,
             false => *size,
         };
         sizes.map(share).collect()

@@ -24,7 +24,7 @@ pub(crate) enum Output {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ObservedAcceleration {
     /// Index of the derivative among the observables.
-    pub place: usize,
+    pub index: usize,
     /// Index of the differentiated observable. It contains rates.
     pub observable: usize,
 }
@@ -33,7 +33,7 @@ pub(crate) struct ObservedAcceleration {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MeasuredInput {
     /// Index of the input.
-    pub place: usize,
+    pub index: usize,
     /// Standard deviation of the noise of its sensor, SI.
     pub noise: f64,
 }
@@ -88,7 +88,7 @@ impl MeasuredOutputs {
     pub fn observable_values(&self, program: &Program) -> Vec<ValueId> {
         let of = |output: &Output| match output {
             Output::Observable(observable) => Some(program.observable_values[*observable]),
-            Output::Acceleration(of) => Some(program.observable_values[of.place]),
+            Output::Acceleration(of) => Some(program.observable_values[of.index]),
             Output::State(_) | Output::Rate(_) | Output::Input(_) => None,
         };
         self.outputs.iter().filter_map(of).collect()
@@ -194,7 +194,7 @@ impl MeasuredOutputs {
             Output::State(state) => point.state[state],
             Output::Observable(observable) => buffers.observables[observable],
             Output::Rate(state) => buffers.rates[state],
-            Output::Acceleration(of) => buffers.observables[of.place],
+            Output::Acceleration(of) => buffers.observables[of.index],
             Output::Input(input) => point.inputs[input],
         }));
     }
@@ -203,12 +203,12 @@ impl MeasuredOutputs {
 fn measured_inputs(channels: &[Channel]) -> Vec<MeasuredInput> {
     let mut found: Vec<MeasuredInput> = Vec::new();
     for channel in channels {
-        let Quantity::Input(place) = channel.quantity else {
+        let Quantity::Input(index) = channel.quantity else {
             continue;
         };
-        if found.iter().all(|known| known.place != place) {
+        if found.iter().all(|known| known.index != index) {
             found.push(MeasuredInput {
-                place,
+                index,
                 noise: channel.noise,
             });
         }

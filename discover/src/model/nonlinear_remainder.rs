@@ -20,7 +20,7 @@ impl NonlinearRemainder {
     pub fn new(whole: Evaluator, linear: Evaluator) -> Self {
         let states = whole.program().states();
         Self {
-            guards: corresponding_guards(&whole, &linear),
+            guards: match_guards(&whole, &linear),
             values: vec![0.0; whole.guard_count()],
             rates: [vec![0.0; states], vec![0.0; states]],
             whole,
@@ -32,7 +32,7 @@ impl NonlinearRemainder {
 /// Returns the index in the whole model of each guard of the linear part: the guard with the same
 /// formula, or else the next guard without a counterpart. `None` if all guards are equal, or if the
 /// numbers of guards without a counterpart differ.
-fn corresponding_guards(whole: &Evaluator, linear: &Evaluator) -> Option<Vec<usize>> {
+fn match_guards(whole: &Evaluator, linear: &Evaluator) -> Option<Vec<usize>> {
     let formulas = |model: &Evaluator| -> Vec<String> {
         let guards = model.program().guards.iter();
         guards.map(|guard| guard.formula.clone()).collect()
@@ -88,7 +88,7 @@ mod tests {
 
     use crate::model::estimation_model::EstimationModel;
     use crate::model::output_times::OutputRate;
-    use crate::model::simulation::NeighbourDrives;
+    use crate::model::simulation::TangentDrives;
     use eomgen_records::dataset::{Channel, Quantity, TransducerPriors};
     use eomgen_records::record::Record;
     use eomgen_sim::exponential::NoDrives;
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn teeth_touch_where_the_whole_model_says() {
+    fn contacts_match_whole_model() {
         let (integrated, with, record, channels, initial) = simulate_rig();
         let solved =
             EstimationModel::derive_equations(&with, "rig", Some(4), &channels).expect("a model");
@@ -165,14 +165,14 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_feel_what_is_beyond_the_linear_part() {
+    fn tangents_include_nonlinear_remainder() {
         let (integrated, _, record, _, initial) = simulate_rig();
         let mut simulation = integrated
             .create_simulation(&integrated.values)
             .expect("a simulation");
         // The teeth touch once and separate before the third sample.
         let times = &record.times[..4];
-        let free = NeighbourDrives {
+        let free = TangentDrives {
             count: 0,
             drives: &mut NoDrives,
         };

@@ -10,18 +10,18 @@ use eomgen_records::dataset::{Channel, Quantity};
 /// the derivative, if it measures one.
 pub(crate) fn add_observed_rates(model: &mut Model, channels: &[Channel]) -> Vec<Option<Output>> {
     let mut of = |channel: &Channel| match channel.quantity {
-        Quantity::ObservedRate(rate) => Some(add(model, rate)),
+        Quantity::ObservedRate(rate) => Some(add_rate(model, rate)),
         _ => None,
     };
     channels.iter().map(&mut of).collect()
 }
 
-fn add(model: &mut Model, rate: ObservedRate) -> Output {
+fn add_rate(model: &mut Model, rate: ObservedRate) -> Output {
     let observable = rate.observable;
     let holds_rate = model.contains_rate(&model.observables[observable].value);
-    let place = model.observe_rate(rate);
+    let index = model.observe_rate(rate);
     let of = match rate.times {
-        1 if !holds_rate => return Output::Observable(place),
+        1 if !holds_rate => return Output::Observable(index),
         1 => observable,
         _ => model.observe_rate(ObservedRate {
             observable,
@@ -29,7 +29,7 @@ fn add(model: &mut Model, rate: ObservedRate) -> Output {
         }),
     };
     Output::Acceleration(ObservedAcceleration {
-        place,
+        index,
         observable: of,
     })
 }
@@ -113,7 +113,7 @@ side = "sign(x)"
     }
 
     #[test]
-    fn derivatives_are_those_along_the_motion() {
+    fn derivatives_match_motion() {
         let (m, l, g, tau) = (2.0, 0.5, 9.81, 0.1);
         let (x, v, z, y): (f64, f64, f64, f64) = (0.7, -1.3, 0.9, 0.2);
         let [s_dot, s_ddot, u] = [0.4, -2.1, 3.0];
@@ -141,7 +141,7 @@ side = "sign(x)"
     }
 
     #[test]
-    fn derivatives_that_are_not_defined_are_refused() {
+    fn undefined_derivatives_are_rejected() {
         let reasons = [
             ("velocity", 2, "needs the rate of an acceleration"),
             ("torque", 2, "needs the rate of an input"),
@@ -151,14 +151,14 @@ side = "sign(x)"
         for (name, times, reason) in reasons {
             let channel = [channel(name, times)];
             let model = EstimationModel::derive_equations(SUPPORTED, "supported", None, &channel);
-            let message = model.err().expect("refused").to_string();
+            let message = model.err().expect("rejected").to_string();
             assert!(message.contains(reason), "{name} {times}: {message}");
             assert!(message.contains(name), "{message}");
         }
     }
 
     #[test]
-    fn accelerations_that_change_are_seen_at_once() {
+    fn changed_accelerations_affect_outputs_immediately() {
         let (l, x): (f64, f64) = (0.5, 0.7);
         let (state, inputs) = ([x, -1.3, 0.9, 0.2], [0.3, 0.4, -2.1, 3.0]);
         for (name, times, right) in [

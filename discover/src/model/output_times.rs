@@ -36,10 +36,10 @@ impl OutputRate {
             return Self(1);
         }
         let channels = dataset.channels.iter().enumerate();
-        let error = channels.map(|(place, channel)| {
+        let error = channels.map(|(index, channel)| {
             let records = dataset.train.iter();
-            let columns = records.map(|record| (&record.times[..], &record.channels[place][..]));
-            error_of_cubic(columns, channel.noise) / channel.noise
+            let columns = records.map(|record| (&record.times[..], &record.channels[index][..]));
+            estimate_cubic_error(columns, channel.noise) / channel.noise
         });
         let mut error = error.fold(0.0, f64::max);
         let mut rate = 1;
@@ -47,7 +47,7 @@ impl OutputRate {
             && rate < thresholds::MAX_OUTPUTS_PER_SAMPLE
         {
             rate *= 2;
-            error /= ORDER;
+            error /= CUBIC_ERROR_RATIO;
         }
         let jumps = dataset.channels.iter().zip(jump_errors);
         let mut jumps = jumps.map(|(channel, error)| error / channel.noise);
@@ -68,7 +68,7 @@ impl OutputRate {
         let mut times = Vec::with_capacity(self.0 * samples.len());
         for pair in samples.windows(2) {
             let step = (pair[1] - pair[0]) / self.0 as f64;
-            times.extend((0..self.0).map(|place| pair[0] + place as f64 * step));
+            times.extend((0..self.0).map(|index| pair[0] + index as f64 * step));
         }
         times.extend(samples.last());
         OutputTimes {
@@ -113,17 +113,20 @@ impl OutputTimes<'_> {
 const RATE_BETWEEN_SAMPLES: usize = 4;
 
 /// Ratio of the errors of a cubic for point distances of 2 h and h.
-const ORDER: f64 = 16.0;
+const CUBIC_ERROR_RATIO: f64 = 16.0;
 
 /// Returns the RMS error of a cubic through every second sample of a column, at the middle sample.
-fn error_of_cubic<'c>(columns: impl Iterator<Item = (&'c [f64], &'c [f64])>, noise: f64) -> f64 {
+fn estimate_cubic_error<'c>(
+    columns: impl Iterator<Item = (&'c [f64], &'c [f64])>,
+    noise: f64,
+) -> f64 {
     let (mut sum, mut expected, mut count) = (0.0, 0.0, 0.0);
     for (times, values) in columns {
         for middle in 3..times.len().saturating_sub(3) {
             let nodes = [middle - 3, middle - 1, middle + 1, middle + 3];
             let weights = nodes.map(|node| {
                 let others = nodes.iter().copied();
-                lagrange_weight(times, others, node, times[middle])
+                compute_lagrange_weight(times, others, node, times[middle])
             });
             let pairs = nodes.iter().zip(&weights);
             let between: f64 = pairs.map(|(node, weight)| weight * values[*node]).sum();
@@ -136,12 +139,12 @@ fn error_of_cubic<'c>(columns: impl Iterator<Item = (&'c [f64], &'c [f64])>, noi
         }
     }
     let square = (sum - noise * noise * expected) / f64::max(count, 1.0);
-    square.max(0.0).sqrt() / ORDER
+    square.max(0.0).sqrt() / CUBIC_ERROR_RATIO
 }
 
 /// Returns the weight of one of several points at a time, for the polynomial through all points
 /// (Lagrange).
-pub(crate) fn lagrange_weight(
+pub(crate) fn compute_lagrange_weight(
     times: &[f64],
     points: impl Iterator<Item = usize>,
     own: usize,
@@ -155,21 +158,21 @@ pub(crate) fn lagrange_weight(
 
 #[cfg(test)]
 mod tests {
-    use super::{OutputRate, error_of_cubic};
+    use super::{OutputRate, estimate_cubic_error};
 
     #[test]
-    fn the_error_of_a_sine_is_the_one_of_the_remainder() {
+    fn cubic_error_of_sine_matches_remainder_term() {
         // Error in the middle between samples with a distance of 0.1 rad: 9/16 of 0.1^4/24 of the
         // fourth derivative.
         let times: Vec<f64> = (0..2000).map(|i| 0.1 * f64::from(i)).collect();
         let values: Vec<f64> = times.iter().map(|t| t.sin()).collect();
-        let found = error_of_cubic(std::iter::once((&times[..], &values[..])), 0.0);
+        let found = estimate_cubic_error(std::iter::once((&times[..], &values[..])), 0.0);
         let expected = 9.0 / 16.0 * 1e-4 / 24.0 / f64::sqrt(2.0);
         assert!((found / expected - 1.0).abs() < 0.05, "{found} {expected}");
     }
 
     #[test]
-    fn samples_stand_among_the_times() {
+    fn output_times_contain_samples() {
         let samples = [0.0, 1.0, 3.0];
         let times = OutputRate(2).times(&samples);
         assert_eq!(*times.times, [0.0, 0.5, 1.0, 2.0, 3.0]);

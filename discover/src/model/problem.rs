@@ -67,7 +67,12 @@ impl TestCounter {
 
 /// Returns the interpolation error of each channel due to jumps of the inputs, SI. Empty if the
 /// motion is given or the text is invalid.
-fn jump_errors(dataset: &Dataset, order: Option<usize>, path: &str, text: &str) -> Vec<f64> {
+fn estimate_jump_errors(
+    dataset: &Dataset,
+    order: Option<usize>,
+    path: &str,
+    text: &str,
+) -> Vec<f64> {
     if dataset.gives_motion() {
         return Vec::new();
     }
@@ -93,7 +98,10 @@ impl<'d> EstimationProblem<'d> {
                 .iter()
                 .map(|channel| channel.noise)
                 .collect(),
-            output_rate: OutputRate::select(dataset, &jump_errors(dataset, order, path, text)),
+            output_rate: OutputRate::select(
+                dataset,
+                &estimate_jump_errors(dataset, order, path, text),
+            ),
             train: Windows::split_records(&dataset.train, dataset.window),
             test: Windows::split_records(&dataset.test, dataset.window),
             order,

@@ -65,7 +65,7 @@ pub struct Simulation<'m> {
 }
 
 /// Drives of tangent vectors: differences of accelerations.
-pub struct NeighbourDrives<'d> {
+pub struct TangentDrives<'d> {
     /// Number of drives.
     pub count: usize,
     /// Differences of accelerations along a motion.
@@ -285,7 +285,7 @@ impl<'m> Simulation<'m> {
         samples: &[f64],
         inputs: &HeldInputs,
         (by_state, by_parameter): (bool, usize),
-        driven: NeighbourDrives<'_>,
+        driven: TangentDrives<'_>,
     ) -> Option<LinearisedMotion> {
         self.check_may_simulate().ok()?;
         let linear_outputs = self.linear_outputs.as_ref()?;
@@ -386,14 +386,14 @@ impl<'m> Simulation<'m> {
         }
         let initial = &self.move_onto_constraints(initial, *begin, inputs)?;
         if let Some(longest_step) = self.longest_step {
-            return self.by_runge_kutta(initial, samples, inputs, longest_step);
+            return self.integrate_by_runge_kutta(initial, samples, inputs, longest_step);
         }
-        self.by_error_control(initial, samples, inputs)
+        self.integrate_with_error_control(initial, samples, inputs)
     }
 
     /// Returns the states at the samples by solvers with error control. If the explicit solver
     /// needs many steps per sample, the implicit solver is tried.
-    fn by_error_control(
+    fn integrate_with_error_control(
         &mut self,
         initial: &[f64],
         samples: &[f64],
@@ -416,9 +416,9 @@ impl<'m> Simulation<'m> {
                 .with_projection(self.constraints.take())
                 .with_sides(self.sided.take(), settings.tolerance);
             let mut trajectory = Trajectory::default();
-            let (span, asked) = ((samples[0], samples[samples.len() - 1]), samples);
-            let asked = (initial, span, asked);
-            let ended = simulate_into(&mut trajectory, &driven, asked, &settings, &mut |_| {});
+            let (span, requested) = ((samples[0], samples[samples.len() - 1]), samples);
+            let request = (initial, span, requested);
+            let ended = simulate_into(&mut trajectory, &driven, request, &settings, &mut |_| {});
             (self.sided, self.constraints) = driven.into_parts();
             self.work.add(trajectory.statistics.evaluations);
             match ended {
@@ -435,7 +435,7 @@ impl<'m> Simulation<'m> {
 
     /// Returns the states at the samples by classical Runge-Kutta steps up to the maximum step.
     /// Held inputs are read once per step.
-    fn by_runge_kutta(
+    fn integrate_by_runge_kutta(
         &mut self,
         initial: &[f64],
         samples: &[f64],
@@ -504,11 +504,11 @@ impl<'m> Simulation<'m> {
     ) -> Result<Motion, SimulationError> {
         let states = self.simulate_states(initial, samples, inputs)?;
         let mut outputs = Vec::with_capacity(samples.len() * self.measured.count());
-        self.look_at((samples, &states), inputs);
+        self.attach_sticking((samples, &states), inputs);
         for (t, state) in samples.iter().zip(&states) {
-            self.measure(*t, state, inputs, &mut outputs);
+            self.append_outputs(*t, state, inputs, &mut outputs);
         }
-        self.look_away();
+        self.detach_sticking();
         Ok(Motion { states, outputs })
     }
 
@@ -540,22 +540,22 @@ impl<'m> Simulation<'m> {
         let mut outputs = Outputs::default();
         let mut derivatives = Vec::with_capacity(samples.len() * count * channels);
         let mut moved = vec![0.0; count];
-        self.look_at((samples, &found.states), inputs);
+        self.attach_sticking((samples, &found.states), inputs);
         for ((t, state), tangents) in samples.iter().zip(&found.states).zip(&found.derivatives) {
             let here = outputs.values.len();
-            self.measure(*t, state, inputs, &mut outputs.values);
+            self.append_outputs(*t, state, inputs, &mut outputs.values);
             for (tangent, step) in tangents.iter().zip(steps) {
                 let sums = moved.iter_mut().zip(state).zip(tangent);
                 sums.for_each(|((slot, x), d)| *slot = x + step * d);
                 let there = derivatives.len();
-                self.measure(*t, &moved, inputs, &mut derivatives);
+                self.append_outputs(*t, &moved, inputs, &mut derivatives);
                 for channel in 0..channels {
                     let difference = derivatives[there + channel] - outputs.values[here + channel];
                     derivatives[there + channel] = difference / step;
                 }
             }
         }
-        self.look_away();
+        self.detach_sticking();
         outputs.end_state = found.states.into_iter().next_back().unwrap_or_default();
         Some(OutputTangents {
             outputs,
@@ -565,13 +565,13 @@ impl<'m> Simulation<'m> {
 
     /// Determines the sticking surfaces of a motion at the times at which its accelerations are
     /// measured.
-    fn look_at(&mut self, motion: (&[f64], &[Vec<f64>]), inputs: &HeldInputs) {
+    fn attach_sticking(&mut self, motion: (&[f64], &[Vec<f64>]), inputs: &HeldInputs) {
         let sided = self.resting.take();
         self.buffers.rest = sided.map(|sided| StickingMotion::new(sided, motion, inputs));
     }
 
     /// Removes the sticking surfaces of the motion.
-    fn look_away(&mut self) {
+    fn detach_sticking(&mut self) {
         self.resting = self
             .buffers
             .rest
@@ -580,7 +580,13 @@ impl<'m> Simulation<'m> {
     }
 
     /// Appends the channel values at a state.
-    fn measure(&mut self, t: f64, state: &[f64], inputs: &HeldInputs, values: &mut Vec<f64>) {
+    fn append_outputs(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        inputs: &HeldInputs,
+        values: &mut Vec<f64>,
+    ) {
         if let Some(linear_outputs) = &self.linear_outputs {
             linear_outputs.append(state, values);
             return;
@@ -674,7 +680,7 @@ push = { on = "x", value = "2*T - T*z/p" }
     }
 
     #[test]
-    fn simulations_beyond_the_limit_fail() {
+    fn simulations_beyond_the_work_limit_fail() {
         let mut model = stage();
         model.work = WorkLimit::new(100);
         let mut simulation = model

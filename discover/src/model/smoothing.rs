@@ -11,11 +11,11 @@ pub fn smooth_column(times: &[f64], column: &[f64]) -> Vec<f64> {
     let padding = values
         .len()
         .saturating_sub(1)
-        .min((3.0 / thresholds::SMOOTHING_CUT_OFF) as usize);
+        .min((3.0 / thresholds::SMOOTHING_CUT_OFF_FRACTION) as usize);
     let mut padded = reflect_ends(&values, padding);
-    low_pass(&mut padded);
+    filter_low_pass(&mut padded);
     padded.reverse();
-    low_pass(&mut padded);
+    filter_low_pass(&mut padded);
     padded.reverse();
     values.copy_from_slice(&padded[padding..padded.len() - padding]);
     values
@@ -65,8 +65,8 @@ fn reflect_ends(values: &[f64], padding: usize) -> Vec<f64> {
 
 /// Applies a second-order Butterworth low-pass filter (bilinear transform), which starts in
 /// equilibrium.
-fn low_pass(values: &mut [f64]) {
-    let c = 1.0 / (PI * thresholds::SMOOTHING_CUT_OFF).tan();
+fn filter_low_pass(values: &mut [f64]) {
+    let c = 1.0 / (PI * thresholds::SMOOTHING_CUT_OFF_FRACTION).tan();
     let a0 = 1.0 + 2f64.sqrt() * c + c * c;
     let (b0, a1, a2) = (
         1.0 / a0,
@@ -88,7 +88,7 @@ mod tests {
     use super::{differentiate_column, smooth_column};
 
     #[test]
-    fn a_slow_motion_passes_without_delay() {
+    fn slow_motion_passes_without_delay() {
         let times: Vec<f64> = (0..4000).map(|i| f64::from(i) * 1e-3).collect();
         let motion: Vec<f64> = times.iter().map(|t| (3.0 * t).sin()).collect();
         let smooth = smooth_column(&times, &motion);
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_sample_is_bridged() {
+    fn missing_sample_is_interpolated() {
         let times = [0.0, 1.0, 2.0, 3.0];
         let values = super::fill_missing(&times, &[1.0, f64::NAN, f64::NAN, 4.0]);
         assert_eq!(values, [1.0, 2.0, 3.0, 4.0]);

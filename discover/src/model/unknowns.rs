@@ -167,7 +167,7 @@ pub fn list_null_unknowns(
         .train
         .first()
         .map_or(0.0, |record: &Record| typical_step(&record.times));
-    unknowns.extend(of_input_delay(dataset, model, step));
+    unknowns.extend(create_input_delay_unknown(dataset, model, step));
     let ids = ChannelId::first(dataset.channels.len());
     for (id, channel) in ids.zip(&dataset.channels) {
         unknowns.extend(list_sensor_unknowns(id, channel, model, step));
@@ -176,7 +176,7 @@ pub fn list_null_unknowns(
 }
 
 /// Returns the delay of the input as an unknown, if the dataset declares its uncertainty.
-fn of_input_delay(dataset: &Dataset, model: &Model, step: f64) -> Option<Unknown> {
+fn create_input_delay_unknown(dataset: &Dataset, model: &Model, step: f64) -> Option<Unknown> {
     let (input, expected) = find_delayed_input(&dataset.inputs)?;
     let mean = expected_input_delay(&dataset.inputs, model);
     let late = Interval::new(-MAX_LEAD_SAMPLES * step, MAX_DELAY_SAMPLES * step);

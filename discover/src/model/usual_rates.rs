@@ -13,9 +13,9 @@ use eomgen_records::dataset::{Dataset, Quantity};
 pub fn compute_usual_rates(dataset: &Dataset, model: &Model) -> BTreeMap<String, f64> {
     let record = &dataset.train[0];
     let mut rates = BTreeMap::new();
-    for (place, coordinate) in dataset.motion.iter().enumerate() {
-        let slopes = record.given_motion_rate(place, dataset.motion.len(), model.inputs.len());
-        rates.insert(coordinate.clone(), root_mean_square(&slopes));
+    for (index, coordinate) in dataset.motion.iter().enumerate() {
+        let slopes = record.given_motion_rate(index, dataset.motion.len(), model.inputs.len());
+        rates.insert(coordinate.clone(), compute_rms(&slopes));
     }
     let channels = dataset.channels.iter().zip(&record.channels);
     for (channel, column) in channels {
@@ -37,11 +37,11 @@ pub fn compute_usual_rates(dataset: &Dataset, model: &Model) -> BTreeMap<String,
                 differentiate_column(&record.times, &smooth),
             ),
         };
-        rates.insert(name.clone(), root_mean_square(&slopes));
+        rates.insert(name.clone(), compute_rms(&slopes));
     }
     rates
 }
 
-fn root_mean_square(values: &[f64]) -> f64 {
+fn compute_rms(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
 }

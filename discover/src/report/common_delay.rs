@@ -21,7 +21,7 @@ pub(crate) fn note_common_delay(problem: &EstimationProblem<'_>, fit: &Fit) -> O
     let delays = fit
         .unknowns()
         .filter(|(_, unknown)| matches!(unknown.kind, UnknownKind::Delay(_)));
-    let delays: Vec<f64> = delays.filter_map(|of| lateness(fit, of)).collect();
+    let delays: Vec<f64> = delays.filter_map(|of| find_delay(fit, of)).collect();
     let (least, most) = (delays.iter()).fold((f64::INFINITY, 0.0_f64), |(least, most), delay| {
         (least.min(*delay), most.max(*delay))
     });
@@ -37,9 +37,9 @@ pub(crate) fn note_common_delay(problem: &EstimationProblem<'_>, fit: &Fit) -> O
 }
 
 /// Returns the delay of a channel, s, if it was found as an effect or is at the bound of its prior.
-fn lateness(fit: &Fit, (id, unknown): (UnknownId, &Unknown)) -> Option<f64> {
+fn find_delay(fit: &Fit, (id, unknown): (UnknownId, &Unknown)) -> Option<f64> {
     let value = fit.train.estimate.theta[id];
     let reach = thresholds::BOUND_FRACTION * thresholds::MAX_PRIOR_DEVIATION;
-    let is_off = |prior: NormalPrior| value - prior.mean >= reach * prior.sd;
-    (value > 0.0 && unknown.prior.is_none_or(is_off)).then_some(value)
+    let is_beyond_prior = |prior: NormalPrior| value - prior.mean >= reach * prior.sd;
+    (value > 0.0 && unknown.prior.is_none_or(is_beyond_prior)).then_some(value)
 }

@@ -32,7 +32,7 @@ pub(crate) fn compute_gap(
         train: fit.train.channel_rms[channel],
         test: fit.test.channel_rms[channel],
     };
-    by_channel(problem, |channel, entry| ChannelGap {
+    map_channels(problem, |channel, entry| ChannelGap {
         unit: entry.unit.clone(),
         floor: floor.channels[channel],
         before: of(before, channel),
@@ -71,7 +71,7 @@ pub(crate) fn summarise_effects(
     effects
         .map(|(effect, next)| FoundEffect {
             next_experiment: next.clone(),
-            ..found_effect(problem, found.best_fit(), effect, certainty)
+            ..create_found_effect(problem, found.best_fit(), effect, certainty)
         })
         .collect()
 }
@@ -83,31 +83,32 @@ pub(crate) fn list_rejected(
     experiments: &Experiments,
     not_testable: bool,
 ) -> Vec<RejectedEffect> {
-    let such = found.rejected.iter().zip(&experiments.for_rejected);
-    let such = such.filter(|(rejected, _)| rejected.is_untestable == not_testable);
+    let rejected = found.rejected.iter().zip(&experiments.for_rejected);
+    let rejected = rejected.filter(|(rejected, _)| rejected.is_untestable == not_testable);
     // Accepted effects and members of their classes are left out, because a later round tests them
     // again as a second effect.
-    let is_believed = |of: &RejectedCandidate| {
+    let is_accepted = |of: &RejectedCandidate| {
         let accepted = found.accepted.iter();
-        let mut believed = accepted
+        let mut accepted_candidates = accepted
             .flat_map(|effect| std::iter::once(&effect.candidate).chain(&effect.equivalents));
-        believed.any(|known| known.is_same_effect_as(&of.candidate))
+        accepted_candidates.any(|known| known.is_same_effect_as(&of.candidate))
     };
-    let such = such.filter(|(rejected, _)| !is_believed(rejected));
-    such.map(|(of, next)| RejectedEffect {
-        at: EffectSite {
-            effect: of.candidate.effect.clone(),
-            site: of.candidate.site.clone(),
-            // The order is part of the reason.
-            order: None,
-        },
-        reason: reason(of),
-        best_reduction: of.best_reduction,
-        experiment: of.candidate.experiment.clone(),
-        next_experiment: next.clone(),
-        p_values: of.p_value.map(|p| (p, judged.adjust_p_value(p))),
-    })
-    .collect()
+    let rejected = rejected.filter(|(rejected, _)| !is_accepted(rejected));
+    rejected
+        .map(|(of, next)| RejectedEffect {
+            at: EffectSite {
+                effect: of.candidate.effect.clone(),
+                site: of.candidate.site.clone(),
+                // The order is part of the reason.
+                order: None,
+            },
+            reason: describe_reason(of),
+            best_reduction: of.best_reduction,
+            experiment: of.candidate.experiment.clone(),
+            next_experiment: next.clone(),
+            p_values: of.p_value.map(|p| (p, judged.adjust_p_value(p))),
+        })
+        .collect()
 }
 
 /// Returns the RMS residual of the test records for the original model and after each round.
@@ -127,7 +128,7 @@ pub(crate) fn list_steps(found: &SearchResult) -> Vec<SearchStep> {
 }
 
 /// Returns the reason for the rejection of a candidate, with its order or load.
-fn reason(rejected: &RejectedCandidate) -> String {
+fn describe_reason(rejected: &RejectedCandidate) -> String {
     let RejectedCandidate {
         candidate, reason, ..
     } = rejected;
@@ -154,7 +155,7 @@ pub(crate) fn compute_closure(
     }
 }
 
-fn found_effect(
+fn create_found_effect(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     effect: &AcceptedEffect,
@@ -342,7 +343,7 @@ pub(crate) fn list_sensors(
 ) -> BTreeMap<String, SensorEstimate> {
     let shooting = fit.training_shooting(problem);
     let sensors = shooting.sensor_values(&fit.train.estimate.theta);
-    by_channel(problem, |channel, _| SensorEstimate {
+    map_channels(problem, |channel, _| SensorEstimate {
         bias: sensors.bias[channel],
         gain: sensors.gain[channel],
         delay: sensors.delay[channel],
@@ -350,7 +351,7 @@ pub(crate) fn list_sensors(
 }
 
 /// Returns a map with an entry for each channel.
-fn by_channel<T>(
+fn map_channels<T>(
     problem: &EstimationProblem<'_>,
     of: impl Fn(ChannelId, &Channel) -> T,
 ) -> BTreeMap<String, T> {

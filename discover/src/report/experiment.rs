@@ -34,7 +34,7 @@ pub(crate) fn describe_experiment(next: &NextExperiment, files: &[ExperimentFile
         );
     };
     let played = format!("Play {}: {form} on {input}.", file.name);
-    let told = match &next.detectable {
+    let result = match &next.detectable {
         Some(shown) => format!(
             "Predicted smallest detectable value of {}: {}.",
             shown.parameter,
@@ -44,18 +44,18 @@ pub(crate) fn describe_experiment(next: &NextExperiment, files: &[ExperimentFile
             "Predicted residual of a wrong effect: at least {size} standard deviations of the noise."
         ),
     };
-    format!("{played} {told}{}{bounds}", not_told(next))
+    format!("{played} {result}{}{bounds}", describe_unseparated(next))
 }
 
 /// Describes the pairs that an experiment does not separate, in a sentence.
-fn not_told(next: &NextExperiment) -> String {
+fn describe_unseparated(next: &NextExperiment) -> String {
     // Each pair occurs twice in succession, in both orders.
     let pairs = next.pairs.chunks_exact(2);
-    let is_told = |pair: &&[MemberPair]| {
+    let is_separated = |pair: &&[MemberPair]| {
         pair.iter()
             .all(|of| of.separation >= thresholds::MIN_SEPARATION_IN_NOISE)
     };
-    let left = pairs.filter(|pair| !is_told(pair));
+    let left = pairs.filter(|pair| !is_separated(pair));
     let left = left.map(|pair| format!("{} from {}", pair[0].truth.label(), pair[0].rival.label()));
     match left.collect::<Vec<String>>() {
         left if left.is_empty() => String::new(),
@@ -76,7 +76,7 @@ pub(crate) fn draw_experiments(
         &html! {
             @for file in files {
                 h3 { code { (file.name) } }
-                (figure_of(file, &problem.dataset.channels, &problem.noise))
+                (draw_experiment(file, &problem.dataset.channels, &problem.noise))
             }
             p.note {
                 "Predicted sensor outputs without noise, of one model and of the other after a fit to them and "
@@ -86,7 +86,7 @@ pub(crate) fn draw_experiments(
     )
 }
 
-fn figure_of(file: &ExperimentFile, channels: &[Channel], noise: &[f64]) -> Markup {
+fn draw_experiment(file: &ExperimentFile, channels: &[Channel], noise: &[f64]) -> Markup {
     let [first, second] = &file.predictions;
     let columns = first.iter().zip(second);
     let differences: Vec<Vec<f64>> = columns
@@ -99,25 +99,25 @@ fn figure_of(file: &ExperimentFile, channels: &[Channel], noise: &[f64]) -> Mark
         vec![series(&file.input, &file.values)],
         Vec::new(),
     )];
-    for (place, channel) in channels.iter().enumerate() {
+    for (index, channel) in channels.iter().enumerate() {
         let named = || (channel.name.clone(), channel.unit.clone());
         panels.push((
             format!("{}: predicted", channel.name),
             named(),
             vec![
-                series(&file.members[0], &first[place]),
-                series(&file.members[1], &second[place]),
+                series(&file.members[0], &first[index]),
+                series(&file.members[1], &second[index]),
             ],
             Vec::new(),
         ));
         let band = [1.0, -1.0].map(|sign| Reference {
             label: if sign > 0.0 { "noise" } else { "" }.to_owned(),
-            value: sign * noise[place],
+            value: sign * noise[index],
         });
         panels.push((
             format!("{}: difference", channel.name),
             named(),
-            vec![series("difference", &differences[place])],
+            vec![series("difference", &differences[index])],
             band.to_vec(),
         ));
     }

@@ -24,7 +24,7 @@ pub(crate) fn note_held_input(problem: &EstimationProblem<'_>, fit: &Fit) -> Opt
         && record
             .input_columns
             .iter()
-            .all(|column| changing_fraction(column) > thresholds::MIN_CHANGING_FRACTION);
+            .all(|column| compute_changing_fraction(column) > thresholds::MIN_CHANGING_FRACTION);
     (delays.len() == problem.noise.len() && is_half && is_smooth).then(|| {
         format!(
             "all channels lead by about {:.2} ms, half the interval of {:.2} ms between the samples: recorded inputs \
@@ -44,17 +44,17 @@ fn is_half_interval_lead(delay: f64, sd: f64, interval: f64) -> bool {
 }
 
 /// Returns the fraction of the samples that differ from the preceding sample.
-fn changing_fraction(column: &[f64]) -> f64 {
+fn compute_changing_fraction(column: &[f64]) -> f64 {
     let changes = column.windows(2).filter(|pair| pair[0] != pair[1]);
     changes.count() as f64 / column.len().saturating_sub(1).max(1) as f64
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{changing_fraction, is_half_interval_lead};
+    use super::{compute_changing_fraction, is_half_interval_lead};
 
     #[test]
-    fn lead_within_three_standard_deviations_of_zero_is_no_lead() {
+    fn lead_below_three_standard_deviations_is_not_significant() {
         assert!(is_half_interval_lead(-2.5e-3, 0.8e-3, 5e-3));
         assert!(!is_half_interval_lead(-2.5e-3, 0.9e-3, 5e-3));
         assert!(!is_half_interval_lead(2.5e-3, 0.1e-3, 5e-3));
@@ -63,8 +63,8 @@ mod tests {
 
     #[test]
     fn steps_change_at_few_samples() {
-        assert_eq!(changing_fraction(&[0.0, 0.0, 1.0, 1.0, 1.0]), 0.25);
-        assert_eq!(changing_fraction(&[0.0, 1.0, 2.0]), 1.0);
-        assert_eq!(changing_fraction(&[]), 0.0);
+        assert_eq!(compute_changing_fraction(&[0.0, 0.0, 1.0, 1.0, 1.0]), 0.25);
+        assert_eq!(compute_changing_fraction(&[0.0, 1.0, 2.0]), 1.0);
+        assert_eq!(compute_changing_fraction(&[]), 0.0);
     }
 }

@@ -12,7 +12,7 @@ use crate::thresholds;
 pub(crate) fn note_high_floor(problem: &EstimationProblem<'_>, floor: &NoiseFloor) -> Vec<String> {
     let channels = ChannelId::first(problem.noise.len()).zip(&problem.dataset.channels);
     let note = |(id, channel): (ChannelId, &eomgen_records::dataset::Channel)| {
-        let (floor, deviation) = (floor.channels[id], standard_deviation(problem, id));
+        let (floor, deviation) = (floor.channels[id], compute_standard_deviation(problem, id));
         let is_noise = floor <= thresholds::MAX_FLOORS_OF_CORRECT_MODEL * channel.noise;
         (floor > deviation && !is_noise).then(|| {
             let [floor, deviation, noise] = [floor, deviation, channel.noise]
@@ -20,7 +20,7 @@ pub(crate) fn note_high_floor(problem: &EstimationProblem<'_>, floor: &NoiseFloo
             format!(
                 "the noise floor of `{}` is {floor}, its noise {noise} and the standard deviation of its records \
                  {deviation}: the motion amplifies the noise so much that no missing effect can be shown in this \
-                 channel; write a shorter [windows] length",
+                 channel; use a shorter `length` in [windows]",
                 channel.name
             )
         })
@@ -30,7 +30,7 @@ pub(crate) fn note_high_floor(problem: &EstimationProblem<'_>, floor: &NoiseFloo
 
 /// Returns the standard deviation of a channel in the training records, relative to the mean of
 /// each record, SI.
-fn standard_deviation(problem: &EstimationProblem<'_>, channel: ChannelId) -> f64 {
+fn compute_standard_deviation(problem: &EstimationProblem<'_>, channel: ChannelId) -> f64 {
     let (mut squares, mut count) = (0.0, 0.0);
     for record in &problem.dataset.train {
         let column = record.channels[channel].iter().copied();

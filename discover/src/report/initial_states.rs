@@ -46,9 +46,9 @@ fn describe(
     let channel = &dataset.channels[index];
     let degrees = model.degrees_of_freedom();
     let (value, rate) = match channel.quantity {
-        Quantity::Coordinate(place) => (stated[place], stated[degrees + place]),
-        Quantity::Rate(place) => (stated[degrees + place], 0.0),
-        Quantity::State(place) => (stated[2 * degrees + place], 0.0),
+        Quantity::Coordinate(index) => (stated[index], stated[degrees + index]),
+        Quantity::Rate(index) => (stated[degrees + index], 0.0),
+        Quantity::State(index) => (stated[2 * degrees + index], 0.0),
         _ => return None,
     };
     let sensor = model.sensors[index];

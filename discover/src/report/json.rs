@@ -35,7 +35,7 @@ impl Comparison {
                 "test": gap.before.test,
             })
         };
-        let mut document = common(&self.compared, gap);
+        let mut document = write_common(&self.compared, gap);
         document["verdict"] = json!(self.verdict_name());
         document["summary"] = json!(Summary::from_comparison(self).to_text());
         document
@@ -49,13 +49,13 @@ impl Discovery {
             json!({
                 "unit": gap.unit,
                 "floor": gap.floor,
-                "before": on_records(gap.before),
-                "after": gap.after.map(on_records),
+                "before": write_train_test(gap.before),
+                "after": gap.after.map(write_train_test),
             })
         };
-        let mut document = common(&self.compared, gap);
+        let mut document = write_common(&self.compared, gap);
         let effects: Vec<Value> = (self.effects.iter())
-            .map(|of| effect(of, &self.experiments))
+            .map(|of| write_effect(of, &self.experiments))
             .collect();
         let rejected = self.rejected.iter().map(|r| write_rejected(r, None));
         let not_testable = self.untestable.iter();
@@ -66,8 +66,8 @@ impl Discovery {
         document["rejected"] = Value::Array(rejected.collect());
         document["not_testable"] = Value::Array(not_testable.collect());
         document["closure"] = json!({"train": self.closure.train, "test": self.closure.test});
-        document["steps"] = self.steps();
-        document["validation"] = self.validation();
+        document["steps"] = self.write_steps();
+        document["validation"] = self.write_validation();
         document["curve"] = self.curve.as_ref().map_or(Value::Null, write_curve);
         document["unfinished"] = json!(self.unfinished);
         document
@@ -75,7 +75,7 @@ impl Discovery {
 
     /// Returns the RMS residual of the test records after each step, in standard deviations of the
     /// noise.
-    fn steps(&self) -> Value {
+    fn write_steps(&self) -> Value {
         let step = |step: &crate::report::result::SearchStep| json!({"added": step.added, "test_rms_over_noise": step.test_rms});
         let mut steps: Vec<Value> = self.steps.iter().map(step).collect();
         if let Some(last) = steps.last_mut() {
@@ -84,7 +84,7 @@ impl Discovery {
         Value::Array(steps)
     }
 
-    fn validation(&self) -> Value {
+    fn write_validation(&self) -> Value {
         let found = |found: &crate::report::result::Validation| {
             json!({
                 "passed": found.has_passed,
@@ -112,7 +112,7 @@ fn write_curve(curve: &Curve) -> Value {
 }
 
 /// Returns the fields that both documents have.
-fn common(compared: &CommonResult, gap: impl Fn(&ChannelGap) -> Value) -> Value {
+fn write_common(compared: &CommonResult, gap: impl Fn(&ChannelGap) -> Value) -> Value {
     let gaps = compared
         .gap
         .iter()
@@ -127,7 +127,7 @@ fn common(compared: &CommonResult, gap: impl Fn(&ChannelGap) -> Value) -> Value 
     })
 }
 
-fn on_records(both: TrainTest<f64>) -> Value {
+fn write_train_test(both: TrainTest<f64>) -> Value {
     json!({"train": both.train, "test": both.test})
 }
 
@@ -169,12 +169,12 @@ fn write_rejected(of: &RejectedEffect, files: Option<&[ExperimentFile]>) -> Valu
     let Some(files) = files else { return entry };
     entry["experiment"] = json!(of.experiment);
     if let Some(next) = &of.next_experiment {
-        entry["next_experiment"] = next_experiment(next, files);
+        entry["next_experiment"] = write_next_experiment(next, files);
     }
     entry
 }
 
-fn effect(of: &FoundEffect, files: &[ExperimentFile]) -> Value {
+fn write_effect(of: &FoundEffect, files: &[ExperimentFile]) -> Value {
     let mut entry = write_site(&of.at);
     entry["status"] = json!(of.status.name());
     entry["equivalent"] = of.equivalents.iter().map(write_site).collect();
@@ -195,13 +195,13 @@ fn effect(of: &FoundEffect, files: &[ExperimentFile]) -> Value {
         entry["experiment"] = json!(experiment);
     }
     if let Some(next) = &of.next_experiment {
-        entry["next_experiment"] = next_experiment(next, files);
+        entry["next_experiment"] = write_next_experiment(next, files);
     }
     entry
 }
 
 /// Returns a proposed experiment, for `next_experiment`.
-fn next_experiment(next: &NextExperiment, files: &[ExperimentFile]) -> Value {
+fn write_next_experiment(next: &NextExperiment, files: &[ExperimentFile]) -> Value {
     let member = |of: &ClassMember| json!({"effect": of.effect, "on": of.site});
     let pair = |pair: &MemberPair| {
         json!({

@@ -16,7 +16,7 @@ pub fn describe_location(
     fit: &Fit,
     force: Option<&ResidualForce>,
 ) -> String {
-    let channel = by_channel(problem, fit);
+    let channel = describe_channel(problem, fit);
     match force {
         Some(force) => format!("{} {channel}", describe_residual_force(force)),
         None => channel,
@@ -24,7 +24,7 @@ pub fn describe_location(
 }
 
 /// Describes the channel with the largest difference, with time, speed and frequency.
-fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
+fn describe_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
     let count = problem.noise.len();
     let normalised_rms: Vec<f64> = fit
         .train
@@ -59,7 +59,7 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
             record.name
         );
     }
-    if let Some(more) = by_speed(problem, fit, worst) {
+    if let Some(more) = describe_speed_dependence(problem, fit, worst) {
         text += &more;
     }
     match find_training_peak(problem, fit, worst) {
@@ -71,7 +71,7 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
             );
         }
         Some(SpectralPeak::BelowResolution) => {
-            text += " Most of it is slower than three periods per window.";
+            text += " Most of it has frequencies below three periods per window.";
         }
         None => {}
     }
@@ -93,7 +93,11 @@ pub(crate) fn find_worst_window(problem: &EstimationProblem<'_>, fit: &Fit) -> O
 }
 
 /// Describes whether the residual of a channel depends on its speed.
-fn by_speed(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> Option<String> {
+fn describe_speed_dependence(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    channel: ChannelId,
+) -> Option<String> {
     let count = problem.noise.len();
     let mut pairs: Vec<(f64, f64)> = Vec::new();
     for (window, residual) in problem

@@ -18,7 +18,7 @@ pub(crate) fn note_motion_noise(problem: &EstimationProblem<'_>, fit: &Fit) -> V
         (found > channel.noise).then(|| {
             format!(
                 "noise of the motion causes noise of {found:.1e} {unit} in the computed `{}`, and its declared \
-                 noise is {:.1e} {unit}: keep fewer samples, [time] every, or measure the motion more accurately",
+                 noise is {:.1e} {unit}: keep fewer samples with `every` in [time], or measure the motion more accurately",
                 channel.name,
                 channel.noise,
                 unit = channel.unit

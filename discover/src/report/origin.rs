@@ -64,18 +64,18 @@ impl Origin {
         let now = SystemTime::now().duration_since(UNIX_EPOCH);
         Self {
             version: env!("CARGO_PKG_VERSION"),
-            date: date(now.map_or(0, |since| since.as_secs()) / SECONDS_OF_A_DAY),
+            date: format_date(now.map_or(0, |since| since.as_secs()) / SECONDS_PER_DAY),
             seed,
             files,
         }
     }
 }
 
-const SECONDS_OF_A_DAY: u64 = 86_400;
+const SECONDS_PER_DAY: u64 = 86_400;
 
 /// Returns the Gregorian date for a number of days after 1970-01-01. The computation uses eras of
 /// 400 years that begin in March; a leap day is then the last day of its year.
-fn date(days: u64) -> String {
+fn format_date(days: u64) -> String {
     let days = days + 719_468;
     let (era, day) = (days / 146_097, days % 146_097);
     let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
@@ -92,10 +92,10 @@ fn date(days: u64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::date;
+    use super::format_date;
 
     #[test]
-    fn days_are_dates() {
+    fn days_are_formatted_as_dates() {
         for (days, expected) in [
             (0, "1970-01-01"),
             (11_016, "2000-02-29"),
@@ -105,7 +105,7 @@ mod tests {
             (47_540, "2100-02-28"),
             (47_541, "2100-03-01"),
         ] {
-            assert_eq!(date(days), expected);
+            assert_eq!(format_date(days), expected);
         }
     }
 }

@@ -24,19 +24,19 @@ pub(crate) fn draw_overlays(
     before: &Fit,
     after: Option<&Fit>,
 ) -> Markup {
-    let test = fits(before, after, |fit| &fit.test);
-    let seen = Seen::of(problem, (&problem.test, 0), &test);
+    let test = list_residuals(before, after, |fit| &fit.test);
+    let seen = RecordColumns::from_records(problem, (&problem.test, 0), &test);
     let caption = format!(
         "{}, which was not used in the fit.",
         name_record(&problem.test.records[0])
     );
-    let whole = seen.drawn(0..seen.times.len(), &caption);
-    let train = fits(before, after, |fit| &fit.train);
+    let whole = seen.draw(0..seen.times.len(), &caption);
+    let train = list_residuals(before, after, |fit| &fit.train);
     // The figure shows the window that is named in the text about the location of the difference.
     let worst = find_worst_window(problem, before).unwrap_or(WindowId::new(0));
     let record = problem.train.windows[worst].record;
-    let trained = Seen::of(problem, (&problem.train, record), &train);
-    let stretch = trained.stretch(&problem.train, &problem.train.windows[worst]);
+    let trained = RecordColumns::from_records(problem, (&problem.train, record), &train);
+    let stretch = trained.choose_samples(&problem.train, &problem.train.windows[worst]);
     let caption = format!(
         "{}, which was used in the fit.",
         name_record(&problem.train.records[record])
@@ -45,13 +45,13 @@ pub(crate) fn draw_overlays(
         (whole)
         @if !stretch.is_empty() {
             h3 { "Largest residual of the original model" }
-            (trained.drawn(stretch, &caption))
+            (trained.draw(stretch, &caption))
         }
     }
 }
 
 /// Returns the residuals of the original and the extended model on one set of records.
-fn fits<'f>(
+fn list_residuals<'f>(
     before: &'f Fit,
     after: Option<&'f Fit>,
     of: fn(&Fit) -> &Residuals,
@@ -62,7 +62,7 @@ fn fits<'f>(
 }
 
 /// Measured and simulated columns of one record.
-struct Seen {
+struct RecordColumns {
     times: Vec<f64>,
     channels: Vec<Channel>,
 }
@@ -77,9 +77,9 @@ struct Channel {
     simulated: Vec<(SeriesRole, Vec<f64>)>,
 }
 
-impl Seen {
+impl RecordColumns {
     /// Returns the columns of a record, simulated with each model.
-    fn of(
+    fn from_records(
         problem: &EstimationProblem<'_>,
         (set, record): (&Windows<'_>, usize),
         fits: &[(SeriesRole, &Residuals)],
@@ -90,12 +90,12 @@ impl Seen {
         };
         let count = problem.noise.len();
         let channels = problem.dataset.channels.iter().zip(&problem.noise);
-        let channels = channels.enumerate().map(|(place, (channel, noise))| {
-            let measured = |window: &Window| column(&window.measured, place, count);
+        let channels = channels.enumerate().map(|(index, (channel, noise))| {
+            let measured = |window: &Window| extract_column(&window.measured, index, count);
             let simulated = |fit: &Residuals| -> Vec<f64> {
                 let of = |(at, window): (usize, &Window)| {
                     let residuals =
-                        channel_residuals(window, &fit.window_residuals[at], (place, count));
+                        channel_residuals(window, &fit.window_residuals[at], (index, count));
                     let pairs = measured(window).into_iter().zip(residuals);
                     pairs
                         .map(|(measured, residual)| measured + noise * residual)
@@ -124,7 +124,7 @@ impl Seen {
 
     /// Returns the samples of a window to be drawn. In a long window, they are centred at the
     /// largest difference of the original model, relative to the noise.
-    fn stretch(&self, set: &Windows<'_>, window: &Window) -> std::ops::Range<usize> {
+    fn choose_samples(&self, set: &Windows<'_>, window: &Window) -> std::ops::Range<usize> {
         let samples = self.times.len();
         let begin = set.file_times(window).next().unwrap_or_default();
         let first = self.times.partition_point(|t| *t < begin);
@@ -133,7 +133,7 @@ impl Seen {
             .max(MIN_ENLARGED_SAMPLES)
             .min(samples);
         let length = inside.len().clamp(MIN_ENLARGED_SAMPLES.min(samples), most);
-        let off = |sample: usize| {
+        let squared_difference = |sample: usize| {
             let of = |channel: &Channel| {
                 let difference = channel.simulated[0].1[sample] - channel.measured[sample];
                 (difference / channel.noise).powi(2)
@@ -144,7 +144,7 @@ impl Seen {
         let middle = match inside.len() > length {
             true => inside
                 .clone()
-                .max_by(|a, b| off(*a).total_cmp(&off(*b)))
+                .max_by(|a, b| squared_difference(*a).total_cmp(&squared_difference(*b)))
                 .unwrap_or(first),
             false => first + inside.len() / 2,
         };
@@ -153,7 +153,7 @@ impl Seen {
     }
 
     /// Draws a panel for each channel. The measured curve is below the simulated curves.
-    fn drawn(&self, samples: std::ops::Range<usize>, caption: &str) -> Markup {
+    fn draw(&self, samples: std::ops::Range<usize>, caption: &str) -> Markup {
         let times = &self.times[samples.clone()];
         let panel = |channel: &'_ Channel| {
             let measured = (
@@ -200,7 +200,7 @@ impl Seen {
 }
 
 /// Returns one channel of samples stored in rows.
-fn column(rows: &[f64], channel: usize, channels: usize) -> Vec<f64> {
+fn extract_column(rows: &[f64], channel: usize, channels: usize) -> Vec<f64> {
     rows.iter()
         .skip(channel)
         .step_by(channels)

@@ -98,7 +98,7 @@ pub(crate) fn draw_residuals(
         .flat_map(|w| problem.test.file_times(w))
         .collect();
     let column = |fit: &Fit, channel: usize| -> Vec<f64> {
-        let windows = windows_of_first_record(problem, fit);
+        let windows = list_windows_of_first_record(problem, fit);
         let columns =
             windows.map(|(window, residual)| channel_residuals(window, residual, (channel, count)));
         columns
@@ -160,7 +160,7 @@ pub(crate) fn draw_residuals(
         .enumerate()
         .map(|(channel, (scale, _))| {
             let of = |(role, fit): &(SeriesRole, &Fit)| {
-                (*role, density(problem, fit, (channel, *scale)))
+                (*role, compute_density(problem, fit, (channel, *scale)))
             };
             fits.iter().map(of).collect()
         })
@@ -175,7 +175,7 @@ pub(crate) fn draw_residuals(
             .map(|(((name, _), (_, unit)), series)| Panel {
                 title: format!("{name}: power spectral density of the residual"),
                 quantity: "density".to_owned(),
-                unit: density_unit(unit),
+                unit: format_density_unit(unit),
                 series: series
                     .iter()
                     .map(|(role, spectrum)| Series {
@@ -201,7 +201,7 @@ pub(crate) fn draw_residuals(
 }
 
 /// Returns the unit of the spectral density of a quantity with the given unit.
-fn density_unit(unit: &str) -> String {
+fn format_density_unit(unit: &str) -> String {
     match unit {
         "" => "1/Hz".to_owned(),
         unit if unit.chars().all(char::is_alphabetic) => format!("{unit}²/Hz"),
@@ -210,7 +210,7 @@ fn density_unit(unit: &str) -> String {
 }
 
 /// Returns the windows of the first test record with their residuals.
-fn windows_of_first_record<'a>(
+fn list_windows_of_first_record<'a>(
     problem: &'a EstimationProblem<'_>,
     fit: &'a Fit,
 ) -> impl Iterator<Item = (&'a Window, &'a [f64])> {
@@ -221,12 +221,12 @@ fn windows_of_first_record<'a>(
 
 /// Returns the spectrum of the residuals of a channel in the windows of the first test record, in
 /// units of `scale`. It does not contain the density at 0 Hz. Empty if the windows are too short.
-fn density(
+fn compute_density(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     (channel, scale): (usize, f64),
 ) -> PowerSpectrum {
-    let windows: Vec<_> = windows_of_first_record(problem, fit).collect();
+    let windows: Vec<_> = list_windows_of_first_record(problem, fit).collect();
     let Some((mut spectrum, _)) = compute_residual_spectrum(&windows, channel, problem.noise.len())
     else {
         return PowerSpectrum::default();
@@ -243,7 +243,7 @@ fn density(
 
 #[cfg(test)]
 mod tests {
-    use super::density_unit;
+    use super::format_density_unit;
 
     #[test]
     fn density_has_the_square_of_the_scaled_unit() {
@@ -254,7 +254,7 @@ mod tests {
             ("rad/s", "(rad/s)²/Hz"),
             ("", "1/Hz"),
         ] {
-            assert_eq!(density_unit(unit), expected);
+            assert_eq!(format_density_unit(unit), expected);
         }
     }
 }

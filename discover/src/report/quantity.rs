@@ -4,13 +4,13 @@
 use eomgen_plot::scaled_unit;
 
 /// Maximum number of digits after the first one.
-const MOST_DIGITS: i32 = 6;
+const MAX_DIGITS: i32 = 6;
 
 /// Magnitudes that are formatted in the unit without a prefix.
-const PLAIN: std::ops::Range<f64> = 0.1..1e4;
+const UNSCALED_MAGNITUDES: std::ops::Range<f64> = 0.1..1e4;
 
 /// Magnitudes that are formatted without a power of ten, for units without prefixes.
-const PLAIN_WITHOUT_PREFIX: std::ops::Range<f64> = 1e-3..1e5;
+const UNSCALED_WITHOUT_PREFIX: std::ops::Range<f64> = 1e-3..1e5;
 
 /// Formats a value with its standard deviation: `12.03 ± 0.02 N`. The deviation has one digit, or
 /// two if the first is 1. An unknown deviation is omitted.
@@ -22,15 +22,15 @@ pub(crate) fn format_estimate(value: f64, sd: f64, unit: &str) -> String {
         return "not known".to_owned();
     }
     let base = unit;
-    let (scale, unit) = multiple(value.abs().max(sd), base);
+    let (scale, unit) = choose_multiple(value.abs().max(sd), base);
     let (value, sd) = (value / scale, sd / scale);
-    let last = exponent(sd) - i32::from(first_digit(sd) == 1);
-    if last < exponent(value.abs().max(sd)) - MOST_DIGITS {
+    let last = compute_exponent(sd) - i32::from(compute_first_digit(sd) == 1);
+    if last < compute_exponent(value.abs().max(sd)) - MAX_DIGITS {
         // Digits beyond this number are not readable.
-        return format_quantity(value * scale, MOST_DIGITS, base);
+        return format_quantity(value * scale, MAX_DIGITS, base);
     }
-    let (value, sd) = (to_place(value, last), to_place(sd, last));
-    with_unit(&format!("{value} ± {sd}"), &unit, true)
+    let (value, sd) = (round_to_place(value, last), round_to_place(sd, last));
+    join_unit(&format!("{value} ± {sd}"), &unit, true)
 }
 
 /// Formats a value with a given number of digits and a unit: `5.73 mm`.
@@ -38,10 +38,10 @@ pub(crate) fn format_quantity(value: f64, digits: i32, unit: &str) -> String {
     if !value.is_finite() {
         return "not known".to_owned();
     }
-    let (scale, unit) = multiple(value.abs(), unit);
+    let (scale, unit) = choose_multiple(value.abs(), unit);
     let value = value / scale;
-    let text = to_place(value, exponent(value.abs()) - digits + 1);
-    with_unit(&text, &unit, false)
+    let text = round_to_place(value, compute_exponent(value.abs()) - digits + 1);
+    join_unit(&text, &unit, false)
 }
 
 /// Formats a number with a given number of digits: `57300`, `1.02`.
@@ -49,12 +49,12 @@ pub(crate) fn format_number(value: f64, digits: i32) -> String {
     if !value.is_finite() {
         return "not known".to_owned();
     }
-    to_place(value, exponent(value.abs()) - digits + 1)
+    round_to_place(value, compute_exponent(value.abs()) - digits + 1)
 }
 
 /// Formats a number with one decimal place.
 pub(crate) fn format_tenths(value: f64) -> String {
-    to_place(value, -1)
+    round_to_place(value, -1)
 }
 
 /// Formats a fraction in percent. A fraction below 1 is never rounded up to 100 %.
@@ -68,21 +68,21 @@ pub(crate) fn format_percent(part: f64) -> String {
 }
 
 /// Returns the factor and the multiple of the unit in which a magnitude is formatted.
-fn multiple(magnitude: f64, unit: &str) -> (f64, String) {
+fn choose_multiple(magnitude: f64, unit: &str) -> (f64, String) {
     let (_, own) = scaled_unit(unit, 1.0);
-    if magnitude == 0.0 || PLAIN.contains(&magnitude) {
+    if magnitude == 0.0 || UNSCALED_MAGNITUDES.contains(&magnitude) {
         return (1.0, own);
     }
     let (scale, scaled) = scaled_unit(unit, magnitude);
     let has_prefix = !scaled.starts_with("10");
-    if !has_prefix && PLAIN_WITHOUT_PREFIX.contains(&magnitude) {
+    if !has_prefix && UNSCALED_WITHOUT_PREFIX.contains(&magnitude) {
         return (1.0, own);
     }
     (scale, scaled)
 }
 
 /// Joins a number and its unit; a unit that begins with a power of ten is multiplied.
-fn with_unit(number: &str, unit: &str, is_pair: bool) -> String {
+fn join_unit(number: &str, unit: &str, is_pair: bool) -> String {
     match (unit.is_empty(), unit.starts_with("10"), is_pair) {
         (true, ..) => number.to_owned(),
         (false, false, _) => format!("{number} {unit}"),
@@ -92,18 +92,18 @@ fn with_unit(number: &str, unit: &str, is_pair: bool) -> String {
 }
 
 /// Returns the power of ten of the first digit.
-fn exponent(magnitude: f64) -> i32 {
+fn compute_exponent(magnitude: f64) -> i32 {
     let floor = magnitude.log10().floor();
     // The magnitude 0 and non-finite magnitudes are formatted like 1.
     if floor.is_finite() { floor as i32 } else { 0 }
 }
 
-fn first_digit(magnitude: f64) -> i32 {
-    (magnitude / 10f64.powi(exponent(magnitude))) as i32
+fn compute_first_digit(magnitude: f64) -> i32 {
+    (magnitude / 10f64.powi(compute_exponent(magnitude))) as i32
 }
 
 /// Rounds a value to a multiple of 10 to the power `place`.
-fn to_place(value: f64, place: i32) -> String {
+fn round_to_place(value: f64, place: i32) -> String {
     let text = if place < 0 {
         format!("{value:.*}", place.unsigned_abs() as usize)
     } else {
@@ -121,34 +121,34 @@ fn to_place(value: f64, place: i32) -> String {
 pub(crate) fn format_readable(text: &str) -> String {
     let words = text.split(' ').map(|word| match word {
         "+-" => "±".to_owned(),
-        word => number_word(word).unwrap_or_else(|| word.to_owned()),
+        word => parse_number(word).unwrap_or_else(|| word.to_owned()),
     });
     words.collect::<Vec<String>>().join(" ")
 }
 
 /// Splits a word into a number with an exponent and its suffix, such as `1.2e-3,`.
-fn number_word(word: &str) -> Option<String> {
+fn parse_number(word: &str) -> Option<String> {
     let number = word.trim_end_matches([',', '.', ';', ':', ')']);
     let (mantissa, exponent) = number.split_once('e')?;
     let value: f64 = number.parse().ok()?;
     let power: i32 = exponent.parse().ok()?;
     let rest = &word[number.len()..];
     let digits = mantissa.chars().filter(char::is_ascii_digit).count();
-    let digits = i32::try_from(digits).unwrap_or(MOST_DIGITS).min(4);
+    let digits = i32::try_from(digits).unwrap_or(MAX_DIGITS).min(4);
     if (-3..5).contains(&power) {
         return Some(format_number(value, digits) + rest);
     }
     Some(
-        with_unit(
+        join_unit(
             &format_number(value / 10f64.powi(power), digits),
-            &scaled_power(power),
+            &format_power(power),
             false,
         ) + rest,
     )
 }
 
 /// Formats a power of ten.
-fn scaled_power(power: i32) -> String {
+fn format_power(power: i32) -> String {
     let raised = |c: char| match c {
         '-' => '⁻',
         c => c
@@ -167,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_estimate_has_the_digits_that_are_known() {
+    fn estimate_digits_match_uncertainty() {
         for (value, sd, unit, expected) in [
             (11.986, 0.0192, "N", "11.986 ± 0.019 N"),
             (11.986, 0.0242, "N", "11.99 ± 0.02 N"),
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_in_sentences_are_for_people() {
+    fn numbers_in_sentences_are_readable() {
         assert_eq!(
             format_readable("a force: 31 +- 2.2 N, 5.729e-3 m or 1.2e-9. done e5 x1e5"),
             "a force: 31 ± 2.2 N, 0.005729 m or 1.2·10⁻⁹. done e5 x1e5"
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_are_percents() {
+    fn fractions_are_formatted_in_percent() {
         assert_eq!(format_percent(0.954), "95 %");
         assert_eq!(format_percent(0.9949), "99.5 %");
         assert_eq!(format_percent(0.99991), "all");

@@ -56,7 +56,7 @@ use crate::thresholds;
 pub type Progress<'p> = dyn Fn(&str) + Sync + 'p;
 
 /// Fit of the null model, its noise floor and residual force.
-struct Null {
+struct NullResult {
     fit: Fit,
     floor: NoiseFloor,
     force: Option<ResidualForce>,
@@ -79,12 +79,12 @@ pub fn compare(
     let Specification { path, text, order } = specification;
     let text = &add_declared_faults(text, path, &dataset.inputs)?;
     let problem = EstimationProblem::new(dataset, order, path, text);
-    let Null {
+    let NullResult {
         fit,
         floor,
         force,
         notes: of_constraints,
-    } = null(&problem, text, seed, progress)?;
+    } = fit_null(&problem, text, seed, progress)?;
     let pictures = ResultFigures {
         playback: Playback::NotNeeded,
         overlay: draw_overlays(&problem, &fit, None),
@@ -110,11 +110,11 @@ pub fn compare(
         progress(&format!("note: {note}"));
         notes.push(note);
     }
-    notes.extend(contradicting(&problem, &fit, floor.rms, progress));
+    notes.extend(find_contradictions(&problem, &fit, floor.rms, progress));
     Ok(Comparison {
         has_gap: !fit.is_at_floor(floor.rms),
         compared: CommonResult {
-            title: title(dataset, &fit),
+            title: choose_title(dataset, &fit),
             gap: compute_gap(&problem, &fit, None, &floor),
             refitted: list_refitted(&fit, &[]),
             sensors: list_sensors(&problem, &fit),
@@ -169,10 +169,10 @@ pub fn discover_until(
     let text = &add_declared_faults(text, path, &dataset.inputs)?;
     let mut problem = EstimationProblem::new(&dataset, order, path, text);
     problem.stop = stop.clone();
-    let null = null(&problem, text, seed, progress);
+    let null = fit_null(&problem, text, seed, progress);
     // Simulations also fail after a stop request. In this case no other error is reported.
     stop.check_not_stopped()?;
-    let Null {
+    let NullResult {
         fit,
         floor: before,
         force,
@@ -265,7 +265,7 @@ pub fn discover_until(
             notes.push(note);
         }
         let fit = unconfirmed.map_or(best, |of| &of.fit);
-        notes.extend(contradicting(&problem, fit, floor.rms, progress));
+        notes.extend(find_contradictions(&problem, fit, floor.rms, progress));
     }
     stop.check_not_stopped()?;
     let unknowns = found.accepted.iter().map(|effect| effect.unknowns.len());
@@ -297,7 +297,7 @@ pub fn discover_until(
         original: original.to_owned(),
         extended,
         compared: CommonResult {
-            title: title(problem.dataset, best),
+            title: choose_title(problem.dataset, best),
             gap,
             refitted: list_refitted(best, &found.accepted),
             sensors: list_sensors(&problem, best),
@@ -311,7 +311,7 @@ pub fn discover_until(
 }
 
 /// Returns the title of a dataset, or the name of the model if the dataset has no title.
-fn title(dataset: &Dataset, fit: &Fit) -> String {
+fn choose_title(dataset: &Dataset, fit: &Fit) -> String {
     match dataset.title.as_str() {
         "" => fit.model.specification().title.clone(),
         title => title.to_owned(),
@@ -326,7 +326,10 @@ fn note_of_unconfirmed(of: &UnconfirmedHypothesis, null: &Fit, floor: f64) -> St
         effect_unknowns: own,
         fit,
     } = of;
-    let sizes: Vec<String> = own.iter().map(|id| size(fit, *id, floor)).collect();
+    let sizes: Vec<String> = own
+        .iter()
+        .map(|id| format_unknown(fit, *id, floor))
+        .collect();
     format!(
         "with {label} ({}) the training residual is {:.1} standard deviations instead of {:.1}; the test \
          records do not confirm it: {:.1} instead of {:.1}. They may lack another effect, or be from another \
@@ -340,7 +343,7 @@ fn note_of_unconfirmed(of: &UnconfirmedHypothesis, null: &Fit, floor: f64) -> St
 }
 
 /// Formats an unknown of a fit with its standard deviation, in the unit of its parameter.
-fn size(fit: &Fit, id: UnknownId, floor: f64) -> String {
+fn format_unknown(fit: &Fit, id: UnknownId, floor: f64) -> String {
     let unknown = &fit.unknowns[id];
     let (estimate, sd) = (fit.train.estimate.theta[id], fit.sd_with_misfit(id, floor));
     let value = unknown.kind.value_in_specification(estimate);
@@ -355,7 +358,7 @@ fn size(fit: &Fit, id: UnknownId, floor: f64) -> String {
 
 /// Finds records that contradict the declared initial state or each other. Reports each note as
 /// progress.
-fn contradicting(
+fn find_contradictions(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     floor: f64,
@@ -370,12 +373,12 @@ fn contradicting(
 }
 
 /// Fits the null model, and computes its noise floor and residual force.
-fn null(
+fn fit_null(
     problem: &EstimationProblem<'_>,
     text: &str,
     seed: u64,
     progress: &Progress<'_>,
-) -> Result<Null, DiscoverError> {
+) -> Result<NullResult, DiscoverError> {
     for note in channel_checks::check_channels(problem, text)? {
         progress(&format!("note: {note}"));
     }
@@ -387,7 +390,7 @@ fn null(
     let fit = fit_null_model(problem, text)?;
     let floor = compute_noise_floor(problem, &fit, seed);
     let force = estimate_residual_force(problem, &fit, None);
-    Ok(Null {
+    Ok(NullResult {
         fit,
         floor,
         force,

@@ -82,7 +82,7 @@ impl Summary {
 }
 
 /// Describes the refitted parameters and sensors at the bound of the fit; `None` if there are none.
-fn at_bounds(nuisances: &[Nuisance]) -> Option<String> {
+fn describe_bounds(nuisances: &[Nuisance]) -> Option<String> {
     let at_bound = nuisances.iter().filter(|of| of.is_at_bound());
     let names: Vec<String> = at_bound.map(Nuisance::full_name).collect();
     let which = match &names[..] {
@@ -96,7 +96,7 @@ fn at_bounds(nuisances: &[Nuisance]) -> Option<String> {
 /// Returns the headline for a model that explains the records. `end`: end of the sentence if no
 /// nuisance is at its bound.
 fn summarise_no_gap(nuisances: &[Nuisance], end: &str) -> String {
-    let end = match at_bounds(nuisances) {
+    let end = match describe_bounds(nuisances) {
         None => end.to_owned(),
         Some(at_bounds) => format!(" only {at_bounds}; a missing effect may be the cause."),
     };
@@ -114,7 +114,7 @@ fn summarise_effects(
         list_effects(&discovery.effects),
         describe_closure(discovery.closure),
     );
-    let at_bounds = at_bounds(&discovery.compared.nuisances);
+    let at_bounds = describe_bounds(&discovery.compared.nuisances);
     let held = at_bounds
         .as_ref()
         .map_or(String::new(), |at| format!(", {at}"));

@@ -21,7 +21,7 @@ pub(crate) fn note_wrong_units(
             Some(format!("`{channel}` is {factor}; check its unit"))
         }
         UnknownKind::Parameter(name) => {
-            let factor = value / declared_value(&found.null_fit, name)?;
+            let factor = value / read_declared_value(&found.null_fit, name)?;
             let factor = describe_unit_factor(factor, "the value in the specification")?;
             Some(format!(
                 "the estimate of `{name}` is {factor}; check all units"
@@ -39,7 +39,7 @@ pub(crate) fn note_wrong_units(
 
 /// Returns the value of a parameter in the original specification, SI; `None` if it is missing or
 /// an expression.
-fn declared_value(null: &Fit, name: &str) -> Option<f64> {
+fn read_declared_value(null: &Fit, name: &str) -> Option<f64> {
     let mut parameters = null.model.specification().parameters.iter();
     match parameters.find(|parameter| parameter.name == name)?.value {
         ParameterValue::Number(value) => Some(value),

@@ -27,7 +27,7 @@ pub fn write_extended(
     accepted: &[AcceptedEffect],
     floor: f64,
 ) -> Result<String, DiscoverError> {
-    let source = provenance(problem);
+    let source = describe_source(problem);
     let theta = &fit.train.estimate.theta;
     let mut text = text.to_owned();
     let written = || {
@@ -68,12 +68,12 @@ pub fn write_extended(
             }));
         }
     }
-    edits.extend(sensors(problem, fit, !accepted.is_empty()));
+    edits.extend(list_sensor_edits(problem, fit, !accepted.is_empty()));
     Ok(edit::apply(&edited_source(&problem.path, &text), &edits)?)
 }
 
 /// Describes the source of the fitted values.
-fn provenance(problem: &EstimationProblem<'_>) -> String {
+fn describe_source(problem: &EstimationProblem<'_>) -> String {
     let title = &problem.dataset.title;
     let files = problem
         .dataset
@@ -102,7 +102,7 @@ fn has_moved(fit: &Fit, unknown: UnknownId, at_all: bool) -> bool {
 
 /// Returns edits for the sensors whose estimates differ from their initial values, see
 /// [`has_moved`].
-fn sensors(problem: &EstimationProblem<'_>, fit: &Fit, at_all: bool) -> Vec<Edit> {
+fn list_sensor_edits(problem: &EstimationProblem<'_>, fit: &Fit, at_all: bool) -> Vec<Edit> {
     let shooting = fit.training_shooting(problem);
     let sensors = shooting.sensor_values(&fit.train.estimate.theta);
     let moved = |channel: ChannelId| {

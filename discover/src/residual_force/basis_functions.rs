@@ -83,8 +83,8 @@ impl BasisFamily {
     /// Builds the family over the rate.
     pub fn build_over_rate(equation: EquationId, range: &OperatingRange) -> Self {
         // Knots are denser near zero rate, where friction changes most.
-        let last = (thresholds::RATE_KNOTS - 1) as f64;
-        let side: Vec<f64> = (0..thresholds::RATE_KNOTS)
+        let last = (thresholds::RATE_KNOT_COUNT - 1) as f64;
+        let side: Vec<f64> = (0..thresholds::RATE_KNOT_COUNT)
             .map(|k| range.largest_rate * (k as f64 / last).powi(2))
             .collect();
         let bends = side.iter().rev().map(|b| -b).chain(side.iter().copied());
@@ -102,31 +102,31 @@ impl BasisFamily {
         is_angle: bool,
     ) -> Self {
         if is_angle && range.width() > TAU {
-            let bend = |k: usize| TAU * k as f64 / thresholds::TURN_KNOTS as f64;
+            let bend = |k: usize| TAU * k as f64 / thresholds::TURN_KNOT_COUNT as f64;
             return Self {
                 equation,
                 argument: ForceArgument::Turn,
-                knots: (0..thresholds::TURN_KNOTS).map(bend).collect(),
+                knots: (0..thresholds::TURN_KNOT_COUNT).map(bend).collect(),
             };
         }
         let bend = |k: usize| {
             range.position_bounds.0
-                + range.width() * k as f64 / (thresholds::POSITION_KNOTS - 1) as f64
+                + range.width() * k as f64 / (thresholds::POSITION_KNOT_COUNT - 1) as f64
         };
         Self {
             equation,
             argument: ForceArgument::Position,
-            knots: (0..thresholds::POSITION_KNOTS).map(bend).collect(),
+            knots: (0..thresholds::POSITION_KNOT_COUNT).map(bend).collect(),
         }
     }
 
     /// Builds the family over the time of a window of this length, s.
     pub fn build_over_time(equation: EquationId, length: f64) -> Self {
-        let bend = |k: usize| length * k as f64 / (thresholds::TIME_KNOTS - 1) as f64;
+        let bend = |k: usize| length * k as f64 / (thresholds::TIME_KNOT_COUNT - 1) as f64;
         Self {
             equation,
             argument: ForceArgument::Time,
-            knots: (0..thresholds::TIME_KNOTS).map(bend).collect(),
+            knots: (0..thresholds::TIME_KNOT_COUNT).map(bend).collect(),
         }
     }
 
@@ -160,14 +160,16 @@ impl BasisFamily {
         match self.argument {
             ForceArgument::Order(order) => wave(f64::from(order) * operating_point.position),
             ForceArgument::Frequency(frequency) => wave(TAU * frequency * operating_point.time),
-            ForceArgument::Position => bent(&self.knots, operating_point.position, out),
-            ForceArgument::Time => bent(&self.knots, operating_point.time, out),
+            ForceArgument::Position => {
+                write_linear_weights(&self.knots, operating_point.position, out)
+            }
+            ForceArgument::Time => write_linear_weights(&self.knots, operating_point.time, out),
             ForceArgument::Turn => write_periodic(&self.knots, operating_point.position, out),
             ForceArgument::Rate => {
                 let half = self.knots.len() / 2;
                 let (negative, positive) = out.split_at_mut(half);
-                bent(&self.knots[..half], operating_point.rate.min(0.0), negative);
-                bent(&self.knots[half..], operating_point.rate.max(0.0), positive);
+                write_linear_weights(&self.knots[..half], operating_point.rate.min(0.0), negative);
+                write_linear_weights(&self.knots[half..], operating_point.rate.max(0.0), positive);
                 let width = 2.0 * thresholds::TURNING_RATE_FRACTION * self.knots[2 * half - 1];
                 let forwards = (0.5 + operating_point.rate / width).clamp(0.0, 1.0);
                 negative.iter_mut().for_each(|w| *w *= 1.0 - forwards);
@@ -179,7 +181,7 @@ impl BasisFamily {
 
 /// Writes the weights of a piecewise linear function that is constant beyond its first and last
 /// knot.
-fn bent(bends: &[f64], at: f64, out: &mut [f64]) {
+fn write_linear_weights(bends: &[f64], at: f64, out: &mut [f64]) {
     let next = bends.partition_point(|bend| *bend <= at);
     if next == 0 {
         out[0] = 1.0;
@@ -226,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn a_straight_line_is_itself_between_bends() {
+    fn linear_function_is_reproduced_between_knots() {
         let line = |x: f64| 0.3 - 0.7 * x;
         for step in 0..40 {
             let at = -1.0 + 0.1 * f64::from(step);
@@ -249,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn a_force_over_the_rate_may_jump_where_it_turns() {
+    fn force_over_rate_may_jump_at_reversal() {
         let rate = BasisFamily::build_over_rate(equation(), &RANGE);
         let mut weights = vec![0.0; rate.count()];
         for (at, forwards) in [(-0.5, 0.0), (0.5, 1.0), (0.0, 0.5)] {
@@ -264,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_closes() {
+    fn force_over_turn_is_periodic() {
         let wide = OperatingRange {
             position_bounds: (-10.0, 10.0),
             ..RANGE

@@ -82,14 +82,14 @@ pub struct EquationEvaluator {
 impl EquationSet {
     /// Derives the equations of a fitted model; `None` if a force cannot be added to it.
     pub fn derive_from_fit(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Self> {
-        Self::derive_list(problem, fit, equations(fit.model.specification()))
+        Self::derive_list(problem, fit, list_equations(fit.model.specification()))
     }
 
     /// Derives the equations of a fitted model, and forces between both ends of each spring. `None`
     /// if a force cannot be added to the model.
     pub(crate) fn derive_with_springs(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Self> {
         let model = fit.model.specification();
-        let mut list = equations(model);
+        let mut list = list_equations(model);
         for site in find_sites(model) {
             let (Some(on), Some(unit)) = (
                 site.arguments.get("on"),
@@ -241,7 +241,7 @@ fn read_unit(text: &str) -> Option<&'static str> {
 }
 
 /// Returns the equations in which effects can act, and those of the observables of a flexible body.
-fn equations(model: &Model) -> Vec<Equation> {
+fn list_equations(model: &Model) -> Vec<Equation> {
     let unit = read_unit;
     let mut found = Vec::new();
     for site in find_sites(model) {
@@ -268,7 +268,7 @@ fn equations(model: &Model) -> Vec<Equation> {
             });
         }
     }
-    let bending = bending(model);
+    let bending = find_flexible_definitions(model);
     for observable in &model.observables {
         let ExprKind::Definition(number) = observable.value.kind else {
             continue;
@@ -290,16 +290,16 @@ fn equations(model: &Model) -> Vec<Equation> {
 
 /// Returns for each definition whether it contains a field; `None` if it depends on more than
 /// positions.
-fn bending(model: &Model) -> Vec<Option<bool>> {
+fn find_flexible_definitions(model: &Model) -> Vec<Option<bool>> {
     let mut known = vec![None; model.definitions.len()];
     for &definition in &model.definition_order {
-        known[definition.index()] = bends(&known, &model.definitions[definition].value);
+        known[definition.index()] = contains_field(&known, &model.definitions[definition].value);
     }
     known
 }
 
 /// Returns true if an expression contains a field; `None` if it depends on more than positions.
-fn bends(known: &[Option<bool>], expr: &Expr) -> Option<bool> {
+fn contains_field(known: &[Option<bool>], expr: &Expr) -> Option<bool> {
     let (mut bends, mut is_position) = (false, true);
     expr.visit(&mut |part| match &part.kind {
         ExprKind::Field(_) => bends = true,

@@ -77,12 +77,18 @@ impl FamilyRegression {
     /// chance.
     pub fn explained_fraction(&self, family: FamilyId) -> f64 {
         let found = self.fit_shared_coefficients(family);
-        let chance = remaining_mean_square(self, found.decrease) * found.values.len() as f64;
+        let chance =
+            compute_remaining_mean_square(self, found.decrease) * found.values.len() as f64;
         (found.decrease - chance) / self.regression.remaining_squares
     }
 
     /// Returns the correlation length of the residual of a family, in samples.
-    pub fn correlation_samples(&self, of: Linearisation<'_>, family: FamilyId, level: f64) -> f64 {
+    pub fn compute_correlation_length(
+        &self,
+        of: Linearisation<'_>,
+        family: FamilyId,
+        level: f64,
+    ) -> f64 {
         let blocks = self.window_columns.iter().flatten();
         let count = blocks.map(DMatrix::ncols).next().unwrap_or(0);
         let range = self.column_range(family);
@@ -115,9 +121,10 @@ impl FamilyRegression {
     /// Returns the factor on the variance of white residuals of unit variance. It contains the
     /// residual of a family, its correlation and the linearisation error.
     pub fn variance_inflation(&self, of: Linearisation<'_>, family: FamilyId) -> f64 {
-        let variance = remaining_mean_square(self, self.fit_shared_coefficients(family).decrease);
+        let variance =
+            compute_remaining_mean_square(self, self.fit_shared_coefficients(family).decrease);
         variance
-            * self.correlation_samples(of, family, 1.0)
+            * self.compute_correlation_length(of, family, 1.0)
             * thresholds::UNCERTAINTY_FACTOR
             * thresholds::UNCERTAINTY_FACTOR
     }
@@ -133,7 +140,7 @@ impl FamilyRegression {
 }
 
 /// Returns the mean square of the residuals after the sum of squares has decreased by `decrease`.
-pub(crate) fn remaining_mean_square(regressed: &FamilyRegression, decrease: f64) -> f64 {
+pub(crate) fn compute_remaining_mean_square(regressed: &FamilyRegression, decrease: f64) -> f64 {
     ((regressed.regression.remaining_squares - decrease) / regressed.regression.number_count)
         .max(1.0)
 }

@@ -38,12 +38,12 @@ pub fn draw_profiles(
     let equation = &before.equations[before.equation];
     let mut forces = vec![(SeriesRole::Before, before)];
     forces.extend(after.map(|after| (SeriesRole::After, after)));
-    let pictures = pictures(equation);
+    let pictures = list_pictures(equation);
     let drawn: Vec<(&Picture, Vec<(SeriesRole, Points)>)> = pictures
         .iter()
         .map(|picture| {
             let of = |(role, force): &(SeriesRole, &ResidualForce)| {
-                let most = largest_sd((picture.of)(before));
+                let most = compute_largest_sd((picture.of)(before));
                 let lowest = if picture.is_amplitude {
                     0.0
                 } else {
@@ -51,7 +51,7 @@ pub fn draw_profiles(
                 };
                 (
                     *role,
-                    points((picture.of)(force), picture.is_line, (lowest, most)),
+                    build_curve((picture.of)(force), picture.is_line, (lowest, most)),
                 )
             };
             (picture, forces.iter().map(of).collect::<Vec<_>>())
@@ -59,12 +59,12 @@ pub fn draw_profiles(
         // The force after the search is drawn only together with the force before.
         .filter(|(picture, _)| {
             let profile = (picture.of)(before);
-            let most = largest_sd(profile);
+            let most = compute_largest_sd(profile);
             let known = profile.sd.iter().filter(|sd| is_known(**sd, most));
-            let is_drawn = known.count() >= thresholds::MIN_DRAWN_POINTS;
-            let is_told =
+            let is_drawn = known.count() >= thresholds::MIN_DRAWN_POINT_COUNT;
+            let is_significant =
                 !picture.by_window || profile.explained_fraction > thresholds::MIN_FORCE_FRACTION;
-            is_drawn && is_told && (picture.axes != Axes::Time || is_resolved(before))
+            is_drawn && is_significant && (picture.axes != Axes::Time || is_resolved(before))
         })
         .collect();
     let frames = drawn.iter().map(|(picture, series)| Frame {
@@ -99,7 +99,7 @@ pub fn draw_profiles(
     plate_at(&figure, width).unwrap_or_default()
 }
 
-fn pictures(equation: &Equation) -> [Picture; 6] {
+fn list_pictures(equation: &Equation) -> [Picture; 6] {
     let over = |symbol, unit| Axes::Quantity { symbol, unit };
     let (position, name) = match equation.unit {
         "rad" => ("angle", "over the angle"),
@@ -174,7 +174,7 @@ fn pictures(equation: &Equation) -> [Picture; 6] {
 type Points = (Vec<f64>, Vec<f64>);
 
 /// Returns the largest standard deviation to draw, computed from the force before.
-fn largest_sd(profile: &Profile) -> f64 {
+fn compute_largest_sd(profile: &Profile) -> f64 {
     let known = profile.values.iter().zip(&profile.sd);
     let largest = known
         .filter(|(value, sd)| **sd > 0.0 && value.abs() > 2.0 * **sd)
@@ -207,7 +207,7 @@ fn is_known(sd: f64, most: f64) -> bool {
 
 /// Returns a profile with its error bars as one curve that goes up and down at each point, or as
 /// crosses. `lowest`: lower limit of the bars. `most`: largest standard deviation to draw.
-fn points(profile: &Profile, is_line: bool, (lowest, most): (f64, f64)) -> Points {
+fn build_curve(profile: &Profile, is_line: bool, (lowest, most): (f64, f64)) -> Points {
     let (Some(first), Some(last)) = (profile.arguments.first(), profile.arguments.last()) else {
         return Points::default();
     };
@@ -242,12 +242,12 @@ fn points(profile: &Profile, is_line: bool, (lowest, most): (f64, f64)) -> Point
 
 #[cfg(test)]
 mod tests {
-    use super::points;
+    use super::build_curve;
     use crate::residual_force::types::Profile;
 
     /// Abscissae of a plotted curve must not decrease.
     #[test]
-    fn crosses_that_are_close_do_not_overlap() {
+    fn close_crosses_do_not_overlap() {
         let profile = Profile {
             arguments: vec![0.0, 1.0, 1.0, 1.001, 5.0],
             values: vec![1.0, 2.0, 3.0, 4.0, 5.0],
@@ -255,7 +255,7 @@ mod tests {
             ..Profile::default()
         };
         for is_line in [true, false] {
-            let (over, values) = points(&profile, is_line, (f64::NEG_INFINITY, 1.0));
+            let (over, values) = build_curve(&profile, is_line, (f64::NEG_INFINITY, 1.0));
             assert!(over.is_sorted(), "{over:?}");
             assert_eq!(over.len(), values.len());
             let drawn = |wanted: f64| values.iter().filter(|v| **v == wanted).count();
@@ -272,7 +272,7 @@ mod tests {
             sd: vec![1.5, 0.5],
             ..Profile::default()
         };
-        let (_, values) = points(&profile, true, (0.0, 2.0));
+        let (_, values) = build_curve(&profile, true, (0.0, 2.0));
         assert!(!values.iter().any(|value| *value < 0.0), "{values:?}");
         assert!(values.contains(&0.0) && values.contains(&1.5), "{values:?}");
     }

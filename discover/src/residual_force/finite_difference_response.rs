@@ -9,12 +9,12 @@ use nalgebra::DMatrix;
 use crate::fit::shooting::{SensorValues, Shooting};
 use crate::model::longest_step::LongestStep;
 use crate::model::measured_outputs::OutputBuffers;
-use crate::model::simulation::NeighbourDrives;
+use crate::model::simulation::TangentDrives;
 use crate::thresholds;
 use eomgen_sim::ode::runge_kutta::RungeKutta;
 
 /// Time of each Runge-Kutta stage in the step: 0 beginning, 1 middle, 2 end.
-const POINTS: [usize; 4] = [0, 1, 1, 2];
+const STAGE_POINTS: [usize; 4] = [0, 1, 1, 2];
 
 /// Window of a model that is simulated with Runge-Kutta steps.
 pub(crate) struct SteppedWindow<'s> {
@@ -36,7 +36,7 @@ struct Step {
 
 /// Motion without a force.
 #[derive(Default)]
-struct Visited {
+struct UnforcedMotion {
     steps: Vec<Step>,
     /// State at each output time.
     states: Vec<Vec<f64>>,
@@ -80,24 +80,25 @@ impl<'s> SteppedWindow<'s> {
     pub fn compute_responses(
         &mut self,
         start: &[f64],
-        driven: NeighbourDrives<'_>,
+        driven: TangentDrives<'_>,
         level: f64,
     ) -> Option<DMatrix<f64>> {
         let count = driven.count;
-        let own = self.own_motion(start)?;
-        let squares = self.squares_of_rates(&own);
-        let forces = self.forces(&own, driven);
+        let own = self.simulate_unforced(start)?;
+        let squares = self.sum_squared_rates(&own);
+        let forces = self.compute_forces(&own, driven);
         let window = &self.shooting.windows.windows[self.window];
         let samples = self.shooting.output_times(window).samples();
         let mut matrix = DMatrix::zeros(samples * self.shooting.channel_count(), count);
         let wanted = thresholds::FORCE_OUTPUT_CHANGE * level;
         let mut part = thresholds::FIRST_FORCE_ACCELERATION_CHANGE;
         for (column, force) in forces.iter().enumerate() {
-            let Some(usual) = usual_size(force, &squares) else {
+            let Some(usual) = compute_usual_size(force, &squares) else {
                 continue;
             };
             for _ in 0..thresholds::MAX_SIZE_ATTEMPTS {
-                let Some(seen) = self.output_change(start, (&own.measured, force), part * usual)
+                let Some(seen) =
+                    self.compute_output_change(start, (&own.measured, force), part * usual)
                 else {
                     part /= thresholds::FORCE_REDUCTION_FACTOR;
                     continue;
@@ -120,7 +121,7 @@ impl<'s> SteppedWindow<'s> {
     }
 
     /// Returns the sum of squares of each acceleration and of the rate of each first-order state.
-    fn squares_of_rates(&mut self, own: &Visited) -> Vec<f64> {
+    fn sum_squared_rates(&mut self, own: &UnforcedMotion) -> Vec<f64> {
         let first = self.evaluator.program().degrees_of_freedom();
         let windows = self.shooting.windows;
         let inputs = windows.inputs(&windows.windows[self.window]);
@@ -140,7 +141,7 @@ impl<'s> SteppedWindow<'s> {
     }
 
     /// Returns each drive along the unforced motion.
-    fn forces(&self, own: &Visited, driven: NeighbourDrives<'_>) -> Vec<Force> {
+    fn compute_forces(&self, own: &UnforcedMotion, driven: TangentDrives<'_>) -> Vec<Force> {
         let program = self.evaluator.program();
         let forced = program.states() - program.degrees_of_freedom();
         let windows = self.shooting.windows;
@@ -175,13 +176,13 @@ impl<'s> SteppedWindow<'s> {
 
     /// Returns the change of the outputs due to a force of size `size`, in standard deviations per
     /// unit.
-    fn output_change(
+    fn compute_output_change(
         &mut self,
         start: &[f64],
         (own, force): (&[f64], &Force),
         size: f64,
     ) -> Option<Vec<f64>> {
-        let moved = self.motion(start, Some((size, force)), None)?;
+        let moved = self.simulate(start, Some((size, force)), None)?;
         let changes: Vec<f64> = (moved.iter().zip(own))
             .map(|(a, b)| (a - b) / size)
             .collect();
@@ -192,19 +193,19 @@ impl<'s> SteppedWindow<'s> {
     }
 
     /// Simulates the motion without a force.
-    fn own_motion(&mut self, start: &[f64]) -> Option<Visited> {
-        let mut visited = Visited::default();
-        visited.measured = self.motion(start, None, Some(&mut visited))?;
+    fn simulate_unforced(&mut self, start: &[f64]) -> Option<UnforcedMotion> {
+        let mut visited = UnforcedMotion::default();
+        visited.measured = self.simulate(start, None, Some(&mut visited))?;
         Some(visited)
     }
 
     /// Returns the channel values of a motion with or without a force. The steps and states are
     /// stored in `visited`.
-    fn motion(
+    fn simulate(
         &mut self,
         start: &[f64],
         force: Option<(f64, &Force)>,
-        mut visited: Option<&mut Visited>,
+        mut visited: Option<&mut UnforcedMotion>,
     ) -> Option<Vec<f64>> {
         let degrees = self.evaluator.program().degrees_of_freedom();
         let forced = start.len() - degrees;
@@ -216,9 +217,9 @@ impl<'s> SteppedWindow<'s> {
         let mut method = RungeKutta::new(start.len());
         let mut measured = Vec::with_capacity(times.len() * self.shooting.channel_count());
         let mut number = 0;
-        for (place, t) in times.iter().enumerate() {
-            let before = place.checked_sub(1).map_or(*t, |before| times[before]);
-            let steps = match place {
+        for (index, t) in times.iter().enumerate() {
+            let before = index.checked_sub(1).map_or(*t, |before| times[before]);
+            let steps = match index {
                 0 => 0,
                 _ => self.longest_step.count_steps(t - before),
             };
@@ -229,7 +230,7 @@ impl<'s> SteppedWindow<'s> {
                 let held = inputs.last_sample(middle);
                 let mut points = [const { (0.0, Vec::new()) }; 3];
                 method.step(&mut state, (begin, h), |stage, t, state, rates| {
-                    let point = POINTS[stage];
+                    let point = STAGE_POINTS[stage];
                     let inputs = &inputs.evaluate_with_held(t, held);
                     self.evaluator.rates(Point { t, state, inputs }, rates);
                     if let Some((size, force)) = force {
@@ -255,8 +256,8 @@ impl<'s> SteppedWindow<'s> {
                 state: &state,
                 inputs: given,
             };
-            let added = force.map(|(size, force)| (size, force.derivatives_at(place, forced)));
-            self.measure(at, added, &mut measured);
+            let added = force.map(|(size, force)| (size, force.derivatives_at(index, forced)));
+            self.append_outputs(at, added, &mut measured);
             if let Some(visited) = &mut visited {
                 visited.states.push(state.clone());
             }
@@ -267,7 +268,12 @@ impl<'s> SteppedWindow<'s> {
 
     /// Appends the channel values at a point. The force, multiplied by its size, also changes
     /// measured accelerations directly.
-    fn measure(&mut self, point: Point<'_>, force: Option<(f64, &[f64])>, values: &mut Vec<f64>) {
+    fn append_outputs(
+        &mut self,
+        point: Point<'_>,
+        force: Option<(f64, &[f64])>,
+        values: &mut Vec<f64>,
+    ) {
         let measured = &self.shooting.model.measured;
         let first = values.len();
         measured.append(&mut self.evaluator, point, &mut self.buffers, values);
@@ -282,8 +288,8 @@ impl<'s> SteppedWindow<'s> {
 
 impl Force {
     /// Returns the changes at an output time; empty if no accelerations are measured.
-    fn derivatives_at(&self, place: usize, forced: usize) -> &[f64] {
-        let own = place * forced..(place + 1) * forced;
+    fn derivatives_at(&self, index: usize, forced: usize) -> &[f64] {
+        let own = index * forced..(index + 1) * forced;
         self.at_times.get(own).unwrap_or_default()
     }
 }
@@ -291,7 +297,7 @@ impl Force {
 /// Returns the size at which the RMS change of one acceleration or rate of a first-order state
 /// equals the RMS of this quantity, and no other relative change is larger. `None` if the force
 /// changes no quantity that is nonzero.
-fn usual_size(force: &Force, squares: &[f64]) -> Option<f64> {
+fn compute_usual_size(force: &Force, squares: &[f64]) -> Option<f64> {
     let mut sums = vec![0.0; squares.len()];
     for now in force.in_steps.chunks_exact(squares.len()) {
         for (sum, change) in sums.iter_mut().zip(now) {

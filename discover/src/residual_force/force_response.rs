@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::fit::linearised_fit::Linearisation;
 use crate::fit::sensitivity::SensitivityEvaluator;
 use crate::fit::shooting::{Shooting, count_samples};
-use crate::model::simulation::NeighbourDrives;
+use crate::model::simulation::TangentDrives;
 use crate::residual_force::equations::{EquationEvaluator, EquationSet, OperatingPoint};
 use crate::residual_force::finite_difference_response::SteppedWindow;
 use eomgen_sim::exponential::DrivingAccelerations;
@@ -116,7 +116,7 @@ pub fn compute_force_responses(
                 let window = at.windows[number];
                 let start = &at.estimate.initial_states[window];
                 forces.begin = problem.train.windows[window].times[0];
-                let driven = NeighbourDrives {
+                let driven = TangentDrives {
                     count,
                     drives: &mut forces,
                 };

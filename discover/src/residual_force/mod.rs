@@ -85,9 +85,9 @@ pub fn estimate_residual_force(
     let wave = |equation: EquationId| {
         let mut families = Vec::new();
         if equations.list[equation].unit == "rad" {
-            families.extend(orders(equation, &ranges[equation]));
+            families.extend(list_order_families(equation, &ranges[equation]));
         }
-        families.extend(frequencies(equation, of, length));
+        families.extend(list_frequency_families(equation, of, length));
         families
     };
     let named = |name: &str| {
@@ -148,7 +148,7 @@ pub fn estimate_residual_force(
 }
 
 /// Returns waves over an angle, for the orders with at least one full period in the motion.
-fn orders(equation: EquationId, range: &OperatingRange) -> Vec<BasisFamily> {
+fn list_order_families(equation: EquationId, range: &OperatingRange) -> Vec<BasisFamily> {
     if range.width() <= TAU / 4.0 {
         return Vec::new();
     }
@@ -160,7 +160,11 @@ fn orders(equation: EquationId, range: &OperatingRange) -> Vec<BasisFamily> {
 
 /// Returns waves over time: from one period per `length`, s, upwards, and at the frequency of the
 /// largest residual.
-fn frequencies(equation: EquationId, of: Linearisation<'_>, length: f64) -> Vec<BasisFamily> {
+fn list_frequency_families(
+    equation: EquationId,
+    of: Linearisation<'_>,
+    length: f64,
+) -> Vec<BasisFamily> {
     let step = typical_step(&of.problem.dataset.train[0].times);
     let mut frequencies: Vec<f64> = find_peak_frequency(of.problem, of.fit)
         .into_iter()
@@ -171,7 +175,7 @@ fn frequencies(equation: EquationId, of: Linearisation<'_>, length: f64) -> Vec<
             break;
         }
         frequencies.push(periods / length);
-        periods = if number < thresholds::HARMONIC_FREQUENCIES {
+        periods = if number < thresholds::HARMONIC_FREQUENCY_COUNT {
             periods + 1.0
         } else {
             periods * thresholds::FREQUENCY_RATIO

@@ -13,7 +13,7 @@ use crate::thresholds;
 use eomgen_records::samples::typical_step;
 
 /// Motion of one angle in all windows.
-struct Along {
+struct AngleMotion {
     /// Angle at each sample of a window, rad.
     angles: Vec<Vec<f64>>,
     /// Range of the angle over all windows, rad.
@@ -33,8 +33,8 @@ pub(crate) fn find_orders(
     let angles = coordinates.iter().enumerate();
     let angles = angles.filter(|(_, coordinate)| coordinate.unit.text == "rad");
     angles
-        .map(|(place, coordinate)| {
-            let along = Along::of(problem, fit, place);
+        .map(|(index, coordinate)| {
+            let along = AngleMotion::new(problem, fit, index);
             (
                 coordinate.name.clone(),
                 along.find_best_orders(problem, fit),
@@ -43,17 +43,17 @@ pub(crate) fn find_orders(
         .collect()
 }
 
-impl Along {
+impl AngleMotion {
     /// Creates the motion of a coordinate, given by its index.
-    fn of(problem: &EstimationProblem<'_>, fit: &Fit, place: usize) -> Self {
+    fn new(problem: &EstimationProblem<'_>, fit: &Fit, index: usize) -> Self {
         let (inputs, count) = (
             fit.model.specification().inputs.len(),
             fit.model.degrees_of_freedom(),
         );
         let records = problem.train.records.iter();
         let motions = records.map(|record| {
-            let rates = record.given_motion_rate(place, count, inputs);
-            (record.given_motion(place, inputs), rates)
+            let rates = record.given_motion_rate(index, count, inputs);
+            (record.given_motion(index, inputs), rates)
         });
         let motions: Vec<(Vec<f64>, Vec<f64>)> = motions.collect();
         let (mut angles, mut squares, mut samples) = (Vec::new(), 0.0, 0.0);
@@ -85,7 +85,7 @@ impl Along {
         };
         let orders = (1..=thresholds::MAX_SHAFT_ORDER).filter(is_seen);
         let mut explained: Vec<(f64, u32)> = orders
-            .map(|order| (self.explained_by_order(problem, fit, order), order))
+            .map(|order| (self.compute_explained_squares(problem, fit, order), order))
             .collect();
         explained.sort_by(|a, b| b.0.total_cmp(&a.0));
         explained.truncate(thresholds::MAX_SPECTRUM_ORDERS);
@@ -93,7 +93,12 @@ impl Along {
     }
 
     /// Returns the decrease of the sum of squared residuals of all channels due to a wave.
-    fn explained_by_order(&self, problem: &EstimationProblem<'_>, fit: &Fit, order: u32) -> f64 {
+    fn compute_explained_squares(
+        &self,
+        problem: &EstimationProblem<'_>,
+        fit: &Fit,
+        order: u32,
+    ) -> f64 {
         let channels = problem.noise.len();
         let of_channel = |channel: usize| {
             let (mut products, mut sums) = (Matrix3::zeros(), Vector3::zeros());

@@ -7,7 +7,7 @@ use nalgebra::DVector;
 use crate::fit::linearised_fit::Linearisation;
 use crate::residual_force::basis_functions::{BasisFamily, ForceArgument, OperatingRange};
 use crate::residual_force::equations::OperatingPoint;
-use crate::residual_force::family_regression::{FamilyRegression, remaining_mean_square};
+use crate::residual_force::family_regression::{FamilyRegression, compute_remaining_mean_square};
 use crate::residual_force::regression::{Coefficients, WindowCoefficient, WindowCoefficients};
 use crate::residual_force::types::{Profile, ResidualForce};
 use crate::thresholds;
@@ -41,13 +41,13 @@ impl ProfileInputs<'_> {
             let found = regressed.fit_shared_coefficients(family);
             Profile {
                 arguments: regressed.families[family].knots.clone(),
-                sd: deviations(&found, inflation),
+                sd: compute_standard_deviations(&found, inflation),
                 values: found.values.iter().copied().collect(),
                 explained_fraction: regressed.explained_fraction(family),
                 peak: None,
             }
         };
-        let level = remaining_mean_square(regressed, decrease[0].max(decrease[1]));
+        let level = compute_remaining_mean_square(regressed, decrease[0].max(decrease[1]));
         let mut order = Profile::default();
         let ids = FamilyId::first(regressed.families.len());
         for (id, family) in ids.zip(&regressed.families) {
@@ -55,7 +55,7 @@ impl ProfileInputs<'_> {
                 continue;
             };
             let found = regressed.fit_shared_coefficients(id);
-            let sd = deviations(&found, inflation);
+            let sd = compute_standard_deviations(&found, inflation);
             order.arguments.push(f64::from(number));
             order.values.push(found.values.norm());
             order
@@ -67,7 +67,7 @@ impl ProfileInputs<'_> {
                 order.peak = Some(order.arguments.len() - 1);
             }
         }
-        let frequency = self.over_frequency(regressed, level);
+        let frequency = self.compute_frequency_profile(regressed, level);
         ResidualForce {
             equations: Vec::new(),
             ranking: Vec::new(),
@@ -77,15 +77,15 @@ impl ProfileInputs<'_> {
             explained_fraction: 0.0,
             rate: over(by_rate),
             position: over(by_position),
-            time: self.over_time(regressed, level),
+            time: self.compute_time_profile(regressed, level),
             order,
             frequency,
-            amplitude: self.by_amplitude(regressed, range, level),
+            amplitude: self.compute_amplitude_profile(regressed, range, level),
         }
     }
 
     /// Returns the profile over the time of the first record.
-    fn over_time(&self, regressed: &FamilyRegression, level: f64) -> Profile {
+    fn compute_time_profile(&self, regressed: &FamilyRegression, level: f64) -> Profile {
         let mut profile = Profile::default();
         let Some(family) = regressed.find_family(|over| over == ForceArgument::Time) else {
             return profile;
@@ -104,7 +104,7 @@ impl ProfileInputs<'_> {
                 .arguments
                 .extend(bends.iter().map(|bend| window.times[0] + bend));
             profile.values.extend(sizes.values.iter());
-            profile.sd.extend(deviations(sizes, level));
+            profile.sd.extend(compute_standard_deviations(sizes, level));
             // A NaN separates the curves of two windows.
             profile
                 .arguments
@@ -118,7 +118,7 @@ impl ProfileInputs<'_> {
     /// Returns the usual amplitude over frequency, for waves that differ between windows. They are
     /// fitted together, because a fast wave fitted by itself would also absorb slow waves. The
     /// explained fraction is computed for each wave separately.
-    fn over_frequency(&self, regressed: &FamilyRegression, level: f64) -> Profile {
+    fn compute_frequency_profile(&self, regressed: &FamilyRegression, level: f64) -> Profile {
         let mut profile = Profile::default();
         let frequency = |family: &BasisFamily| match family.argument {
             ForceArgument::Frequency(frequency) => Some(frequency),
@@ -137,7 +137,7 @@ impl ProfileInputs<'_> {
         for (family, frequency) in waves {
             let range = regressed.column_range(family);
             let own = range.start - whole.start..range.end - whole.start;
-            let (size, sd) = usual(&found, own, level);
+            let (size, sd) = compute_usual_amplitude(&found, own, level);
             profile.arguments.push(frequency);
             profile.values.push(size);
             profile.sd.push(sd);
@@ -155,7 +155,7 @@ impl ProfileInputs<'_> {
 
     /// Returns the part of the force proportional to the rate in each window, at the window's RMS
     /// rate relative to the largest rate.
-    fn by_amplitude(
+    fn compute_amplitude_profile(
         &self,
         regressed: &FamilyRegression,
         range: &OperatingRange,
@@ -169,7 +169,7 @@ impl ProfileInputs<'_> {
         let sizes = regressed
             .regression
             .fit_combination_per_window(regressed.column_range(family), &bends);
-        let correlation = self.linearisation.fit.train.correlation_samples;
+        let correlation = self.linearisation.fit.train.correlation_length;
         let mut points: Vec<(f64, f64, f64)> = Vec::new();
         for (operating_points, size) in self.operating_points.iter().zip(sizes) {
             let Some(WindowCoefficient { value, variance }) = size else {
@@ -198,7 +198,7 @@ impl ProfileInputs<'_> {
 }
 
 /// Returns the standard deviation of each coefficient.
-fn deviations(sizes: &Coefficients, inflation: f64) -> Vec<f64> {
+fn compute_standard_deviations(sizes: &Coefficients, inflation: f64) -> Vec<f64> {
     let variances = sizes.covariance.diagonal();
     let pairs = variances.iter().zip(&sizes.values);
     pairs
@@ -211,11 +211,15 @@ fn deviations(sizes: &Coefficients, inflation: f64) -> Vec<f64> {
 }
 
 /// Returns the RMS over the windows of the amplitude of some waves, and its standard deviation.
-fn usual(found: &WindowCoefficients, own: std::ops::Range<usize>, level: f64) -> (f64, f64) {
-    let there = || found.windows.iter().flatten();
-    let count = there().count().max(1) as f64;
+fn compute_usual_amplitude(
+    found: &WindowCoefficients,
+    own: std::ops::Range<usize>,
+    level: f64,
+) -> (f64, f64) {
+    let available = || found.windows.iter().flatten();
+    let count = available().count().max(1) as f64;
     let sum = |of: &dyn Fn(&Coefficients, usize) -> f64| -> f64 {
-        let each = there().map(|sizes| own.clone().map(|k| of(sizes, k)).sum::<f64>());
+        let each = available().map(|sizes| own.clone().map(|k| of(sizes, k)).sum::<f64>());
         each.sum()
     };
     let square = sum(&|sizes, k| sizes.values[k].powi(2));

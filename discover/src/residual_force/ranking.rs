@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::fit::linearised_fit::Linearisation;
 use crate::residual_force::basis_functions::ForceArgument;
-use crate::residual_force::family_regression::{FamilyRegression, remaining_mean_square};
+use crate::residual_force::family_regression::{FamilyRegression, compute_remaining_mean_square};
 use crate::residual_force::types::{ForceKind, RankedEquation, SimpleFunction, SimpleTerm};
 use crate::thresholds;
 
@@ -44,7 +44,7 @@ impl EquationRanking {
             })
             .collect();
         let by_state = (0..count).max_by(|a, b| states[*a].0.total_cmp(&states[*b].0))?;
-        let level = remaining_mean_square(
+        let level = compute_remaining_mean_square(
             regressed,
             regressed
                 .fit_shared_coefficients(states[by_state].1)
@@ -71,7 +71,7 @@ impl EquationRanking {
             true => (by_state, states[by_state].0, states[by_state].1),
             false => (by_time, times[by_time], FamilyId::new(3 * by_time + 2)),
         };
-        let correlation = regressed.correlation_samples(of, family, level);
+        let correlation = regressed.compute_correlation_length(of, family, level);
         let mean_square =
             (1.0 - part).max(0.0) * regression.remaining_squares / regression.number_count;
         let whitened =

@@ -130,13 +130,15 @@ impl Regression {
     /// one row per column and one column per combination.
     pub fn fit_combinations(
         &self,
-        places: std::ops::Range<usize>,
+        indices: std::ops::Range<usize>,
         of: &DMatrix<f64>,
     ) -> Coefficients {
-        let count = places.len();
-        let gram = self.gram.view((places.start, places.start), (count, count));
-        let right = self.right.rows(places.start, count);
-        sizes(
+        let count = indices.len();
+        let gram = self
+            .gram
+            .view((indices.start, indices.start), (count, count));
+        let right = self.right.rows(indices.start, count);
+        solve_normal_equations(
             &(of.transpose() * gram * of),
             &(of.transpose() * right),
             0.0,
@@ -150,26 +152,30 @@ impl Regression {
             self.gram[(functions[r].index(), functions[c].index())]
         });
         let right = DVector::from_fn(count, |r, _| self.right[functions[r].index()]);
-        sizes(&gram, &right, 0.0)
+        solve_normal_equations(&gram, &right, 0.0)
     }
 
     /// Fits coefficients that differ between windows, with fixed nuisances and a common prior
     /// variance, so that unobservable coefficients remain small. `noise`: mean square of the noise.
-    pub fn fit_per_window(&self, places: std::ops::Range<usize>, noise: f64) -> WindowCoefficients {
-        let (first, count) = (places.start, places.len());
+    pub fn fit_per_window(
+        &self,
+        indices: std::ops::Range<usize>,
+        noise: f64,
+    ) -> WindowCoefficients {
+        let (first, count) = (indices.start, indices.len());
         let systems = self.windows.iter().map(|window| {
             let last = window.ncols().checked_sub(1)?;
             let gram = window.view((first, first), (count, count)).into_owned();
             Some((gram, -window.view((first, last), (count, 1)).column(0)))
         });
         let systems: Vec<Option<(DMatrix<f64>, DVector<f64>)>> = systems.collect();
-        let there = || systems.iter().flatten();
-        let numbers = (there().count() * count).max(1) as f64;
-        let trace: f64 = there().map(|(gram, _)| gram.trace()).sum();
+        let available = || systems.iter().flatten();
+        let numbers = (available().count() * count).max(1) as f64;
+        let trace: f64 = available().map(|(gram, _)| gram.trace()).sum();
         let mut ridge = 1e-3 * trace / numbers;
-        for _ in 0..thresholds::VARIANCE_ITERATIONS {
-            let all = there().map(|(gram, right)| {
-                let found = sizes(gram, right, ridge);
+        for _ in 0..thresholds::VARIANCE_ITERATION_COUNT {
+            let all = available().map(|(gram, right)| {
+                let found = solve_normal_equations(gram, right, ridge);
                 found.values.norm_squared() + noise * found.covariance.trace()
             });
             let square = all.sum::<f64>() / numbers;
@@ -182,7 +188,7 @@ impl Regression {
         let windows: Vec<Option<Coefficients>> = (systems.iter())
             .map(|system| {
                 let (gram, right) = system.as_ref()?;
-                let found = sizes(gram, right, ridge);
+                let found = solve_normal_equations(gram, right, ridge);
                 let doubled = 2.0 * found.values.dot(right);
                 decrease += doubled - found.values.dot(&(gram * &found.values));
                 freedom += (gram * &found.covariance).trace();
@@ -198,10 +204,10 @@ impl Regression {
     /// Fits one linear combination of columns in each window, with fixed nuisances.
     pub fn fit_combination_per_window(
         &self,
-        places: std::ops::Range<usize>,
+        indices: std::ops::Range<usize>,
         of: &DVector<f64>,
     ) -> Vec<Option<WindowCoefficient>> {
-        let (first, count) = (places.start, places.len());
+        let (first, count) = (indices.start, indices.len());
         let one = |window: &DMatrix<f64>| {
             let last = window.ncols().checked_sub(1)?;
             let square = of.dot(&(window.view((first, first), (count, count)) * of));
@@ -245,7 +251,7 @@ impl Regression {
 }
 
 /// Solves the normal equations. A coefficient whose column is negligible is 0 and has no variance.
-fn sizes(gram: &DMatrix<f64>, right: &DVector<f64>, ridge: f64) -> Coefficients {
+fn solve_normal_equations(gram: &DMatrix<f64>, right: &DVector<f64>, ridge: f64) -> Coefficients {
     let count = right.len();
     let largest = gram.diagonal().iter().copied().fold(0.0, f64::max);
     let does: Vec<bool> = (0..count)

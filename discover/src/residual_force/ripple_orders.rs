@@ -24,11 +24,14 @@ pub fn find_ripple_orders(
 ) -> BTreeMap<String, Vec<u32>> {
     match problem.dataset.gives_motion() {
         true => orders_of_given_motion::find_orders(problem, fit),
-        false => spectrum(problem, fit).unwrap_or_default(),
+        false => compute_spectrum(problem, fit).unwrap_or_default(),
     }
 }
 
-fn spectrum(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<BTreeMap<String, Vec<u32>>> {
+fn compute_spectrum(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+) -> Option<BTreeMap<String, Vec<u32>>> {
     let equations = EquationSet::derive_from_fit(problem, fit)?;
     let at = LinearisedFit::linearise_fit(problem, fit, 1.0).thin_out();
     let of = Linearisation {

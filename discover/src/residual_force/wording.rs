@@ -56,14 +56,16 @@ pub fn describe_remaining_force(force: &ResidualForce) -> String {
 fn describe_shape(force: &ResidualForce, kind: &ForceKind) -> String {
     let equation = &force.equations[force.best_equation];
     match kind {
-        ForceKind::Rate(parts) if parts.is_empty() => over(force, &force.rate, true),
-        ForceKind::Position(parts) if parts.is_empty() => over(force, &force.position, false),
-        ForceKind::Rate(parts) => simple(parts, equation, true),
-        ForceKind::Position(parts) => simple(parts, equation, false),
+        ForceKind::Rate(parts) if parts.is_empty() => describe_range(force, &force.rate, true),
+        ForceKind::Position(parts) if parts.is_empty() => {
+            describe_range(force, &force.position, false)
+        }
+        ForceKind::Rate(parts) => describe_simple_functions(parts, equation, true),
+        ForceKind::Position(parts) => describe_simple_functions(parts, equation, false),
         ForceKind::Time => {
             let frequencies = &force.frequency;
             let is_looked_at = force.best_equation == force.equation;
-            let (rate, place) = words(equation);
+            let (rate, place) = name_rate_and_position(equation);
             let text = format!("it is a function of neither the {rate} nor the {place}");
             match frequencies.peak {
                 Some(peak)
@@ -73,9 +75,11 @@ fn describe_shape(force: &ResidualForce, kind: &ForceKind) -> String {
                     match is_resolved(frequencies, peak) {
                         true => format!(
                             "{text}, most of it near {} Hz",
-                            in_resolution(frequencies.arguments[peak], frequencies.arguments[0])
+                            format_frequency(frequencies.arguments[peak], frequencies.arguments[0])
                         ),
-                        false => format!("{text}, most of it slower than three periods per window"),
+                        false => {
+                            format!("{text}, mostly at frequencies below three periods per window")
+                        }
                     }
                 }
                 _ => text,
@@ -87,7 +91,7 @@ fn describe_shape(force: &ResidualForce, kind: &ForceKind) -> String {
 /// Formats a frequency with the digits that a resolution justifies. The amplitude at the frequency
 /// is not reported: the initial states of windows imitate a part of the motion, so that the profile
 /// does not contain it.
-fn in_resolution(frequency: f64, resolution: f64) -> String {
+fn format_frequency(frequency: f64, resolution: f64) -> String {
     let decimals = (-resolution.log10()).ceil().max(0.0) as usize;
     format!("{frequency:.decimals$}")
 }
@@ -100,15 +104,15 @@ fn is_resolved(frequencies: &Profile, peak: usize) -> bool {
 }
 
 /// Returns the words for rate and position of an equation.
-fn words(equation: &Equation) -> (&'static str, &'static str) {
+fn name_rate_and_position(equation: &Equation) -> (&'static str, &'static str) {
     match equation.unit {
         "rad" => ("rate", "angle"),
         _ => ("speed", "position"),
     }
 }
 
-fn simple(parts: &[SimpleTerm], equation: &Equation, is_rate: bool) -> String {
-    let (rate, position) = words(equation);
+fn describe_simple_functions(parts: &[SimpleTerm], equation: &Equation, is_rate: bool) -> String {
+    let (rate, position) = name_rate_and_position(equation);
     let of = if is_rate { rate } else { position };
     let force = equation.force_unit();
     let by = match (is_rate, equation.unit) {
@@ -133,10 +137,20 @@ fn simple(parts: &[SimpleTerm], equation: &Equation, is_rate: bool) -> String {
             value,
             sd,
         } = part;
-        let number = |unit: &str| format!("{} ± {}", plain(value.abs()), in_unit(*sd, unit));
+        let number = |unit: &str| {
+            format!(
+                "{} ± {}",
+                format_two_digits(value.abs()),
+                format_with_unit(*sd, unit)
+            )
+        };
         match function {
             SimpleFunction::Constant => {
-                format!("a constant {} ± {}", plain(*value), in_unit(*sd, force))
+                format!(
+                    "a constant {} ± {}",
+                    format_two_digits(*value),
+                    format_with_unit(*sd, force)
+                )
             }
             SimpleFunction::Sign => {
                 format!("{} {} the sign of the {of}", number(force), along(*value))
@@ -163,9 +177,9 @@ fn simple(parts: &[SimpleTerm], equation: &Equation, is_rate: bool) -> String {
 
 /// Describes the lowest and the highest value of a profile among those with a small standard
 /// deviation.
-fn over(force: &ResidualForce, profile: &Profile, is_rate: bool) -> String {
+fn describe_range(force: &ResidualForce, profile: &Profile, is_rate: bool) -> String {
     let equation = &force.equations[force.best_equation];
-    let (rate, position) = words(equation);
+    let (rate, position) = name_rate_and_position(equation);
     let (of, unit) = match is_rate {
         true => (rate, equation.rate_unit()),
         false => (position, equation.unit),
@@ -183,22 +197,22 @@ fn over(force: &ResidualForce, profile: &Profile, is_rate: bool) -> String {
         {
             format!(
                 "it changes with the {of}, from {} at {} to {} at {}",
-                in_unit(profile.values[*low], equation.force_unit()),
-                in_unit(profile.arguments[*low], unit),
-                in_unit(profile.values[*high], equation.force_unit()),
-                in_unit(profile.arguments[*high], unit)
+                format_with_unit(profile.values[*low], equation.force_unit()),
+                format_with_unit(profile.arguments[*low], unit),
+                format_with_unit(profile.values[*high], equation.force_unit()),
+                format_with_unit(profile.arguments[*high], unit)
             )
         }
         _ => format!("it changes with the {of}"),
     }
 }
 
-fn in_unit(value: f64, unit: &str) -> String {
-    format!("{} {unit}", plain(value))
+fn format_with_unit(value: f64, unit: &str) -> String {
+    format!("{} {unit}", format_two_digits(value))
 }
 
 /// Formats a number with two significant digits.
-fn plain(value: f64) -> String {
+fn format_two_digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return "0".to_owned();
     }

@@ -51,7 +51,7 @@ pub fn test_acceptance(
 ) -> Result<TestStatistics, Rejection> {
     let statistics = test_explanation(before, after, own)?;
     // The value must be outside the range of the prior even after subtraction of its uncertainty.
-    if let Some(rejection) = within_prior(after, own, thresholds::MIN_REDUCTION_STANDARD_ERRORS) {
+    if let Some(rejection) = check_priors(after, own, thresholds::MIN_REDUCTION_STANDARD_ERRORS) {
         return Err(rejection);
     }
     if statistics.t_value < thresholds::MIN_SIGNIFICANCE {
@@ -78,7 +78,7 @@ pub fn test_explanation(
     own: &[EffectUnknown],
 ) -> Result<TestStatistics, Rejection> {
     let statistics = compute_test_statistics(before, after, own);
-    if let Some(rejection) = at_bound(after, own).or_else(|| within_prior(after, own, 0.0)) {
+    if let Some(rejection) = check_bounds(after, own).or_else(|| check_priors(after, own, 0.0)) {
         return Err(rejection);
     }
     if statistics.held_out_reduction < thresholds::MIN_HELD_OUT_REDUCTION {
@@ -114,15 +114,15 @@ pub fn compute_test_statistics(before: &Fit, after: &Fit, own: &[EffectUnknown])
         held_out_reduction: 1.0 - new.rms / old.rms,
         reduction_in_standard_errors: mean / (variance / count).sqrt(),
         information_gain: fall / (2.0 * whitening),
-        t_value: least_significance(after, own),
-        size_over_noise: size(before, after),
+        t_value: compute_least_significance(after, own),
+        size_over_noise: compute_influence(before, after),
         p_value: None,
     }
 }
 
 /// Returns the reduction of the RMS residual by the effect, in standard deviations, for the channel
 /// and the records that show it best.
-fn size(before: &Fit, after: &Fit) -> f64 {
+fn compute_influence(before: &Fit, after: &Fit) -> f64 {
     let channels = |of: fn(&Fit) -> &Vec<f64>| of(before).iter().zip(of(after));
     let both =
         channels(|fit| &fit.train.normalised_rms).chain(channels(|fit| &fit.test.normalised_rms));
@@ -132,7 +132,7 @@ fn size(before: &Fit, after: &Fit) -> f64 {
 
 /// Returns the size of an effect in standard deviations; for several effects, the smallest. Sine
 /// and cosine of a wave count as one effect.
-fn least_significance(fit: &Fit, own: &[EffectUnknown]) -> f64 {
+fn compute_least_significance(fit: &Fit, own: &[EffectUnknown]) -> f64 {
     let effects = own.iter().map(|own| own.effect.index() + 1).max();
     EffectId::first(effects.unwrap_or(0))
         .map(|effect| compute_t_value(fit, own, effect))
@@ -161,7 +161,7 @@ pub fn has_vanishing_shape(fit: &Fit, own: &[EffectUnknown]) -> bool {
 }
 
 /// Returns a rejection if a parameter is at its bound.
-fn at_bound(fit: &Fit, own: &[EffectUnknown]) -> Option<Rejection> {
+fn check_bounds(fit: &Fit, own: &[EffectUnknown]) -> Option<Rejection> {
     let held = own
         .iter()
         .find(|own| !own.is_shape && fit.is_at_bound(own.unknown))?;
@@ -174,15 +174,15 @@ fn at_bound(fit: &Fit, own: &[EffectUnknown]) -> Option<Rejection> {
 
 /// Returns a rejection if an unknown whose prior was removed is still within the range of the
 /// prior. The distance from the prior mean is reduced by `errors` standard errors.
-fn within_prior(fit: &Fit, own: &[EffectUnknown], errors: f64) -> Option<Rejection> {
+fn check_priors(fit: &Fit, own: &[EffectUnknown], errors: f64) -> Option<Rejection> {
     own.iter().find_map(|own| {
         let prior = own.dropped_prior_sd?;
-        let off = (fit.train.estimate.theta[own.unknown] - own.base).abs() / prior;
+        let deviation = (fit.train.estimate.theta[own.unknown] - own.base).abs() / prior;
         let sd = fit.effect_sd[own.unknown] / prior;
-        let is_off = off - errors * sd > thresholds::MAX_PRIOR_DEVIATION;
-        (!is_off).then(|| Rejection::WithinPrior {
+        let is_beyond_prior = deviation - errors * sd > thresholds::MAX_PRIOR_DEVIATION;
+        (!is_beyond_prior).then(|| Rejection::WithinPrior {
             name: fit.unknowns[own.unknown].label.clone(),
-            deviation: off,
+            deviation,
             sd,
         })
     })

@@ -25,7 +25,7 @@ pub fn test_alternatives(
     fitted_hypotheses: &mut Vec<FittedHypothesis>,
     answer: FittedId,
 ) {
-    let preliminaries = alternatives(pool, fitted_hypotheses, answer).unwrap_or_default();
+    let preliminaries = start_alternatives(pool, fitted_hypotheses, answer).unwrap_or_default();
     for new in run_full_fits(pool, preliminaries) {
         let known = fitted_hypotheses
             .iter_mut()
@@ -40,7 +40,7 @@ pub fn test_alternatives(
 
 /// Finds the best alternatives to a fitted hypothesis, starting from its estimates. Empty if the
 /// hypothesis is not one effect with separate terms.
-fn alternatives(
+fn start_alternatives(
     pool: &CandidatePool<'_>,
     fitted_hypotheses: &[FittedHypothesis],
     answer: FittedId,
@@ -52,7 +52,7 @@ fn alternatives(
     if pool.screening.responses[response].dropped_prior.is_some() {
         return None;
     }
-    let rivals = rivals(pool, fitted_hypotheses, answer, response);
+    let rivals = list_rivals(pool, fitted_hypotheses, answer, response);
     // If the residual exceeds that of a correct model, the same effect is tested at all other
     // sites, because predictions along the motion of an incorrect model may be wrong.
     let at_floor = fitted.fit.is_at_floor(pool.context.floor);
@@ -60,20 +60,20 @@ fn alternatives(
         true => thresholds::MAX_RIVAL_COST_RATIO,
         false => f64::INFINITY,
     };
-    begin_from_answer(pool, fitted, response, &rivals, most)
+    start_from_answer(pool, fitted, response, &rivals, most)
 }
 
 /// Runs preliminary fits of rivals of a fitted effect, `response`, starting from its estimates.
 /// Rivals have the lowest predicted residuals, below `most` times the predicted residual of the
 /// fitted effect.
-pub(super) fn begin_from_answer(
+pub(super) fn start_from_answer(
     pool: &CandidatePool<'_>,
     fitted: &FittedHypothesis,
     response: ResponseId,
     rivals: &[ResponseId],
     most: f64,
 ) -> Option<Vec<(Hypothesis, PreliminaryFit)>> {
-    let (rivals, in_model) = in_model(pool, fitted, rivals);
+    let (rivals, in_model) = find_in_model(pool, fitted, rivals);
     if in_model.is_empty() {
         return None;
     }
@@ -82,10 +82,10 @@ pub(super) fn begin_from_answer(
         in_model.len(),
         pool.candidate(response).label()
     ));
-    let mut predictions = predictions(pool, fitted, &in_model, most)?;
+    let mut predictions = predict_candidates(pool, fitted, &in_model, most)?;
     predictions.sort_by(|a, b| a.prediction.cost.total_cmp(&b.prediction.cost));
-    predictions.truncate(thresholds::FITS_IN_PARALLEL);
-    let shape_ratio = shape_ratio(pool, fitted).unwrap_or(1.0);
+    predictions.truncate(thresholds::PARALLEL_FIT_COUNT);
+    let shape_ratio = compute_shape_ratio(pool, fitted).unwrap_or(1.0);
     let preliminaries = predictions.into_iter().filter_map(|of| {
         let LinearPrediction { cost, sizes } = of.prediction;
         let hypothesis = Hypothesis {
@@ -107,7 +107,7 @@ pub(super) fn begin_from_answer(
 /// Returns those rivals that exist in the model of a fitted hypothesis, as candidates of this
 /// model. Their parameters have names that are not in use there, and their shapes are scaled like
 /// the fitted shape.
-fn in_model(
+fn find_in_model(
     pool: &CandidatePool<'_>,
     fitted: &FittedHypothesis,
     rivals: &[ResponseId],
@@ -118,11 +118,11 @@ fn in_model(
     let model = fitted.fit.model.specification();
     let sites = find_sites(model);
     let motion = UsualMotion {
-        orders: orders(pool, rivals, &sites),
+        orders: list_orders(pool, rivals, &sites),
         ..compute_usual_motion(pool.context.problem, &fitted.fit, &sites)
     };
     let known = list_candidates(model, pool.context.effects, &sites, &motion);
-    let shape_ratio = shape_ratio(pool, fitted).unwrap_or(1.0);
+    let shape_ratio = compute_shape_ratio(pool, fitted).unwrap_or(1.0);
     let again = |rival: &ResponseId| {
         let label = pool.candidate(*rival).label();
         let found = known.iter().find(|candidate| candidate.label() == label)?;
@@ -135,7 +135,7 @@ fn in_model(
 }
 
 /// Returns the orders of the rivals, for each angle.
-fn orders(
+fn list_orders(
     pool: &CandidatePool<'_>,
     rivals: &[ResponseId],
     sites: &[Site],
@@ -150,19 +150,19 @@ fn orders(
 }
 
 /// Predicted residual of a candidate.
-struct Predicted {
+struct CandidatePrediction {
     candidate: CandidateId,
     prediction: LinearPrediction,
 }
 
 /// Returns the candidates with a predicted residual below a multiple of the residual of a fitted
 /// hypothesis. The fit is linearised without the terms of this hypothesis.
-fn predictions(
+fn predict_candidates(
     pool: &CandidatePool<'_>,
     fitted: &FittedHypothesis,
     in_model: &[Candidate],
     most: f64,
-) -> Option<Vec<Predicted>> {
+) -> Option<Vec<CandidatePrediction>> {
     let mut screening = screen_candidates(pool.context.problem, &fitted.fit, in_model, 1.0);
     let cost = screening.predict(&[]).cost;
     let theta = &fitted.fit.train.estimate.theta;
@@ -173,7 +173,7 @@ fn predictions(
         };
     }
     let ids = ResponseId::first(screening.responses.len());
-    let predictions = ids.map(|id| Predicted {
+    let predictions = ids.map(|id| CandidatePrediction {
         candidate: screening.responses[id].candidate,
         prediction: screening.predict(&[id]),
     });
@@ -186,7 +186,7 @@ fn predictions(
 
 /// Returns the ratio of the fitted shape of a hypothesis to its initial value. For example, the
 /// Stribeck speed scales with the usual speed at its site.
-fn shape_ratio(pool: &CandidatePool<'_>, fitted: &FittedHypothesis) -> Option<f64> {
+fn compute_shape_ratio(pool: &CandidatePool<'_>, fitted: &FittedHypothesis) -> Option<f64> {
     let shape = fitted.effect_unknowns.iter().find(|own| own.is_shape)?;
     let began = pool.screening.responses[fitted.responses[0]]
         .candidate_unknowns
@@ -197,7 +197,7 @@ fn shape_ratio(pool: &CandidatePool<'_>, fitted: &FittedHypothesis) -> Option<f6
 
 /// Returns the same effect at other sites and similar candidates. Candidates whose fits already
 /// have an equally small residual are left out.
-fn rivals(
+fn list_rivals(
     pool: &CandidatePool<'_>,
     fitted_hypotheses: &[FittedHypothesis],
     answer: FittedId,

@@ -70,7 +70,7 @@ pub(crate) fn fit_without_effect(
     effect_id: EffectId,
 ) -> Result<Fit, DiscoverError> {
     let fit = found.best_fit();
-    let gone = &found.accepted[effect_id];
+    let removed = &found.accepted[effect_id];
     let mut texts = found.null_fit.texts.clone();
     for (other, effect) in EffectId::first(found.accepted.len()).zip(&found.accepted) {
         if other == effect_id || effect.candidate.dropped_prior.is_some() {
@@ -81,13 +81,13 @@ pub(crate) fn fit_without_effect(
     }
     let mut unknowns = fit.unknowns.clone();
     let mut theta = fit.train.estimate.theta.clone();
-    if gone.candidate.dropped_prior.is_some() {
-        for id in &gone.unknowns {
+    if removed.candidate.dropped_prior.is_some() {
+        for id in &removed.unknowns {
             unknowns[*id].clone_from(&found.null_fit.unknowns[*id]);
             theta[*id] = found.null_fit.unknowns[*id].start;
         }
     } else {
-        let is_kept = |id: &UnknownId| !gone.unknowns.contains(id);
+        let is_kept = |id: &UnknownId| !removed.unknowns.contains(id);
         let kept: Vec<UnknownId> = UnknownId::first(unknowns.len()).filter(is_kept).collect();
         unknowns = kept.iter().map(|id| unknowns[*id].clone()).collect();
         theta = kept.iter().map(|id| theta[*id]).collect();
@@ -104,15 +104,19 @@ pub(crate) fn fit_without_effect(
 
 /// Removes an effect from the list and renumbers the unknowns of the following effects.
 fn renumber(accepted: &mut Vec<AcceptedEffect>, effect_id: EffectId) -> Candidate {
-    let gone = accepted.remove(effect_id.index());
-    if gone.candidate.dropped_prior.is_some() {
-        return gone.candidate;
+    let removed = accepted.remove(effect_id.index());
+    if removed.candidate.dropped_prior.is_some() {
+        return removed.candidate;
     }
     for effect in accepted {
         for id in &mut effect.unknowns {
-            let before = gone.unknowns.iter().filter(|gone| *gone < id).count();
+            let before = removed
+                .unknowns
+                .iter()
+                .filter(|removed| *removed < id)
+                .count();
             *id = UnknownId::new(id.index() - before);
         }
     }
-    gone.candidate
+    removed.candidate
 }

@@ -23,7 +23,7 @@ pub struct RoundContext<'r> {
 impl RoundContext<'_> {
     /// Returns true if the residual is close to the noise.
     pub fn is_near_floor(&self) -> bool {
-        self.fit.train.rms < thresholds::FAR_FROM_NOISE
+        self.fit.train.rms < thresholds::MIN_RMS_FAR_FROM_NOISE
     }
 
     /// Returns true if candidates are first screened over whole windows.
@@ -34,7 +34,7 @@ impl RoundContext<'_> {
     /// Returns true if a fit explains most of the gap to the noise floor.
     pub fn explains_most_of_gap(&self, fit: &Fit) -> bool {
         let little = (thresholds::MAX_FLOOR_RATIO_TO_STOP * self.floor)
-            .max(thresholds::MAX_LEFT_OF_RESIDUALS * self.fit.rms());
+            .max(thresholds::MAX_REMAINING_FRACTION * self.fit.rms());
         fit.is_below(little)
     }
 }

@@ -24,7 +24,7 @@ pub struct Hypothesis {
 }
 
 /// Unknowns of a fit and of the additional candidates, and their initial values, SI.
-struct Extended {
+struct ExtendedUnknowns {
     unknowns: Vec<Unknown>,
     theta: Vec<f64>,
 }
@@ -86,8 +86,9 @@ pub fn fit_preliminary(
     let limited = (pool.most_evaluations).map(|most| pool.context.problem.limit_evaluations(most));
     let problem = limited.as_ref().unwrap_or(pool.context.problem);
     problem.stop.check_not_stopped()?;
-    let Extended { unknowns, theta } = unknowns_with(pool, hypothesis, pool.size_fractions[0]);
-    let texts = texts(pool, hypothesis, &unknowns, &theta)?;
+    let ExtendedUnknowns { unknowns, theta } =
+        extend_unknowns(pool, hypothesis, pool.size_fractions[0]);
+    let texts = write_texts(pool, hypothesis, &unknowns, &theta)?;
     // With additional coordinates, even a small vibration is far from the previous fit.
     let adds_states = hypothesis.responses.iter().any(|response| {
         let parameters = &pool.candidate(*response).parameters;
@@ -95,8 +96,8 @@ pub fn fit_preliminary(
     });
     let others = pool.size_fractions[1..]
         .iter()
-        .map(|part| unknowns_with(pool, hypothesis, *part).theta);
-    let begins: Vec<Vec<f64>> = std::iter::once(theta).chain(others).collect();
+        .map(|part| extend_unknowns(pool, hypothesis, *part).theta);
+    let initial_values: Vec<Vec<f64>> = std::iter::once(theta).chain(others).collect();
     if pool.uses_whole_windows && hypothesis.replaced_parameter.is_none() && !adds_states {
         let cost = pool.screening.predict(&hypothesis.responses).cost;
         let most = thresholds::MAX_WARM_START_RATIO * fit.train.rms;
@@ -105,9 +106,16 @@ pub fn fit_preliminary(
             cost,
             max_rms: most,
         };
-        return preliminary_fit::start_from_fit(problem, texts, unknowns, &begins, warm_start);
+        return preliminary_fit::start_from_fit(
+            problem,
+            texts,
+            unknowns,
+            &initial_values,
+            warm_start,
+        );
     }
-    let mut preliminary = preliminary_fit::fit_beginnings(problem, texts, unknowns, &begins)?;
+    let mut preliminary =
+        preliminary_fit::fit_initial_segments(problem, texts, unknowns, &initial_values)?;
     if pool.uses_whole_windows {
         // Preliminary fits are compared by predictions over whole windows.
         preliminary.cost = pool.screening.predict(&hypothesis.responses).cost;
@@ -122,18 +130,18 @@ pub fn fit_with_shape_factor(
     hypothesis: &Hypothesis,
     times: f64,
 ) -> Result<PreliminaryFit, DiscoverError> {
-    let Extended {
+    let ExtendedUnknowns {
         unknowns,
         mut theta,
-    } = unknowns_with(pool, hypothesis, 1.0);
+    } = extend_unknowns(pool, hypothesis, 1.0);
     for own in list_effect_unknowns(pool, hypothesis)
         .iter()
         .filter(|own| own.is_shape)
     {
         theta[own.unknown] = unknowns[own.unknown].clamp(times * theta[own.unknown]);
     }
-    let texts = texts(pool, hypothesis, &unknowns, &theta)?;
-    preliminary_fit::fit_beginnings(pool.context.problem, texts, unknowns, &[theta])
+    let texts = write_texts(pool, hypothesis, &unknowns, &theta)?;
+    preliminary_fit::fit_initial_segments(pool.context.problem, texts, unknowns, &[theta])
 }
 
 /// Fits a hypothesis of one candidate, starting from the initial states of a fit with another
@@ -144,10 +152,10 @@ pub fn fit_from_warm_start(
     warm_start: WarmStart<'_>,
     shape_ratio: f64,
 ) -> Result<PreliminaryFit, DiscoverError> {
-    let Extended {
+    let ExtendedUnknowns {
         unknowns,
         mut theta,
-    } = unknowns_with(pool, hypothesis, 1.0);
+    } = extend_unknowns(pool, hypothesis, 1.0);
     let count = pool.context.fit.unknowns.len();
     theta[..count].copy_from_slice(&warm_start.fit.train.estimate.theta[..count]);
     for own in list_effect_unknowns(pool, hypothesis)
@@ -156,7 +164,7 @@ pub fn fit_from_warm_start(
     {
         theta[own.unknown] = unknowns[own.unknown].clamp(shape_ratio * theta[own.unknown]);
     }
-    let texts = texts(pool, hypothesis, &unknowns, &theta)?;
+    let texts = write_texts(pool, hypothesis, &unknowns, &theta)?;
     preliminary_fit::start_from_fit(pool.context.problem, texts, unknowns, &[theta], warm_start)
 }
 
@@ -168,10 +176,10 @@ pub fn fit_half_from_pair(
     pair: &Fit,
     own: &[f64],
 ) -> Result<PreliminaryFit, DiscoverError> {
-    let Extended { unknowns, .. } = unknowns_with(pool, hypothesis, 1.0);
+    let ExtendedUnknowns { unknowns, .. } = extend_unknowns(pool, hypothesis, 1.0);
     let count = pool.context.fit.unknowns.len();
     let theta = [&pair.train.estimate.theta[..count], own].concat();
-    let texts = texts(pool, hypothesis, &unknowns, &theta)?;
+    let texts = write_texts(pool, hypothesis, &unknowns, &theta)?;
     let warm_start = WarmStart {
         fit: pair,
         cost: pair.train.estimate.cost,
@@ -182,7 +190,7 @@ pub fn fit_half_from_pair(
 
 /// Returns the texts of the specification with the candidates of a hypothesis, for given values of
 /// the unknowns.
-fn texts(
+fn write_texts(
     pool: &CandidatePool<'_>,
     hypothesis: &Hypothesis,
     unknowns: &[Unknown],
@@ -209,7 +217,11 @@ fn texts(
 
 /// Returns the unknowns with the candidates of a hypothesis, and initial values. The candidates
 /// have the fraction `part` of their predicted sizes.
-fn unknowns_with(pool: &CandidatePool<'_>, hypothesis: &Hypothesis, part: f64) -> Extended {
+fn extend_unknowns(
+    pool: &CandidatePool<'_>,
+    hypothesis: &Hypothesis,
+    part: f64,
+) -> ExtendedUnknowns {
     let fit = pool.context.fit;
     let mut unknowns = fit.unknowns.clone();
     let mut theta = fit.restart_values();
@@ -246,5 +258,5 @@ fn unknowns_with(pool: &CandidatePool<'_>, hypothesis: &Hypothesis, part: f64) -
             unknowns.push(unknown);
         }
     }
-    Extended { unknowns, theta }
+    ExtendedUnknowns { unknowns, theta }
 }

@@ -37,7 +37,7 @@ pub fn run_preliminary_fits(
     pool: &CandidatePool<'_>,
     hypotheses: Vec<Hypothesis>,
 ) -> Vec<(Hypothesis, PreliminaryFit)> {
-    let alone = pool.screening.predict(&[]).cost;
+    let without_candidates = pool.screening.predict(&[]).cost;
     let of = match pool.uses_whole_windows {
         true => "squared residual",
         false => "initial-segment residual",
@@ -46,7 +46,7 @@ pub fn run_preliminary_fits(
     let fitted = |hypothesis: Hypothesis| {
         let preliminary = hypothesis::fit_preliminary(pool, &hypothesis);
         let left = match &preliminary {
-            Ok(fit) => describe_remaining(fit.cost / alone, of),
+            Ok(fit) => describe_remaining(fit.cost / without_candidates, of),
             Err(error) => describe_failure(error),
         };
         let label = hypothesis::describe_hypothesis(pool, &hypothesis);
@@ -152,7 +152,7 @@ mod tests {
     use super::describe_remaining;
 
     #[test]
-    fn fits_worse_than_none_have_no_percentage() {
+    fn failed_fits_have_no_percentage() {
         let of = "initial-segment residual";
         assert_eq!(
             describe_remaining(0.178, of),

@@ -180,7 +180,7 @@ impl Search<'_> {
                 found.unconfirmed = unconfirmed;
                 break;
             };
-            accept(found, selected);
+            add_accepted(found, selected);
             eliminate_backwards(problem, found, progress);
         }
         Ok(is_scanned)
@@ -225,19 +225,19 @@ impl Search<'_> {
             (self.progress)(&format!("  {} is no longer needed", candidate.label()));
             found.rejected.push(RejectedCandidate {
                 candidate,
-                reason: "a law that was found by a scan leaves less without it".to_owned(),
+                reason: "a scanned law explains the records better without it".to_owned(),
                 best_reduction: None,
                 is_untestable: false,
                 p_value: None,
             });
         }
         (found.extended_fit, found.unconfirmed) = (None, None);
-        accept(found, selected);
+        add_accepted(found, selected);
     }
 }
 
 /// Adds the selected effects to the result, with the candidates that are inseparable from them.
-fn accept(found: &mut SearchResult, selected: SelectedHypothesis) {
+fn add_accepted(found: &mut SearchResult, selected: SelectedHypothesis) {
     let (before, best) = (found.best_fit(), selected.hypothesis);
     let gap = TestGap {
         before: before.test.rms,

@@ -7,7 +7,7 @@ use crate::catalogue::candidate::{Candidate, list_candidates};
 use crate::catalogue::sites::find_sites;
 use crate::catalogue::usual_motion::UsualMotion;
 use crate::ids::{CandidateId, ResponseId};
-use crate::search::alternatives::begin_from_answer;
+use crate::search::alternatives::start_from_answer;
 use crate::search::context::RoundContext;
 use crate::search::hypothesis_fits::{FittedHypothesis, run_full_fits};
 use crate::search::motion_of_fit::compute_usual_motion;
@@ -19,7 +19,7 @@ use crate::thresholds;
 
 /// If the best hypothesis is a wave over an angle, fits the neighbouring orders of it and of all
 /// orders with nearly as small a residual. If the best order reaches the residual of a correct
-/// model, so must these orders. Orders from numbers of teeth are known and have no neighbours.
+/// model, these orders must reach it too. Orders from numbers of teeth are known and have no neighbours.
 pub fn follow_orders(context: RoundContext<'_>, mut tested: TestedPool) -> TestedPool {
     let mut tried: Vec<u32> = Vec::new();
     while tried.len() < thresholds::MAX_FOLLOWED_ORDERS {
@@ -28,7 +28,7 @@ pub fn follow_orders(context: RoundContext<'_>, mut tested: TestedPool) -> Teste
         };
         tried.extend(&orders);
         let label = best.label();
-        let known = fitted_candidates(&tested);
+        let known = list_fitted_candidates(&tested);
         let new = list_orders(context, &best, &orders);
         if new.is_empty() {
             break;
@@ -85,7 +85,7 @@ fn find_missing_orders(
 }
 
 /// Returns the candidates of all fitted hypotheses.
-fn fitted_candidates(tested: &TestedPool) -> Vec<Candidate> {
+fn list_fitted_candidates(tested: &TestedPool) -> Vec<Candidate> {
     let is_fitted = |id: &CandidateId| {
         let mut fitted = tested.fitted_hypotheses.iter();
         fitted.any(|fitted| {
@@ -158,9 +158,9 @@ fn fit_orders(context: RoundContext<'_>, tested: &mut TestedPool, label: &str, o
     };
     let wanted: Vec<ResponseId> = responses.filter(is_wanted).collect();
     let mut found = Vec::new();
-    for pair in wanted.chunks(thresholds::FITS_IN_PARALLEL) {
-        let begun = begin_from_answer(&pool, fitted, response, pair, f64::INFINITY);
-        found.extend(run_full_fits(&pool, begun.unwrap_or_default()));
+    for pair in wanted.chunks(thresholds::PARALLEL_FIT_COUNT) {
+        let started = start_from_answer(&pool, fitted, response, pair, f64::INFINITY);
+        found.extend(run_full_fits(&pool, started.unwrap_or_default()));
     }
     found.retain(|fitted| fitted.explains_records);
     tested.fitted_hypotheses.extend(found);

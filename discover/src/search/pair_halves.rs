@@ -16,14 +16,14 @@ pub fn fit_halves(pool: &CandidatePool<'_>, pairs: &[FittedHypothesis]) -> Vec<F
     let mut known: Vec<ResponseId> = Vec::new();
     let mut preliminaries = Vec::new();
     for pair in pairs {
-        let Some(half) = necessary_half(pool, pair) else {
+        let Some(half) = find_necessary_half(pool, pair) else {
             continue;
         };
         let response = pair.responses[half.index()];
         if known.contains(&response) {
             continue;
         }
-        if let Some(found) = begun(pool, pair, half) {
+        if let Some(found) = start_half(pool, pair, half) {
             known.push(response);
             preliminaries.push(found);
         }
@@ -32,7 +32,7 @@ pub fn fit_halves(pool: &CandidatePool<'_>, pairs: &[FittedHypothesis]) -> Vec<F
 }
 
 /// Returns the only necessary effect of a pair; `None` if both or none are necessary.
-fn necessary_half(pool: &CandidatePool<'_>, pair: &FittedHypothesis) -> Option<EffectId> {
+fn find_necessary_half(pool: &CandidatePool<'_>, pair: &FittedHypothesis) -> Option<EffectId> {
     let little = thresholds::MAX_FLOOR_RATIO_TO_STOP * pool.context.floor;
     let has_terms = |response: &ResponseId| {
         let response = &pool.screening.responses[*response];
@@ -58,7 +58,7 @@ fn necessary_half(pool: &CandidatePool<'_>, pair: &FittedHypothesis) -> Option<E
 }
 
 /// Runs a preliminary fit of one effect of a pair, starting from the estimates of the pair.
-fn begun(
+fn start_half(
     pool: &CandidatePool<'_>,
     pair: &FittedHypothesis,
     half: EffectId,

@@ -29,10 +29,11 @@ pub fn fit_pairs(pool: &CandidatePool<'_>, singles: &[FittedHypothesis]) -> Vec<
     let is_there = |response: &ResponseId| !at_limit.contains(response);
     let ranking: Vec<ResponseId> = pool.rank_responses().into_iter().filter(is_there).collect();
     let mut added = 0;
-    let mut preliminaries = run_preliminary_fits(pool, best_pairs(pool, &ranking, &at_limit));
+    let mut preliminaries =
+        run_preliminary_fits(pool, select_best_pairs(pool, &ranking, &at_limit));
     preliminaries.retain(|(hypothesis, _)| {
         added += usize::from(hypothesis.replaced_parameter.is_none());
-        hypothesis.replaced_parameter.is_some() || added <= thresholds::FITS_IN_PARALLEL
+        hypothesis.replaced_parameter.is_some() || added <= thresholds::PARALLEL_FIT_COUNT
     });
     let mut fitted_hypotheses = run_full_fits(pool, preliminaries);
     let alone = fit_halves(pool, &fitted_hypotheses);
@@ -52,7 +53,7 @@ pub fn fit_pairs(pool: &CandidatePool<'_>, singles: &[FittedHypothesis]) -> Vec<
 /// each term of the model that may be deleted, also returns the pair that replaces it best.
 /// Periodic candidates are so numerous that some fit by chance: only the best are paired, and only
 /// with other candidates.
-fn best_pairs(
+fn select_best_pairs(
     pool: &CandidatePool<'_>,
     ranking: &[ResponseId],
     at_limit: &[ResponseId],
@@ -88,9 +89,9 @@ fn best_pairs(
                 let LinearPrediction { cost, sizes } = screening.predict(&responses);
                 // If a term is replaced, the linear prediction is not used, because the change is
                 // too large.
-                let promising =
+                let is_worth_fitting =
                     deleted.is_some() || cost < thresholds::MAX_PAIR_COST_RATIO * single;
-                if promising
+                if is_worth_fitting
                     && sizes.iter().all(|v| *v != 0.0)
                     && !screening.is_cancelling(&responses, &sizes)
                 {
@@ -132,7 +133,7 @@ fn best_pairs(
 
 /// Fits pairs that share one effect with a given pair and whose other effect is similar to the
 /// other effect of this pair. If the gap of the pair exceeds that of a correct model, its effect at
-/// other sites is fitted too. At most [`thresholds::FITS_IN_PARALLEL`] new pairs are fitted, the
+/// other sites is fitted too. At most [`thresholds::PARALLEL_FIT_COUNT`] new pairs are fitted, the
 /// most similar first.
 pub fn fit_other_halves(
     pool: &CandidatePool<'_>,
@@ -168,7 +169,7 @@ pub fn fit_other_halves(
         }
     }
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    found.truncate(thresholds::FITS_IN_PARALLEL);
+    found.truncate(thresholds::PARALLEL_FIT_COUNT);
     let hypothesis = |(_, responses): (f64, Vec<ResponseId>)| Hypothesis {
         predicted_sizes: pool.screening.predict(&responses).sizes,
         responses,

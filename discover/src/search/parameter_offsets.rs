@@ -80,7 +80,7 @@ pub fn fit_similar_offsets(
             "sensors and declared parameters",
         ),
         false => (
-            [offsets, waves(context, selected)].concat(),
+            [offsets, list_waves(context, selected)].concat(),
             "parameters of the model and of inputs",
         ),
     };
@@ -124,7 +124,7 @@ pub fn fit_similar_pairs(
     context: RoundContext<'_>,
     halves: &[Candidate],
 ) -> Option<SimilarOffsets> {
-    let waves = halves.iter().flat_map(|half| waves(context, half));
+    let waves = halves.iter().flat_map(|half| list_waves(context, half));
     let mut offsets: Vec<Candidate> = list_offsets(context).into_iter().chain(waves).collect();
     offsets.retain(|offset| !halves.iter().any(|half| half.is_same_effect_as(offset)));
     if offsets.is_empty() {
@@ -132,7 +132,7 @@ pub fn fit_similar_pairs(
     }
     let labels: Vec<String> = halves.iter().map(Candidate::label).collect();
     (context.progress)(&format!(
-        "screening {} parameters of the model and of inputs in the place of {}",
+        "screening {} parameters of the model and of inputs instead of {}",
         offsets.len(),
         labels.join(" or ")
     ));
@@ -166,7 +166,7 @@ pub fn fit_similar_pairs(
 /// Returns the periodic candidates over the angle of an accepted effect that is not periodic: an
 /// unbalanced weight and a torque with one period per turn are the same term. In a round, periodic
 /// candidates are tested only if the predictions of all others are poor.
-fn waves(context: RoundContext<'_>, selected: &Candidate) -> Vec<Candidate> {
+fn list_waves(context: RoundContext<'_>, selected: &Candidate) -> Vec<Candidate> {
     if selected.angle_order.is_some() {
         return Vec::new();
     }

@@ -37,7 +37,7 @@ pub fn simulate_responses(
         .map(|group| {
             let mut sizes: Vec<f64> = Vec::new();
             let of_group = group.iter().map(|candidate| {
-                let found = response(at, problem, fit, candidate, &sizes);
+                let found = simulate_response(at, problem, fit, candidate, &sizes);
                 if let Ok(CandidateResponse {
                     candidate_unknowns, ..
                 }) = &found
@@ -56,7 +56,7 @@ pub fn simulate_responses(
 }
 
 /// Returns the response of a candidate in each window, one column per scaling parameter.
-fn response(
+fn simulate_response(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -119,14 +119,14 @@ fn response(
         let all = (0..windows.len()).collect();
         let is_known = number < sizes.len() || candidate_unknowns[number].base != 0.0;
         let scale = candidate_unknowns[number].unknown.scale;
-        let find_size = |places: Vec<usize>| {
-            trial_size((scale, is_known), *level, |size| {
-                let changes = changes(
+        let find_size = |indices: Vec<usize>| {
+            find_trial_size((scale, is_known), *level, |size| {
+                let changes = compute_changes(
                     &shooting,
                     fit,
                     estimate,
                     &theta(size),
-                    places.iter().map(|k| (windows[*k], &base[*k])),
+                    indices.iter().map(|k| (windows[*k], &base[*k])),
                 )?;
                 let numbers: f64 = changes.iter().map(|c| c.len() as f64).sum();
                 let square: f64 = changes.iter().map(DVector::norm_squared).sum();
@@ -138,7 +138,7 @@ fn response(
             return Err(DiscoverError::NotExcited);
         };
         let pairs = windows.iter().copied().zip(base.iter());
-        let changes = changes(&shooting, fit, estimate, &theta(size), pairs)
+        let changes = compute_changes(&shooting, fit, estimate, &theta(size), pairs)
             .ok_or(DiscoverError::CandidateSimulationFailed)?;
         for (window, change) in columns.iter_mut().zip(changes) {
             window.push(change / size);
@@ -156,7 +156,7 @@ fn response(
 }
 
 /// Returns the changes of the residuals in some windows; `None` if a motion cannot be simulated.
-fn changes<'b>(
+fn compute_changes<'b>(
     shooting: &Shooting<'_>,
     fit: &Fit,
     estimate: &Estimate,
@@ -180,7 +180,7 @@ fn changes<'b>(
 /// Returns the size of a parameter for which the outputs change by the required amount; `None` if
 /// there is no such size. `start`: first trial size, and true if it was derived from the model. In
 /// this case it may be returned without a correction, because it does not depend on units.
-fn trial_size(
+fn find_trial_size(
     (start, is_known): (f64, bool),
     level: f64,
     moved: impl Fn(f64) -> Option<f64>,

@@ -47,12 +47,14 @@ impl<'r> CandidatePool<'r> {
     /// Returns the candidates with a sufficient predicted improvement. The best is first.
     pub fn rank_responses(&self) -> Vec<ResponseId> {
         let screening = self.screening;
-        let alone = screening.predict(&[]).cost;
-        let promise = match alone
-            > thresholds::FAR_FROM_NOISE * thresholds::FAR_FROM_NOISE * screening.number_count
+        let without_candidates = screening.predict(&[]).cost;
+        let least = match without_candidates
+            > thresholds::MIN_RMS_FAR_FROM_NOISE
+                * thresholds::MIN_RMS_FAR_FROM_NOISE
+                * screening.number_count
         {
-            true => thresholds::MIN_PROMISED_REDUCTION_FAR,
-            false => thresholds::MIN_PROMISED_REDUCTION,
+            true => thresholds::MIN_PREDICTED_REDUCTION_FAR_FROM_NOISE,
+            false => thresholds::MIN_PREDICTED_REDUCTION,
         };
         let enough = |r: &ResponseId| {
             let response = &screening.responses[*r];
@@ -60,8 +62,8 @@ impl<'r> CandidatePool<'r> {
             // within their priors.
             let is_own = response.dropped_prior.is_some()
                 || response.unexplained_fraction > thresholds::MIN_UNEXPLAINED_FRACTION
-                || response.cost_decrease > thresholds::MIN_EXPLAINED_FRACTION * alone;
-            is_own && response.cost_decrease > promise * alone
+                || response.cost_decrease > thresholds::MIN_EXPLAINED_FRACTION * without_candidates;
+            is_own && response.cost_decrease > least * without_candidates
         };
         let mut ranking: Vec<ResponseId> = ResponseId::first(screening.responses.len())
             .filter(enough)

@@ -24,7 +24,7 @@ struct Reason {
 pub fn note_rejected(rejected: &mut Vec<RejectedCandidate>, round: &[TestedPool]) {
     let mut fitted: Vec<String> = Vec::new();
     for tested in round {
-        for (candidate, reason) in reasons(tested) {
+        for (candidate, reason) in list_reasons(tested) {
             let label = candidate.label();
             if fitted.contains(&label) && !reason.is_of_fit {
                 continue;
@@ -62,7 +62,7 @@ pub fn note_unfitted(rejected: &mut Vec<RejectedCandidate>, unfitted: Vec<Reject
 
 /// Returns the reason for the rejection of each candidate of a pool, including candidates that are
 /// accepted later.
-fn reasons(tested: &TestedPool) -> Vec<(&Candidate, Reason)> {
+fn list_reasons(tested: &TestedPool) -> Vec<(&Candidate, Reason)> {
     let screening = &tested.screening;
     let not_excited = screening.unexcited.iter();
     let mut found: Vec<(&Candidate, Reason)> = not_excited
@@ -81,15 +81,15 @@ fn reasons(tested: &TestedPool) -> Vec<(&Candidate, Reason)> {
         let mut hypotheses = tested.fitted_hypotheses.iter();
         let alone = hypotheses.find(|fitted| fitted.responses == [id]);
         let reason = match alone {
-            Some(fitted) => of_fit(fitted),
-            None => of_screening(tested, id),
+            Some(fitted) => explain_fit(fitted),
+            None => explain_screening(tested, id),
         };
         found.push((&tested.candidates[response.candidate], reason));
     }
     found
 }
 
-fn of_fit(fitted: &FittedHypothesis) -> Reason {
+fn explain_fit(fitted: &FittedHypothesis) -> Reason {
     let text = match &fitted.verdict {
         Err(reason) => reason.to_string(),
         Ok(_) => format!(
@@ -107,7 +107,7 @@ fn of_fit(fitted: &FittedHypothesis) -> Reason {
     }
 }
 
-fn of_screening(tested: &TestedPool, id: ResponseId) -> Reason {
+fn explain_screening(tested: &TestedPool, id: ResponseId) -> Reason {
     let screening = &tested.screening;
     let response = &screening.responses[id];
     let not_testable = response.unexplained_fraction <= thresholds::MIN_UNEXPLAINED_FRACTION;

@@ -37,7 +37,7 @@ pub enum Rejection {
     Significance(f64),
     /// The influence relative to the noise is too small.
     Influence(f64),
-    /// In a pair, a large residual remains.
+    /// The pair leaves a large residual.
     LargeRemainder,
     /// The effect closes too small a fraction of the gap.
     Closure {
@@ -81,15 +81,15 @@ impl fmt::Display for Rejection {
             Self::Interrupted => f.write_str("stopped before the comparison with the test records"),
             Self::StandardErrors(errors) => write!(
                 f,
-                "the improvement of the test records may be chance: {errors:.1} standard errors, {} are required",
+                "the improvement of the test records may be due to chance: {errors:.1} standard errors, {} are required",
                 thresholds::MIN_REDUCTION_STANDARD_ERRORS
             ),
             Self::Information {
                 gain: found,
-                required: asked,
+                required,
             } => write!(
                 f,
-                "the information gain in the training records is too small: {found:.1}, {asked} are required"
+                "the information gain in the training records is too small: {found:.1}, {required} are required"
             ),
             Self::Significance(t) => write!(
                 f,
@@ -102,8 +102,7 @@ impl fmt::Display for Rejection {
                 thresholds::MIN_EFFECT_OVER_NOISE
             ),
             Self::LargeRemainder => f.write_str(
-                "together with another effect a large residual remains, which may \
-             be chance",
+                "together with another effect a large residual remains; the fit may be due to chance",
             ),
             Self::Closure { train, test } => write!(
                 f,

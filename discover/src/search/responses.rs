@@ -23,7 +23,7 @@ pub fn compute_responses(
     candidates: &[Candidate],
 ) -> Vec<Result<CandidateResponse, DiscoverError>> {
     let mut found = compute_at_shapes(at, problem, fit, candidates);
-    for factor in other_shapes() {
+    for factor in list_other_shapes() {
         let not_excited: Vec<(CandidateId, Candidate)> = CandidateId::first(candidates.len())
             .filter(|id| matches!(found[id.index()], Err(DiscoverError::NotExcited)))
             .filter_map(|id| Some((id, scale_shape(&candidates[id], factor)?)))
@@ -41,7 +41,7 @@ pub fn compute_responses(
 
 /// Returns factors on the initial shape, half a decade apart over the scanned range. The factors
 /// nearest to 1 are first.
-fn other_shapes() -> Vec<f64> {
+fn list_other_shapes() -> Vec<f64> {
     let (low, high) = thresholds::SHAPE_SCAN_DECADES;
     let mut halves: Vec<i32> = ((2.0 * low) as i32..=(2.0 * high) as i32).collect();
     halves.retain(|half| *half != 0);

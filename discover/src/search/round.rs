@@ -53,7 +53,7 @@ impl SearchRound<'_> {
         let mut tested: Vec<TestedPool> = Vec::new();
         let mut seen: Vec<ExcitationWindow> = Vec::new();
         let mut has_offsets = false;
-        for window in self.windows() {
+        for window in self.choose_windows() {
             if *window == ExcitationWindow::BacklashRemoved {
                 // In a model without play, candidates outside the teeth are predicted too poorly.
                 // Therefore this window is used only if no other candidate is accepted.
@@ -63,7 +63,7 @@ impl SearchRound<'_> {
                 // Fits with closed play are slow and are skipped if an undeclared parameter
                 // explains the records.
                 if self.is_first_round && !self.context.is_near_floor() {
-                    tested.push(self.offsets());
+                    tested.push(self.test_offsets());
                     has_offsets = true;
                     if is_any(&tested, &|fitted| self.is_enough(fitted)) {
                         break;
@@ -91,8 +91,11 @@ impl SearchRound<'_> {
         // effects that have a shape.
         let is_simple =
             |best: &FittedHypothesis| best.effect_unknowns.len() == 1 && self.is_near_floor(best);
-        if self.is_first_round && !has_offsets && !best_accepted(&tested).is_some_and(is_simple) {
-            tested.push(self.offsets());
+        if self.is_first_round
+            && !has_offsets
+            && !find_best_accepted(&tested).is_some_and(is_simple)
+        {
+            tested.push(self.test_offsets());
             has_offsets = true;
         }
         let is_explained = |fitted: &FittedHypothesis| self.is_enough(fitted);
@@ -122,16 +125,16 @@ impl SearchRound<'_> {
         }
         let is_accepted = |fitted: &FittedHypothesis| fitted.verdict.is_ok();
         if !has_offsets && !self.context.is_near_floor() && !is_any(&tested, &is_accepted) {
-            tested.push(self.offsets());
+            tested.push(self.test_offsets());
             has_offsets = true;
         }
         if has_offsets {
-            keep_clear(&mut tested);
+            remove_unclear(&mut tested);
         }
         tested
     }
 
-    fn windows(&self) -> &'static [ExcitationWindow] {
+    fn choose_windows(&self) -> &'static [ExcitationWindow] {
         match (
             self.context.problem.estimates_initial_states(),
             self.context.is_near_floor(),
@@ -184,7 +187,7 @@ impl SearchRound<'_> {
             (self.context.progress)("fitting the model without play");
         }
         let fit = closed.as_ref().unwrap_or(self.context.fit);
-        let (mut candidates, repeating) = self.candidates(fit, window);
+        let (mut candidates, repeating) = self.split_candidates(fit, window);
         (self.context.progress)(&format!("screening {} candidates", candidates.len()));
         let screened = screen_candidates(
             self.context.problem,
@@ -193,8 +196,9 @@ impl SearchRound<'_> {
             window.window_fraction(),
         );
         let (mut from, mut fitted_hypotheses) = (CandidateId::new(0), Vec::new());
-        if repeating.is_empty() || self.promises_enough(&screened) {
-            fitted_hypotheses = fit_singles(&self.pool_in(window, &candidates, &screened), from);
+        if repeating.is_empty() || self.predicts_enough(&screened) {
+            fitted_hypotheses =
+                fit_singles(&self.create_pool(window, &candidates, &screened), from);
             if repeating.is_empty() || fitted_hypotheses.iter().any(|fitted| self.is_close(fitted))
             {
                 return Some(TestedPool {
@@ -230,7 +234,7 @@ impl SearchRound<'_> {
         }
         let screened = rescreened;
         fitted_hypotheses.extend(fit_singles(
-            &self.pool_in(window, &candidates, &screened),
+            &self.create_pool(window, &candidates, &screened),
             from,
         ));
         Some(TestedPool {
@@ -241,7 +245,7 @@ impl SearchRound<'_> {
     }
 
     /// Creates the pool of candidates of an excitation window.
-    fn pool_in<'r>(
+    fn create_pool<'r>(
         &'r self,
         window: ExcitationWindow,
         candidates: &'r [Candidate],
@@ -256,7 +260,7 @@ impl SearchRound<'_> {
         match window {
             // Without play, the linear prediction is accurate, so few initial sizes suffice.
             ExcitationWindow::BacklashRemoved => CandidatePool {
-                max_preliminary_fits: 2 * thresholds::FITS_IN_PARALLEL,
+                max_preliminary_fits: 2 * thresholds::PARALLEL_FIT_COUNT,
                 size_fractions: &thresholds::INITIAL_SIZE_FRACTIONS[..2],
                 ..pool
             },
@@ -267,7 +271,7 @@ impl SearchRound<'_> {
     /// Adds pairs for one excitation window after the other until some are accepted.
     fn add_pairs(&self, seen: &[ExcitationWindow], tested: &mut [TestedPool]) {
         for (window, tested) in seen.iter().zip(tested) {
-            let pool = self.pool_in(*window, &tested.candidates, &tested.screening);
+            let pool = self.create_pool(*window, &tested.candidates, &tested.screening);
             let pairs = fit_pairs(&pool, &tested.fitted_hypotheses);
             let fitted_hypotheses = &mut tested.fitted_hypotheses;
             fitted_hypotheses.extend(pairs);
@@ -281,13 +285,13 @@ impl SearchRound<'_> {
     }
 
     /// Screens and fits undeclared parameters and errors of inputs.
-    fn offsets(&self) -> TestedPool {
+    fn test_offsets(&self) -> TestedPool {
         let offsets = list_offsets(self.context);
         (self.context.progress)(&format!(
             "screening {} parameters of the model and of inputs",
             offsets.len()
         ));
-        let window = self.windows()[0];
+        let window = self.choose_windows()[0];
         let screening = screen_candidates(
             self.context.problem,
             self.context.fit,
@@ -295,7 +299,7 @@ impl SearchRound<'_> {
             window.window_fraction(),
         );
         let fitted_hypotheses = fit_singles(
-            &self.pool_in(window, &offsets, &screening),
+            &self.create_pool(window, &offsets, &screening),
             CandidateId::new(0),
         );
         TestedPool {
@@ -309,7 +313,11 @@ impl SearchRound<'_> {
     /// which are numerous. Periodic errors of teeth are much larger than their deflection, and
     /// often larger than their play. They are therefore screened in the model with closed play,
     /// which is used for nothing else.
-    fn candidates(&self, fit: &Fit, window: ExcitationWindow) -> (Vec<Candidate>, Vec<Candidate>) {
+    fn split_candidates(
+        &self,
+        fit: &Fit,
+        window: ExcitationWindow,
+    ) -> (Vec<Candidate>, Vec<Candidate>) {
         let (problem, has_play) = (
             self.context.problem,
             window != ExcitationWindow::BacklashRemoved,
@@ -338,7 +346,7 @@ impl SearchRound<'_> {
     }
 
     /// Returns true if a screened candidate has a predicted improvement of most of the gap.
-    fn promises_enough(&self, screening: &Screening) -> bool {
+    fn predicts_enough(&self, screening: &Screening) -> bool {
         let best = screening
             .responses
             .iter()
@@ -353,7 +361,7 @@ impl SearchRound<'_> {
 /// unknown is nearly as good, or if several unknowns are clearly better. Then removes accepted
 /// hypotheses with several unknowns that are not clearly better than the remaining undeclared
 /// parameters.
-fn keep_clear(tested: &mut [TestedPool]) {
+fn remove_unclear(tested: &mut [TestedPool]) {
     let Some((offsets, tested)) = tested.split_last_mut() else {
         return;
     };
@@ -379,7 +387,7 @@ fn keep_clear(tested: &mut [TestedPool]) {
 }
 
 /// Returns the accepted hypothesis with the smallest residual.
-fn best_accepted(tested: &[TestedPool]) -> Option<&FittedHypothesis> {
+fn find_best_accepted(tested: &[TestedPool]) -> Option<&FittedHypothesis> {
     let all = tested.iter().flat_map(|tested| &tested.fitted_hypotheses);
     let accepted = all.filter(|fitted| fitted.verdict.is_ok());
     accepted.min_by(|a, b| a.fit.rms().total_cmp(&b.fit.rms()))

@@ -32,7 +32,7 @@ pub struct ScanResult {
 /// Scans free functions and laws along the reference motion of the records, and fits the best laws.
 /// `answer`: fit with the accepted effects. `None` if the records cannot be followed.
 pub fn scan_records(context: RoundContext<'_>, answer: &Fit) -> Option<ScanResult> {
-    (context.progress)("a gap remains: scanning laws along the motion that the records show");
+    (context.progress)("a gap remains: scanning laws along the recorded motion");
     let scene = Scene::follow_records(context.problem, context.fit)?;
     let curve = find_adequate_curve(context, &scene);
     let scan = scan_laws(&scene, &list_laws(context));
@@ -44,8 +44,8 @@ pub fn scan_records(context: RoundContext<'_>, answer: &Fit) -> Option<ScanResul
         });
     };
     (context.progress)(&format!(
-        "scanned {} laws over decades; best: {}, which leaves {:.2} of {:.2} standard deviations in short \
-         segments",
+        "scanned {} laws over decades; best: {}, with a residual of {:.2} instead of {:.2} standard deviations \
+         in short segments",
         scan.laws.len(),
         best.candidate.label(),
         best.rms,
@@ -60,7 +60,7 @@ pub fn scan_records(context: RoundContext<'_>, answer: &Fit) -> Option<ScanResul
     let gap = (scan.rms_without - context.floor).max(0.0);
     let most = (thresholds::MAX_SCANNED_RIVAL_RATIO * by_curve.min(best.rms))
         .min((1.0 - thresholds::MIN_HELD_OUT_REDUCTION) * by_answer.min(scan.rms_without))
-        .min(context.floor + thresholds::MAX_LEFT_BY_CURVE * gap);
+        .min(context.floor + thresholds::MAX_REMAINING_WITH_CURVE * gap);
     let mut laws = scan.laws;
     let count = laws.iter().take_while(|law| law.rms < most).count();
     let others = laws.split_off(count.min(thresholds::MAX_FULL_FITS_PER_ROUND));
@@ -68,8 +68,8 @@ pub fn scan_records(context: RoundContext<'_>, answer: &Fit) -> Option<ScanResul
         .into_iter()
         .map(|law| {
             let reason = format!(
-                "along the motion that the records show it leaves {:.2} standard deviations in short segments, \
-                 the accepted effects {by_answer:.2}",
+                "along the recorded motion, in short segments, its residual is {:.2} standard deviations; with the \
+                 accepted effects it is {by_answer:.2}",
                 law.rms
             );
             reject_unfitted(law.candidate, reason)
@@ -77,7 +77,7 @@ pub fn scan_records(context: RoundContext<'_>, answer: &Fit) -> Option<ScanResul
         .collect();
     if laws.is_empty() {
         (context.progress)(&format!(
-            "no law leaves little, and clearly less than the accepted effects, {by_answer:.2} standard deviations"
+            "no law has a small residual that is clearly below the residual of the accepted effects, {by_answer:.2} standard deviations"
         ));
         return Some(ScanResult {
             curve,
@@ -185,13 +185,13 @@ fn find_adequate_curve(context: RoundContext<'_>, scene: &Scene<'_>) -> Option<C
     let best = curves.into_iter().nth(own.unwrap_or(0))?;
     let (over, of) = (&best.variable, &best.equation);
     let (train, test) = (best.train_rms, best.test_rms);
-    let alone = scene.segments.alone.rms();
+    let alone = scene.segments.nuisance_fit.rms();
     (context.progress)(&format!(
         "best free function: {of} over {over}, which leaves {train:.2} (training) and {test:.2} (test) of \
          {alone:.2} standard deviations in short segments"
     ));
     let is_adequate = best.log_evidence > thresholds::MIN_INFORMATION_GAIN
         && test <= thresholds::MAX_HELD_OUT_RATIO * train.max(context.floor)
-        && train.max(test) < thresholds::MAX_LEFT_BY_CURVE * alone;
+        && train.max(test) < thresholds::MAX_REMAINING_WITH_CURVE * alone;
     is_adequate.then_some(best)
 }

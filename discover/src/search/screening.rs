@@ -51,7 +51,7 @@ pub struct LinearPrediction {
 }
 
 /// Products of columns without the priors of some nuisances.
-struct PriorsDropped<'s> {
+struct ProductsWithoutPriors<'s> {
     products: Cow<'s, DMatrix<f64>>,
     nuisances: Vec<UnknownId>,
 }
@@ -137,7 +137,7 @@ pub fn screen_candidates(
             None => {}
         }
     }
-    let mut products = products(fit, base, &blocks, columns);
+    let mut products = compute_products(fit, base, &blocks, columns);
     let (mut bounds, mut limits, mut priors) = (Vec::new(), Vec::new(), Vec::new());
     for (id, unknown) in fit.unknowns() {
         let value = estimate.theta[id];
@@ -176,7 +176,7 @@ pub fn screen_candidates(
 }
 
 /// Returns the products of all columns with the initial states eliminated.
-fn products(
+fn compute_products(
     fit: &Fit,
     base: &ProjectedWindows,
     blocks: &[Vec<DMatrix<f64>>],
@@ -212,7 +212,7 @@ impl Screening {
                 cost,
                 sizes: values,
             } = self.predict(&[id]);
-            let unexplained_fraction = self.unexplained_fraction(id);
+            let unexplained_fraction = self.compute_unexplained_fraction(id);
             let response = &mut self.responses[id];
             response.cost_decrease = alone - cost;
             response.sizes = values;
@@ -221,20 +221,20 @@ impl Screening {
     }
 
     /// Returns the products without the priors that the given candidates remove.
-    fn without_priors(&self, responses: &[ResponseId]) -> PriorsDropped<'_> {
+    fn remove_priors(&self, responses: &[ResponseId]) -> ProductsWithoutPriors<'_> {
         let nuisances: Vec<UnknownId> = (responses.iter())
             .filter_map(|response| self.responses[*response].dropped_prior)
             .collect();
         let mut products = Cow::Borrowed(&self.products);
         for nuisance in &nuisances {
             let prior = self.priors[*nuisance];
-            let gone = PriorTerm {
+            let removed = PriorTerm {
                 weight: -prior.weight,
                 ..prior
             };
-            add_prior(products.to_mut(), *nuisance, gone);
+            add_prior(products.to_mut(), *nuisance, removed);
         }
-        PriorsDropped {
+        ProductsWithoutPriors {
             products,
             nuisances,
         }
@@ -246,10 +246,10 @@ impl Screening {
         for response in responses {
             columns.extend(self.responses[*response].columns.clone());
         }
-        let dropped = self.without_priors(responses);
+        let dropped = self.remove_priors(responses);
         let products = &dropped.products;
         let last = products.ncols() - 1;
-        let LeastSquares { a, b } = least_squares_of(products, &columns);
+        let LeastSquares { a, b } = create_least_squares(products, &columns);
         let bounds: Vec<Interval> = columns
             .iter()
             .map(|column| {
@@ -314,11 +314,11 @@ impl Screening {
     }
 
     /// Returns the fraction of the squared response that nuisances cannot reproduce.
-    fn unexplained_fraction(&self, response: ResponseId) -> f64 {
-        let dropped = self.without_priors(&[response]);
-        let direction = self.direction(&dropped.products, response);
-        let own = product(&dropped.products, &direction, &direction);
-        let unexplained = self.without_nuisances(&dropped, &direction, &direction);
+    fn compute_unexplained_fraction(&self, response: ResponseId) -> f64 {
+        let dropped = self.remove_priors(&[response]);
+        let direction = self.build_direction(&dropped.products, response);
+        let own = compute_product(&dropped.products, &direction, &direction);
+        let unexplained = self.project_out_nuisances(&dropped, &direction, &direction);
         if own > 0.0 {
             (unexplained / own).max(0.0)
         } else {
@@ -329,19 +329,19 @@ impl Screening {
     /// Returns true if the responses cancel: for these sizes, after elimination of the nuisances,
     /// each is much larger than their sum.
     pub fn is_cancelling(&self, responses: &[ResponseId], sizes: &[f64]) -> bool {
-        let dropped = self.without_priors(responses);
+        let dropped = self.remove_priors(responses);
         let count = dropped.products.ncols();
         let mut sizes = sizes.iter();
         let directions = responses.iter().map(|response| {
             let mut direction = DVector::zeros(count);
-            for (column, size) in self.columns(*response).zip(sizes.by_ref()) {
+            for (column, size) in self.find_columns(*response).zip(sizes.by_ref()) {
                 direction[column] = *size;
             }
             direction
         });
         let directions: Vec<DVector<f64>> = directions.collect();
         let square = |direction: &DVector<f64>| {
-            let square = self.without_nuisances(&dropped, direction, direction);
+            let square = self.project_out_nuisances(&dropped, direction, direction);
             square.max(0.0)
         };
         let least = directions.iter().map(square).fold(f64::INFINITY, f64::min);
@@ -352,7 +352,7 @@ impl Screening {
     }
 
     /// Returns the columns of a response, or the column of the nuisance whose prior it removes.
-    fn columns(&self, response: ResponseId) -> std::ops::Range<usize> {
+    fn find_columns(&self, response: ResponseId) -> std::ops::Range<usize> {
         let response = &self.responses[response];
         match response.dropped_prior {
             Some(nuisance) => nuisance.index()..nuisance.index() + 1,
@@ -361,11 +361,11 @@ impl Screening {
     }
 
     /// Returns the response with its predicted sizes as a combination of columns.
-    fn direction(&self, products: &DMatrix<f64>, id: ResponseId) -> DVector<f64> {
+    fn build_direction(&self, products: &DMatrix<f64>, id: ResponseId) -> DVector<f64> {
         let response = &self.responses[id];
         let mut direction = DVector::zeros(products.ncols());
         let all_zero = response.sizes.iter().all(|v| *v == 0.0);
-        for (number, column) in self.columns(id).enumerate() {
+        for (number, column) in self.find_columns(id).enumerate() {
             direction[column] = if all_zero || response.sizes.is_empty() {
                 1.0 / products[(column, column)].sqrt().max(f64::MIN_POSITIVE)
             } else {
@@ -377,9 +377,9 @@ impl Screening {
 
     /// Returns the product of two directions after elimination of the nuisances. Nuisances whose
     /// priors are removed are not eliminated.
-    fn without_nuisances(
+    fn project_out_nuisances(
         &self,
-        dropped: &PriorsDropped<'_>,
+        dropped: &ProductsWithoutPriors<'_>,
         a: &DVector<f64>,
         b: &DVector<f64>,
     ) -> f64 {
@@ -389,7 +389,7 @@ impl Screening {
             .map(UnknownId::index)
             .collect();
         let n = rows.len();
-        let whole = product(products, a, b);
+        let whole = compute_product(products, a, b);
         let cross = |v: &DVector<f64>| (products * v).select_rows(&rows);
         let block = DMatrix::from_fn(n, n, |r, c| {
             let ridge = if r == c {
@@ -409,17 +409,22 @@ impl Screening {
     /// degree to which one reproduces the other. A candidate with several parameters can reproduce
     /// a candidate with fewer parameters, even if its own predicted response differs.
     pub fn compute_similarity(&self, a: ResponseId, b: ResponseId) -> f64 {
-        let dropped = self.without_priors(&[a, b]);
-        let by_b = self.done_by(&dropped, a, b);
-        by_b.max(self.done_by(&dropped, b, a))
+        let dropped = self.remove_priors(&[a, b]);
+        let by_b = self.compute_cosine(&dropped, a, b);
+        by_b.max(self.compute_cosine(&dropped, b, a))
     }
 
     /// Returns the cosine of the angle between the predicted response of a candidate and the
     /// nearest response that another candidate can produce.
-    fn done_by(&self, dropped: &PriorsDropped<'_>, response: ResponseId, other: ResponseId) -> f64 {
+    fn compute_cosine(
+        &self,
+        dropped: &ProductsWithoutPriors<'_>,
+        response: ResponseId,
+        other: ResponseId,
+    ) -> f64 {
         let products = &*dropped.products;
-        let wanted = self.direction(products, response);
-        let columns: Vec<DVector<f64>> = (self.columns(other))
+        let wanted = self.build_direction(products, response);
+        let columns: Vec<DVector<f64>> = (self.find_columns(other))
             .map(|column| {
                 let size = products[(column, column)].sqrt().max(f64::MIN_POSITIVE);
                 let mut unit = DVector::zeros(products.ncols());
@@ -434,12 +439,12 @@ impl Screening {
             } else {
                 0.0
             };
-            self.without_nuisances(dropped, &columns[r], &columns[c]) + ridge
+            self.project_out_nuisances(dropped, &columns[r], &columns[c]) + ridge
         });
         let right = DVector::from_fn(count, |r, _| {
-            self.without_nuisances(dropped, &columns[r], &wanted)
+            self.project_out_nuisances(dropped, &columns[r], &wanted)
         });
-        let size = self.without_nuisances(dropped, &wanted, &wanted);
+        let size = self.project_out_nuisances(dropped, &wanted, &wanted);
         match gram.cholesky() {
             Some(factor) if size > 0.0 => {
                 let done = right.dot(&factor.solve(&right));
@@ -450,7 +455,7 @@ impl Screening {
     }
 }
 
-fn product(products: &DMatrix<f64>, a: &DVector<f64>, b: &DVector<f64>) -> f64 {
+fn compute_product(products: &DMatrix<f64>, a: &DVector<f64>, b: &DVector<f64>) -> f64 {
     a.dot(&(products * b))
 }
 
@@ -461,7 +466,7 @@ struct LeastSquares {
 }
 
 /// Returns the least-squares problem of some columns and the negative residual.
-fn least_squares_of(products: &DMatrix<f64>, columns: &[usize]) -> LeastSquares {
+fn create_least_squares(products: &DMatrix<f64>, columns: &[usize]) -> LeastSquares {
     let (count, last) = (columns.len(), products.ncols() - 1);
     let scale: Vec<f64> = columns
         .iter()
@@ -529,7 +534,7 @@ mod tests {
     }
 
     #[test]
-    fn similarity_of_one_to_many_parameters_is_their_projection() {
+    fn similarity_to_several_parameters_is_a_projection() {
         // Responses: one with two parameters x and y and predicted response x; one with 3 x + 4 y;
         // one with z.
         let columns = DMatrix::from_row_slice(
@@ -553,7 +558,7 @@ mod tests {
     }
 
     #[test]
-    fn responses_that_take_each_other_back_cancel() {
+    fn opposite_responses_cancel() {
         // Two nearly equal responses and a different one.
         let columns = DMatrix::from_row_slice(2, 4, &[1.0, 1.0, 0.0, 1.0, 0.0, 0.1, 1.0, 1.0]);
         let of: [(std::ops::Range<usize>, &[f64]); 3] =
@@ -569,7 +574,7 @@ mod tests {
     }
 
     #[test]
-    fn single_responses_look_alike_by_the_angle_between_them() {
+    fn similarity_of_single_responses_is_their_cosine() {
         let columns = DMatrix::from_row_slice(2, 3, &[1.0, 3.0, 1.0, 0.0, 4.0, 1.0]);
         let of: [(std::ops::Range<usize>, &[f64]); 2] = [(0..1, &[-2.0]), (1..2, &[5.0])];
         // Expected value: the cosine in a triangle with sides 3, 4 and 5.

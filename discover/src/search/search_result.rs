@@ -25,9 +25,9 @@ pub struct AcceptedEffect {
 /// RMS residual of the test records, in standard deviations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestGap {
-    /// Without the effect.
+    /// Residual without the effect.
     pub before: f64,
-    /// With the effect.
+    /// Residual with the effect.
     pub after: f64,
 }
 

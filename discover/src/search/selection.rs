@@ -40,7 +40,7 @@ pub struct AcceptedHalf {
 }
 
 /// Effect of a hypothesis that is inseparable from an effect of another hypothesis.
-struct IndistinguishableHalf {
+struct InseparableHalf {
     effect: EffectId,
     /// Response of the other effect.
     response: ResponseId,
@@ -87,8 +87,8 @@ pub fn select_hypothesis(
         let Some(((own, response), equivalents)) = replaced else {
             continue;
         };
-        let similarity = similarity(&candidates, &screening, *own, *response);
-        if is_indistinguishable(&selected.hypothesis, fitted, similarity) {
+        let similarity = compute_pair_similarity(&candidates, &screening, *own, *response);
+        if is_inseparable(&selected.hypothesis, fitted, similarity) {
             equivalents.push(candidates[screening.responses[*response].candidate].clone());
         }
     }
@@ -150,7 +150,10 @@ fn select_best(context: RoundContext<'_>, tested: TestedPool) -> Option<Selected
     };
     let is_simpler = |id: &FittedId| {
         let (other, least) = (&fitted_hypotheses[*id], &fitted_hypotheses[least]);
-        let is_less_off = match (declared_deviation(other), declared_deviation(least)) {
+        let is_less_off = match (
+            compute_declared_deviation(other),
+            compute_declared_deviation(least),
+        ) {
             (Some(other), Some(least)) => other < least,
             _ => false,
         };
@@ -160,14 +163,14 @@ fn select_best(context: RoundContext<'_>, tested: TestedPool) -> Option<Selected
             || is_likelier
             || (scales(least) && !scales(other)))
             && other.verdict.is_ok()
-            && indistinguishable_half(least, other, &candidates, &screening).is_some()
+            && find_inseparable_half(least, other, &candidates, &screening).is_some()
     };
     let simpler = FittedId::first(fitted_hypotheses.len()).filter(is_simpler);
     let order = |id: &FittedId| {
         (
             contradicts_sensor(context, &fitted_hypotheses[*id]),
             fitted_hypotheses[*id].effect_unknowns.len(),
-            declared_deviation(&fitted_hypotheses[*id]).unwrap_or(0.0),
+            compute_declared_deviation(&fitted_hypotheses[*id]).unwrap_or(0.0),
         )
     };
     let best = simpler
@@ -183,7 +186,7 @@ fn select_best(context: RoundContext<'_>, tested: TestedPool) -> Option<Selected
             && has_vanishing_shape(&other.fit, &other.effect_unknowns)
     };
     for other in fitted_hypotheses.iter().filter(|other| !is_the_same(other)) {
-        let Some(half) = indistinguishable_half(&fitted, other, &candidates, &screening) else {
+        let Some(half) = find_inseparable_half(&fitted, other, &candidates, &screening) else {
             continue;
         };
         let (other, own) = (candidate(half.response), &own[half.effect]);
@@ -193,7 +196,7 @@ fn select_best(context: RoundContext<'_>, tested: TestedPool) -> Option<Selected
     }
     Some(SelectedHypothesis {
         equivalents: equivalent,
-        accepted_half: half_way(&fitted, &fitted_hypotheses),
+        accepted_half: find_accepted_half(&fitted, &fitted_hypotheses),
         candidates: own,
         hypothesis: fitted,
     })
@@ -219,7 +222,7 @@ fn contradicts_sensor(context: RoundContext<'_>, fitted: &FittedHypothesis) -> b
 
 /// Returns the deviation from declared values, in standard deviations of their priors; `None` if an
 /// unknown has no declared value.
-fn declared_deviation(fitted: &FittedHypothesis) -> Option<f64> {
+fn compute_declared_deviation(fitted: &FittedHypothesis) -> Option<f64> {
     let theta = &fitted.fit.train.estimate.theta;
     let of =
         |own: &EffectUnknown| Some((theta[own.unknown] - own.base).abs() / own.dropped_prior_sd?);
@@ -232,11 +235,11 @@ fn declared_deviation(fitted: &FittedHypothesis) -> Option<f64> {
 pub fn select_best_fit(fitted_hypotheses: &[FittedHypothesis]) -> Option<FittedId> {
     let rms = |id: &FittedId| fitted_hypotheses[*id].fit.rms();
     let least = |count: fn(usize) -> bool| {
-        let is_such =
+        let is_selected =
             |fitted: &FittedHypothesis| fitted.verdict.is_ok() && count(fitted.responses.len());
         let all = FittedId::first(fitted_hypotheses.len());
-        let such = all.filter(|id| is_such(&fitted_hypotheses[*id]));
-        such.min_by(|a, b| rms(a).total_cmp(&rms(b)))
+        let selected_ids = all.filter(|id| is_selected(&fitted_hypotheses[*id]));
+        selected_ids.min_by(|a, b| rms(a).total_cmp(&rms(b)))
     };
     match (least(|n| n == 1), least(|n| n > 1)) {
         (Some(single), Some(pair)) => {
@@ -262,12 +265,12 @@ fn is_clearly_better(one: &Fit, other: &Fit) -> bool {
 /// Returns the index of the effect of a hypothesis that is inseparable from an effect of another
 /// hypothesis, and the response of this other effect. Both hypotheses must have equally many
 /// effects, and their other effects must be equal.
-fn indistinguishable_half(
+fn find_inseparable_half(
     fitted: &FittedHypothesis,
     other: &FittedHypothesis,
     candidates: &[Candidate],
     screening: &Screening,
-) -> Option<IndistinguishableHalf> {
+) -> Option<InseparableHalf> {
     if fitted.responses.len() != other.responses.len() {
         return None;
     }
@@ -280,17 +283,16 @@ fn indistinguishable_half(
         .iter()
         .filter(|own| other.responses.contains(own));
     let is_all_else = shared.count() + 1 == fitted.responses.len();
-    let similarity = similarity(candidates, screening, fitted.responses[half], response);
-    (is_all_else && is_indistinguishable(fitted, other, similarity)).then_some(
-        IndistinguishableHalf {
-            effect: EffectId::new(half),
-            response,
-        },
-    )
+    let similarity =
+        compute_pair_similarity(candidates, screening, fitted.responses[half], response);
+    (is_all_else && is_inseparable(fitted, other, similarity)).then_some(InseparableHalf {
+        effect: EffectId::new(half),
+        response,
+    })
 }
 
 /// Returns the similarity of two responses, 0 to 1. It is 1 for two names of one effect.
-fn similarity(
+fn compute_pair_similarity(
     candidates: &[Candidate],
     screening: &Screening,
     a: ResponseId,
@@ -310,10 +312,10 @@ fn similarity(
 /// and the other fit is no worse on the test records. Unless they are two names of one effect, the
 /// other fit must also be no worse on the training records. It may be better, but not so clearly
 /// that it would be selected instead.
-fn is_indistinguishable(one: &FittedHypothesis, other: &FittedHypothesis, similarity: f64) -> bool {
+fn is_inseparable(one: &FittedHypothesis, other: &FittedHypothesis, similarity: f64) -> bool {
     let leave_same = one.effect_unknowns.len() == other.effect_unknowns.len()
-        && leaves_same_residuals(&one.fit.train, &other.fit.train)
-        && leaves_same_residuals(&one.fit.test, &other.fit.test);
+        && has_same_residuals(&one.fit.train, &other.fit.train)
+        && has_same_residuals(&one.fit.test, &other.fit.test);
     let (one, other) = (&one.fit, &other.fit);
     let statistics = compute_test_statistics(one, other, &[]);
     let (part, errors) = (
@@ -324,12 +326,13 @@ fn is_indistinguishable(one: &FittedHypothesis, other: &FittedHypothesis, simila
     let as_good = errors.is_nan()
         || errors < thresholds::MIN_REDUCTION_STANDARD_ERRORS
         || part < thresholds::MAX_CLASS_DIFFERENCE;
-    let is_told = other.train.rms > (1.0 + thresholds::MAX_CLASS_DIFFERENCE) * one.train.rms
+    let is_worse_in_training = other.train.rms
+        > (1.0 + thresholds::MAX_CLASS_DIFFERENCE) * one.train.rms
         && statistics.information_gain < -thresholds::MIN_INFORMATION_GAIN;
     let is_same = similarity > thresholds::MIN_SIMILARITY_OF_SAME_EFFECT
         && part < thresholds::MIN_HELD_OUT_REDUCTION;
     let is_rival = similarity > thresholds::MIN_SIMILARITY_OF_RIVALS || leave_same;
-    is_rival && (is_same || (as_good && !is_told))
+    is_rival && (is_same || (as_good && !is_worse_in_training))
 }
 
 /// Returns true if the squared residuals of two fits differ by less than
@@ -337,7 +340,7 @@ fn is_indistinguishable(one: &FittedHypothesis, other: &FittedHypothesis, simila
 /// of responses, which can differ for equivalent effects along the motion of an incorrect model.
 /// For example, the gains of a sensor and of an input are equivalent in a linear model, but their
 /// responses agree only after the fit.
-fn leaves_same_residuals(one: &Residuals, other: &Residuals) -> bool {
+fn has_same_residuals(one: &Residuals, other: &Residuals) -> bool {
     let blocks = || one.block_squares.iter().zip(&other.block_squares);
     let difference: f64 = blocks().map(|(a, b)| (a - b).abs()).sum();
     let whole: f64 = blocks().map(|(a, b)| a.max(*b)).sum();
@@ -347,7 +350,10 @@ fn leaves_same_residuals(one: &Residuals, other: &Residuals) -> bool {
 
 /// Returns the effect of a pair that was accepted separately, with its test residual, as an
 /// intermediate step.
-fn half_way(best: &FittedHypothesis, others: &[FittedHypothesis]) -> Option<AcceptedHalf> {
+fn find_accepted_half(
+    best: &FittedHypothesis,
+    others: &[FittedHypothesis],
+) -> Option<AcceptedHalf> {
     if best.responses.len() < 2 {
         return None;
     }

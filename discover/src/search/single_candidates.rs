@@ -23,7 +23,8 @@ pub fn fit_singles(pool: &CandidatePool<'_>, from: CandidateId) -> Vec<FittedHyp
         .fit
         .is_below(thresholds::MAX_FLOOR_RATIO_TO_STOP * pool.context.floor)
     {
-        let most = thresholds::MAX_LEFT_BY_PRELIMINARY_FIT * pool.screening.predict(&[]).cost;
+        let most =
+            thresholds::MAX_REMAINING_AFTER_PRELIMINARY_FIT * pool.screening.predict(&[]).cost;
         preliminaries.retain(|(_, preliminary)| preliminary.cost < most);
     }
     let mut fitted_hypotheses: Vec<FittedHypothesis> = Vec::new();
@@ -37,7 +38,7 @@ pub fn fit_singles(pool: &CandidatePool<'_>, from: CandidateId) -> Vec<FittedHyp
         if accepted.is_none() {
             best = preliminaries[0].1.cost;
         }
-        let count = preliminaries.len().min(thresholds::FITS_IN_PARALLEL);
+        let count = preliminaries.len().min(thresholds::PARALLEL_FIT_COUNT);
         let next: Vec<(Hypothesis, PreliminaryFit)> = preliminaries.drain(..count).collect();
         let is_rival = |(hypothesis, preliminary): &(Hypothesis, PreliminaryFit)| {
             let near = preliminary.cost < thresholds::MAX_RIVAL_COST_RATIO * best;

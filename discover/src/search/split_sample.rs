@@ -91,29 +91,29 @@ impl<'f> SplitSampleTest<'f> {
         let size = own.norm();
         let along = residual.dot(&own) / size;
         let rest = (residual.norm_squared() - along * along).max(0.0);
-        let correlation = with.test.correlation_samples;
+        let correlation = with.test.correlation_length;
         // A correlation over several samples reduces the number of independent samples.
         let t = along / (rest / self.freedom * correlation).sqrt();
         let freedom = self.freedom / correlation;
-        let p_value = || student_tail(t, freedom).max(f64::MIN_POSITIVE);
+        let p_value = || compute_student_tail(t, freedom).max(f64::MIN_POSITIVE);
         (size > 0.0 && freedom >= 1.0 && t.is_finite()).then(p_value)
     }
 }
 
 /// Returns the probability that a Student t variable exceeds `t`, by a normal approximation
 /// (Wallace, Ann. Math. Stat. 30, 1959: within 1 % from ten degrees of freedom on).
-fn student_tail(t: f64, freedom: f64) -> f64 {
+fn compute_student_tail(t: f64, freedom: f64) -> f64 {
     let factor = (8.0 * freedom + 1.0) / (8.0 * freedom + 3.0);
     let z = factor * (freedom * (t * t / freedom).ln_1p()).sqrt();
     match t < 0.0 {
-        true => 1.0 - normal_tail(z),
-        false => normal_tail(z),
+        true => 1.0 - compute_normal_tail(z),
+        false => compute_normal_tail(z),
     }
 }
 
 /// Returns the probability that a standard normal variable exceeds `z`, which must not be negative.
 /// Uses a series near 0 and Laplace's continued fraction for larger values.
-fn normal_tail(z: f64) -> f64 {
+fn compute_normal_tail(z: f64) -> f64 {
     let density = (-0.5 * z * z).exp() / (2.0 * std::f64::consts::PI).sqrt();
     if z < 3.0 {
         let (mut term, mut sum, mut k) = (z, z, 1.0);
@@ -130,10 +130,10 @@ fn normal_tail(z: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{normal_tail, student_tail};
+    use super::{compute_normal_tail, compute_student_tail};
 
     #[test]
-    fn tails_are_those_of_tables() {
+    fn tail_probabilities_match_tables() {
         for (z, p) in [
             (0.0, 0.5),
             (1.0, 0.158_655_253_931_457),
@@ -142,9 +142,9 @@ mod tests {
             (6.0, 9.865_876_450_376_98e-10),
         ] {
             assert!(
-                (normal_tail(z) / p - 1.0).abs() < 1e-9,
+                (compute_normal_tail(z) / p - 1.0).abs() < 1e-9,
                 "{z}: {}",
-                normal_tail(z)
+                compute_normal_tail(z)
             );
         }
         for (t, freedom, p) in [
@@ -152,9 +152,12 @@ mod tests {
             (2.764, 10.0, 0.01),
             (1.660, 100.0, 0.05),
         ] {
-            assert!((student_tail(t, freedom) / p - 1.0).abs() < 0.02, "{t}");
             assert!(
-                (student_tail(-t, freedom) - 1.0 + p).abs() < 0.02 * p,
+                (compute_student_tail(t, freedom) / p - 1.0).abs() < 0.02,
+                "{t}"
+            );
+            assert!(
+                (compute_student_tail(-t, freedom) - 1.0 + p).abs() < 0.02 * p,
                 "{t}"
             );
         }

@@ -29,12 +29,12 @@ pub fn find_unconfirmed(tested: &mut [TestedPool], before: &Fit) -> Option<Uncon
     }
     let found = tested.iter().enumerate().flat_map(|(pool, of)| {
         let fitted = of.fitted_hypotheses.iter().enumerate();
-        let such = fitted.filter(|(_, fitted)| is_unconfirmed(fitted, before));
-        such.map(move |(place, fitted)| (pool, place, fitted.fit.train.rms))
+        let unconfirmed = fitted.filter(|(_, fitted)| is_unconfirmed(fitted, before));
+        unconfirmed.map(move |(index, fitted)| (pool, index, fitted.fit.train.rms))
     });
-    let (pool, place, _) = found.min_by(|a, b| a.2.total_cmp(&b.2))?;
+    let (pool, index, _) = found.min_by(|a, b| a.2.total_cmp(&b.2))?;
     let pool = &mut tested[pool];
-    let fitted = pool.fitted_hypotheses.swap_remove(place);
+    let fitted = pool.fitted_hypotheses.swap_remove(index);
     let labels = fitted.responses.iter().map(|response| {
         let candidate = pool.screening.responses[*response].candidate;
         pool.candidates[candidate].label()

@@ -38,12 +38,12 @@ pub fn describe_unfinished(tested: &[TestedPool], has_effects: bool) -> String {
         let fitted = pool.fitted_hypotheses.iter();
         fitted.map(move |fitted| FittedEffects::new(pool, fitted))
     });
-    describe_best(fitted, promising(tested), has_effects)
+    describe_best(fitted, find_best_prediction(tested), has_effects)
 }
 
 fn describe_best(
     fitted: impl Iterator<Item = FittedEffects>,
-    promising: Option<String>,
+    best_prediction: Option<String>,
     has_effects: bool,
 ) -> String {
     // Accepted hypotheses are first, then those that were compared with the test records.
@@ -61,7 +61,7 @@ fn describe_best(
     };
     let Some(best) = best else {
         let none = format!("no fit of {effect} was complete at the limit");
-        return match promising {
+        return match best_prediction {
             Some(name) => format!("{none}; best prediction: {name}"),
             None => none,
         };
@@ -81,7 +81,7 @@ fn describe_best(
 }
 
 /// Returns the candidate with the best prediction in screening.
-fn promising(tested: &[TestedPool]) -> Option<String> {
+fn find_best_prediction(tested: &[TestedPool]) -> Option<String> {
     let all = tested.iter().flat_map(|pool| {
         let responses = pool.screening.responses.iter();
         responses.map(move |response| (pool, response))
@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn no_complete_fit_is_stated_as_such_beside_earlier_effects() {
+    fn missing_complete_fit_is_reported() {
         assert_eq!(
             describe(Vec::new(), false),
             "no fit of an effect was complete at the limit; best prediction: play"
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn fit_that_the_limit_kept_from_the_test_records_is_named() {
+    fn fit_without_test_comparison_is_named() {
         let said = describe(vec![fitted("friction", 0.88, None)], false);
         assert_eq!(
             said,

@@ -50,7 +50,7 @@ struct TestedPoints<'p> {
 }
 
 /// Model of a candidate, with parameter values for which it differs slightly from the fitted model.
-struct Ready {
+struct PreparedCandidate {
     candidate: CandidateId,
     candidate_unknowns: Vec<CandidateUnknown>,
     model: EstimationModel,
@@ -76,15 +76,15 @@ pub fn integrate_responses(
 ) -> Vec<Option<Result<CandidateResponse, DiscoverError>>> {
     let mut found: Vec<Option<Result<CandidateResponse, DiscoverError>>> =
         vec![None; candidates.len()];
-    let Some(few) = points(at, problem, fit, Extent::Few) else {
+    let Some(few) = sample_points(at, problem, fit, Extent::Few) else {
         return found;
     };
-    let all = LazyLock::new(|| points(at, problem, fit, Extent::All));
+    let all = LazyLock::new(|| sample_points(at, problem, fit, Extent::All));
     let tested = TestedPoints { few, all: &all };
     let ids: Vec<CandidateId> = CandidateId::first(candidates.len()).collect();
-    let ready: Vec<Option<Result<Ready, DiscoverError>>> = ids
+    let ready: Vec<Option<Result<PreparedCandidate, DiscoverError>>> = ids
         .par_iter()
-        .map(|id| ready(problem, fit, candidates, *id, &tested))
+        .map(|id| prepare_candidate(problem, fit, candidates, *id, &tested))
         .collect();
     let mut all = Vec::new();
     for (id, ready) in ids.into_iter().zip(ready) {
@@ -94,7 +94,7 @@ pub fn integrate_responses(
             None => {}
         }
     }
-    let windows = drive_responses(at, problem, fit, &all);
+    let windows = integrate_drives(at, problem, fit, &all);
     let mut first = 0;
     for mut of in all {
         let columns = first..first + of.moved.len();
@@ -137,7 +137,7 @@ fn scale_to_level(
 }
 
 /// Returns points of the fitted motion; `None` if the model has no tangent vectors.
-fn points(
+fn sample_points(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -160,14 +160,14 @@ fn points(
         rates: Vec::new(),
         squares: vec![0.0; fit.model.state_count() - first],
     };
-    let (places, stride) = match extent {
+    let (indices, stride) = match extent {
         Extent::Few => (
             vec![0, windows.len() / 2, windows.len() - 1],
             thresholds::SIZE_SAMPLE_STRIDE,
         ),
         Extent::All => ((0..windows.len()).collect(), 1),
     };
-    for id in places.into_iter().map(|place| windows[place]) {
+    for id in indices.into_iter().map(|index| windows[index]) {
         let window = &problem.train.windows[id];
         let inputs = problem.train.inputs(window);
         let Ok(states) =
@@ -193,13 +193,13 @@ fn points(
 
 /// Derives the model of a candidate with small sizes, if it has the states and measured outputs of
 /// the fit.
-fn ready(
+fn prepare_candidate(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     candidates: &[Candidate],
     id: CandidateId,
     points: &TestedPoints<'_>,
-) -> Option<Result<Ready, DiscoverError>> {
+) -> Option<Result<PreparedCandidate, DiscoverError>> {
     if let Err(stopped) = problem.stop.check_not_stopped() {
         return Some(Err(stopped));
     }
@@ -258,7 +258,7 @@ fn ready(
     if model.derive_linear_outputs(&values) != fit.model.derive_linear_outputs(&own) {
         return None;
     }
-    Some(Ok(Ready {
+    Some(Ok(PreparedCandidate {
         candidate: id,
         candidate_unknowns,
         model,
@@ -277,7 +277,7 @@ fn find_small_size(
     let mut found = None;
     for _ in 0..thresholds::MAX_SIZE_ATTEMPTS {
         let mut evaluator = model.create_evaluator(&at(size));
-        let change = acceleration_rms(&mut evaluator, points);
+        let change = compute_relative_change(&mut evaluator, points);
         let factor = if change == 0.0 {
             thresholds::MAX_SIZE_FACTOR
         } else if !change.is_finite() {
@@ -300,7 +300,7 @@ fn find_small_size(
 }
 
 /// Returns the largest relative RMS change of an acceleration or rate of a first-order state.
-fn acceleration_rms(evaluator: &mut Evaluator, points: &Points) -> f64 {
+fn compute_relative_change(evaluator: &mut Evaluator, points: &Points) -> f64 {
     let program = evaluator.program();
     let (first, states) = (program.degrees_of_freedom(), program.states());
     let mut sums = vec![0.0; states - first];
@@ -326,11 +326,11 @@ fn acceleration_rms(evaluator: &mut Evaluator, points: &Points) -> f64 {
 }
 
 /// Returns for each window a column per parameter; no columns for a window whose simulation failed.
-fn drive_responses(
+fn integrate_drives(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,
     fit: &Fit,
-    ready: &[Ready],
+    ready: &[PreparedCandidate],
 ) -> Vec<DMatrix<f64>> {
     let whole = fit.training_shooting(problem);
     let shooting = Shooting {

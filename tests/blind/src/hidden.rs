@@ -49,7 +49,7 @@ pub enum Effect {
 
 /// Hidden effect with site and size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Hidden {
+pub struct HiddenEffect {
     /// Kind of the effect.
     pub effect: Effect,
     /// Site: an axis, mesh, channel or parameter, or `arm`.
@@ -121,7 +121,7 @@ fn stribeck_speed(machine: &Machine) -> f64 {
     }
 }
 
-impl Hidden {
+impl HiddenEffect {
     /// Applies the effect to a machine or its sensors.
     pub fn hide(&self, machine: &mut Machine, setup: &Setup, sensors: &mut Sensors) {
         let amount = self.amount * self.sign;

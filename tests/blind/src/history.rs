@@ -87,7 +87,7 @@ mod tests {
     use super::{Run, append_run, heading};
     use crate::score::sum_judgements;
 
-    const KEPT: &str = include_str!("../history.csv");
+    const CHECKED_IN_TABLE: &str = include_str!("../history.csv");
 
     fn run() -> Run {
         Run {
@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn checked_in_table_can_be_extended() {
-        assert!(append_run(KEPT, &run(), &sum_judgements(Vec::new())).is_ok());
+        assert!(append_run(CHECKED_IN_TABLE, &run(), &sum_judgements(Vec::new())).is_ok());
         assert!(append_run("date,other\n", &run(), &sum_judgements(Vec::new())).is_err());
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::machines::two_bodies::Form;
 use crate::machines::{Kind, Machine, Setup};
-use crate::random::Draw;
+use crate::random::RandomStream;
 
 /// Kind of excitation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -27,7 +27,7 @@ pub struct Drive {
 }
 
 /// Ranges of frequencies and amplitudes for the components of an input.
-struct Ingredients {
+struct InputComponents {
     /// Ranges of frequency (Hz) and amplitude of the slow sines.
     slow: ((f64, f64), (f64, f64)),
     /// Start and end frequency (Hz) and amplitude of the frequency sweep.
@@ -42,7 +42,7 @@ pub fn drive(
     setup: &Setup,
     manner: Excitation,
     place: usize,
-    draw: &mut Draw,
+    draw: &mut RandomStream,
 ) -> Drive {
     let samples = (setup.duration / setup.sample).round() as usize + 1;
     let test = place >= setup.records.0;
@@ -60,8 +60,8 @@ pub fn drive(
             // The input varies the speed by half, so that the viscous friction is observable.
             start[1] = draw.between(0.3, 0.4);
             let lasting = viscous(&machine) * start[1];
-            let slow = sines(setup, samples, ((0.7, 1.5), (15.0, 30.0)), draw);
-            let fast = sines(setup, samples, ((3.0, 8.0), (30.0, 60.0)), draw);
+            let slow = sample_sines(setup, samples, ((0.7, 1.5), (15.0, 30.0)), draw);
+            let fast = sample_sines(setup, samples, ((3.0, 8.0), (30.0, 60.0)), draw);
             let all = slow.iter().zip(fast);
             all.map(|(slow, fast)| lasting + slow + fast).collect()
         }
@@ -76,11 +76,13 @@ pub fn drive(
                 draw,
             )
         }
-        (Kind::Arm, Excitation::Gentle) => sines(setup, samples, ((2.5, 6.0), (0.4, 0.9)), draw),
+        (Kind::Arm, Excitation::Gentle) => {
+            sample_sines(setup, samples, ((2.5, 6.0), (0.4, 0.9)), draw)
+        }
         (Kind::Stage, _) => combine_components(
             setup,
             samples,
-            &Ingredients {
+            &InputComponents {
                 slow: ((0.7, 3.0), (60.0, 160.0)),
                 sweep: (3.0, 25.0, 80.0),
                 steps: (80.0, (0.05, 0.2)),
@@ -90,7 +92,7 @@ pub fn drive(
         (Kind::Arm, _) => combine_components(
             setup,
             samples,
-            &Ingredients {
+            &InputComponents {
                 // Slow inputs avoid rattling of the teeth, which is not reproducible on real rigs.
                 slow: ((0.8, 4.0), (1.0, 2.5)),
                 sweep: (5.0, 16.0, 0.4),
@@ -111,14 +113,14 @@ pub fn drive(
 
 /// Returns the components of the input of a machine with two bodies. `usual`: usual magnitude of
 /// the input.
-fn two_body_components(form: Form, usual: f64) -> Ingredients {
+fn two_body_components(form: Form, usual: f64) -> InputComponents {
     let (slow, sweep, lasting) = match form {
         Form::TwoMass => ((0.5, 2.0), (3.0, 20.0), (0.05, 0.2)),
         // The sweep crosses the resonance of the load.
         Form::Crane => ((0.3, 1.0), (0.5, 4.0), (0.2, 0.5)),
         Form::QuarterCar => ((0.5, 3.0), (3.0, 20.0), (0.05, 0.2)),
     };
-    Ingredients {
+    InputComponents {
         slow: (slow, (0.6 * usual, 1.6 * usual)),
         sweep: (sweep.0, sweep.1, usual),
         steps: (0.6 * usual, lasting),
@@ -139,11 +141,11 @@ fn viscous(machine: &Machine) -> f64 {
 
 /// Returns sines that start at their maxima. With this phase, motion from rest oscillates around
 /// zero.
-fn sines(
+fn sample_sines(
     setup: &Setup,
     samples: usize,
     ((low, high), (small, large)): ((f64, f64), (f64, f64)),
-    draw: &mut Draw,
+    draw: &mut RandomStream,
 ) -> Vec<f64> {
     let parts: Vec<(f64, f64)> = (0..3)
         .map(|_| {
@@ -164,10 +166,10 @@ fn sines(
 fn combine_components(
     setup: &Setup,
     samples: usize,
-    of: &Ingredients,
-    draw: &mut Draw,
+    of: &InputComponents,
+    draw: &mut RandomStream,
 ) -> Vec<f64> {
-    let mut values = sines(setup, samples, of.slow, draw);
+    let mut values = sample_sines(setup, samples, of.slow, draw);
     let (from, to, amplitude) = of.sweep;
     let turn = draw.between(0.0, 2.0 * std::f64::consts::PI);
     let (height, (short, long)) = of.steps;

@@ -12,7 +12,7 @@ use eomgen_blind::plan::{Case, Group, plan};
 use eomgen_blind::score::{self, Score};
 use eomgen_blind::{records, run};
 
-const LIMIT: f64 = 240.0;
+const DEFAULT_TIME_LIMIT_S: f64 = 240.0;
 
 /// Hides effects in records, runs `eomgen discover` on them, and scores the results.
 #[derive(Parser)]
@@ -25,20 +25,20 @@ struct Options {
     #[arg(long)]
     out: PathBuf,
     /// Runs only these cases, as first..end
-    #[arg(long, value_parser = range)]
+    #[arg(long, value_parser = parse_range)]
     cases: Option<Range<usize>>,
     /// Runs only cases of this group: single, nothing, pair, outside or untellable
-    #[arg(long, value_parser = group)]
+    #[arg(long, value_parser = parse_group)]
     only: Option<Group>,
     /// Time limit of a case on one core, s; a record may take half of it on two cores
-    #[arg(long, default_value_t = LIMIT)]
+    #[arg(long, default_value_t = DEFAULT_TIME_LIMIT_S)]
     limit: f64,
     /// Appends the success rates to tests/blind/history.csv
     #[arg(long)]
     keep: bool,
 }
 
-fn range(text: &str) -> Result<Range<usize>, String> {
+fn parse_range(text: &str) -> Result<Range<usize>, String> {
     let parts = text.split_once("..").map(|(a, b)| (a.parse(), b.parse()));
     match parts {
         Some((Ok(first), Ok(end))) if first < end => Ok(first..end),
@@ -46,7 +46,7 @@ fn range(text: &str) -> Result<Range<usize>, String> {
     }
 }
 
-fn group(text: &str) -> Result<Group, String> {
+fn parse_group(text: &str) -> Result<Group, String> {
     serde_json::from_value(serde_json::json!(text))
         .map_err(|_| "expected single, nothing, pair, outside or untellable".to_owned())
 }
@@ -62,7 +62,7 @@ fn main() -> ExitCode {
 }
 
 fn run_suite(options: &Options) -> Result<(), String> {
-    let program = program()?;
+    let program = find_program()?;
     check_seed(&options.out, options.seed)?;
     let wanted = |case: &Case| {
         options
@@ -76,9 +76,10 @@ fn run_suite(options: &Options) -> Result<(), String> {
     let next = AtomicUsize::new(0);
     let work = || -> Result<(), String> {
         while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let told = |error: std::io::Error| format!("case {}: {error}", case.number);
-            records::make_case(case, options.seed, specifications(), &options.out).map_err(told)?;
-            run::run(&program, &options.out, case.number, limit).map_err(told)?;
+            let name_case = |error: std::io::Error| format!("case {}: {error}", case.number);
+            records::make_case(case, options.seed, specifications(), &options.out)
+                .map_err(name_case)?;
+            run::run(&program, &options.out, case.number, limit).map_err(name_case)?;
             eprint!(
                 "\r{} of {} ",
                 next.load(Ordering::Relaxed).min(cases.len()),
@@ -93,7 +94,7 @@ fn run_suite(options: &Options) -> Result<(), String> {
             .into_iter()
             .try_for_each(|worker| match worker.join() {
                 Ok(result) => result,
-                Err(_) => Err("a case could not be made".to_owned()),
+                Err(_) => Err("a case could not be created".to_owned()),
             })
     })?;
     eprintln!();
@@ -104,12 +105,12 @@ fn run_suite(options: &Options) -> Result<(), String> {
     let path = options.out.join("score.json");
     records::write_whole(&path, &(document + "\n")).map_err(|error| error.to_string())?;
     match options.keep {
-        true => keep(options, &score),
+        true => append_history(options, &score),
         false => Ok(()),
     }
 }
 
-fn keep(options: &Options, score: &Score) -> Result<(), String> {
+fn append_history(options: &Options, score: &Score) -> Result<(), String> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/history.csv"));
     let kept = match std::fs::read_to_string(path) {
         Ok(kept) => kept,
@@ -117,15 +118,15 @@ fn keep(options: &Options, score: &Score) -> Result<(), String> {
         Err(error) => return Err(format!("{}: {error}", path.display())),
     };
     let run = Run {
-        date: git(&["log", "-1", "--format=%cs"]),
-        commit: git(&["describe", "--always", "--dirty=+"]),
-        command: command(options),
+        date: run_git(&["log", "-1", "--format=%cs"]),
+        commit: run_git(&["describe", "--always", "--dirty=+"]),
+        command: format_command(options),
     };
     let kept = history::append_run(&kept, &run, score)?;
     records::write_whole(path, &kept).map_err(|error| error.to_string())
 }
 
-fn command(options: &Options) -> String {
+fn format_command(options: &Options) -> String {
     let mut command = format!("--seed {}", options.seed);
     if let Some(cases) = &options.cases {
         command += &format!(" --cases {}..{}", cases.start, cases.end);
@@ -133,13 +134,13 @@ fn command(options: &Options) -> String {
     if let Some(group) = options.only {
         command += &format!(" --only {}", format!("{group:?}").to_lowercase());
     }
-    if options.limit != LIMIT {
+    if options.limit != DEFAULT_TIME_LIMIT_S {
         command += &format!(" --limit {}", options.limit);
     }
     command
 }
 
-fn git(arguments: &[&str]) -> String {
+fn run_git(arguments: &[&str]) -> String {
     let output = std::process::Command::new("git").args(arguments).output();
     output.map_or_else(
         |_| String::new(),
@@ -154,7 +155,7 @@ fn specifications() -> &'static Path {
     ))
 }
 
-fn program() -> Result<PathBuf, String> {
+fn find_program() -> Result<PathBuf, String> {
     let own = std::env::current_exe().map_err(|error| error.to_string())?;
     let program = own.with_file_name(format!("eomgen{}", std::env::consts::EXE_SUFFIX));
     if program.is_file() {

@@ -6,9 +6,9 @@ use rand_distr::{Distribution, StandardNormal};
 
 /// Random number generator.
 #[derive(Clone, Debug)]
-pub struct Draw(ChaCha8Rng);
+pub struct RandomStream(ChaCha8Rng);
 
-impl Draw {
+impl RandomStream {
     /// Starts a stream of random numbers that is independent of other streams.
     pub fn new(seed: u64, stream: u64) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
@@ -62,11 +62,11 @@ impl Draw {
 
 #[cfg(test)]
 mod tests {
-    use super::Draw;
+    use super::RandomStream;
 
     #[test]
     fn streams_differ_and_repeat() {
-        let first = |seed, stream| Draw::new(seed, stream).between(0.0, 1.0);
+        let first = |seed, stream| RandomStream::new(seed, stream).between(0.0, 1.0);
         assert_eq!(first(1, 2), first(1, 2));
         assert_ne!(first(1, 2), first(1, 3));
         assert_ne!(first(1, 2), first(2, 2));
@@ -75,7 +75,7 @@ mod tests {
     #[test]
     fn shuffle_keeps_every_element() {
         let mut list: Vec<usize> = (0..50).collect();
-        Draw::new(3, 0).shuffle(&mut list);
+        RandomStream::new(3, 0).shuffle(&mut list);
         assert!(list.windows(2).any(|pair| pair[0] > pair[1]));
         list.sort_unstable();
         assert!(list.into_iter().eq(0..50));

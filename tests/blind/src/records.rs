@@ -5,12 +5,12 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::hidden::{Hidden, Sensors};
+use crate::hidden::{HiddenEffect, Sensors};
 use crate::inputs::{Drive, drive};
 use crate::integrate::Stepper;
 use crate::machines::{Machine, Setup, Specification};
 use crate::plan::{Case, Group, Nuisances};
-use crate::random::Draw;
+use crate::random::RandomStream;
 use crate::size;
 
 /// True values of a case, used only for scoring.
@@ -36,7 +36,7 @@ pub struct Label {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
     /// Effect with site and size.
-    pub hidden: Hidden,
+    pub hidden: HiddenEffect,
     /// Name in results.
     pub effect: String,
     /// True values of its parameters, SI, sorted by name.
@@ -53,7 +53,7 @@ pub fn sensor_readings(
     setup: &Setup,
     drive: &Drive,
     sensors: &Sensors,
-    draw: &mut Draw,
+    draw: &mut RandomStream,
 ) -> Vec<Vec<f64>> {
     let step = setup.sample / setup.steps as f64;
     let late: Vec<usize> = sensors
@@ -94,7 +94,7 @@ pub fn make_case(case: &Case, seed: u64, specifications: &Path, out: &Path) -> s
         return Ok(());
     }
     let setup = case.machine.setup();
-    let mut draw = Draw::new(seed, 1 + case.number as u64);
+    let mut draw = RandomStream::new(seed, 1 + case.number as u64);
     let mut machine = case.machine.nominal();
     machine.choose_dry(&mut draw);
     let mut sensors = Sensors::ideal(setup.channels.len());
@@ -119,7 +119,7 @@ pub fn make_case(case: &Case, seed: u64, specifications: &Path, out: &Path) -> s
             effect: sized.hidden.name(),
             parameters: sized.hidden.parameters(&machine),
             floors: sized.floors,
-            alike: planned.indistinguishable.clone(),
+            alike: planned.inseparable.clone(),
             hidden: sized.hidden,
         });
     }
@@ -164,17 +164,17 @@ fn write_case(
         })
         .collect();
     for ((drive, columns), name) in drives.iter().zip(columns).zip(&names) {
-        write_whole(&folder.join(name), &table(setup, drive, columns))?;
+        write_whole(&folder.join(name), &write_table(setup, drive, columns))?;
     }
     let order = setup.order.map_or(String::new(), |order| order.to_string());
     write_whole(&folder.join("order.txt"), &order)?;
     write_whole(
         &folder.join("dataset.toml"),
-        &description(setup, case, &names),
+        &write_description(setup, case, &names),
     )
 }
 
-fn table(setup: &Setup, drive: &Drive, columns: &[Vec<f64>]) -> String {
+fn write_table(setup: &Setup, drive: &Drive, columns: &[Vec<f64>]) -> String {
     let mut text = "t".to_owned();
     if let Some((name, _)) = setup.input {
         text += &format!(",{name}");
@@ -196,7 +196,7 @@ fn table(setup: &Setup, drive: &Drive, columns: &[Vec<f64>]) -> String {
     text
 }
 
-fn description(setup: &Setup, case: &Case, names: &[String]) -> String {
+fn write_description(setup: &Setup, case: &Case, names: &[String]) -> String {
     let (train, test) = names.split_at(setup.records.0);
     let mut text = format!(
         "[records]\ntrain = {train:?}\ntest = {test:?}\n\n[time]\ncolumn = \"t\"\nunit = \"s\"\n"

@@ -25,7 +25,7 @@ pub enum Ending {
 
 /// Result of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Outcome {
+pub struct RunResult {
     /// Number of the case.
     pub case: usize,
     /// Way in which the run ended.
@@ -69,10 +69,10 @@ pub fn run(program: &Path, out: &Path, case: usize, limit: Duration) -> std::io:
         command.args(["--order", &order]);
     }
     let begin = Instant::now();
-    let ending = ending(&mut command, begin, limit)?;
+    let ending = wait_for_end(&mut command, begin, limit)?;
     let seconds = begin.elapsed().as_secs_f64();
     let document = std::fs::read_to_string(found.join("discovery.json")).ok();
-    let outcome = Outcome {
+    let outcome = RunResult {
         case,
         ending,
         seconds,
@@ -84,7 +84,7 @@ pub fn run(program: &Path, out: &Path, case: usize, limit: Duration) -> std::io:
     write_whole(&result, &serde_json::to_string_pretty(&outcome)?)
 }
 
-fn ending(command: &mut Command, begin: Instant, limit: Duration) -> std::io::Result<Ending> {
+fn wait_for_end(command: &mut Command, begin: Instant, limit: Duration) -> std::io::Result<Ending> {
     let mut child = command.spawn()?;
     loop {
         if let Some(status) = child.try_wait()? {

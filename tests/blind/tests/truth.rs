@@ -9,7 +9,7 @@ use eomgen_blind::machines::arm::Arm;
 use eomgen_blind::machines::axes::Pendulum;
 use eomgen_blind::machines::two_bodies::{Form, TwoBodies};
 use eomgen_blind::machines::{Kind, Machine, Setup};
-use eomgen_blind::random::Draw;
+use eomgen_blind::random::RandomStream;
 use eomgen_blind::size::{floors_of_missing_modes, window};
 
 fn advance_state(machine: &impl Motion, start: &[f64], span: f64, steps: usize) -> Vec<f64> {
@@ -130,7 +130,7 @@ fn two_bodies_conserve_energy_without_losses_only() {
 }
 
 fn drives(kind: Kind, setup: &Setup, seed: u64) -> Vec<Drive> {
-    let mut draw = Draw::new(seed, 0);
+    let mut draw = RandomStream::new(seed, 0);
     vec![drive(kind, setup, Excitation::Usual, 0, &mut draw)]
 }
 
@@ -192,8 +192,11 @@ fn integration_steps_are_short_enough() {
                 axis.dry = FrictionLaw::Bristles { reach, inertia };
             }
             let error = step_error(&machine, &setup, &drives(kind, &setup, 5)[0]);
-            println!("{kind:?}, bristles {bends}: {error} noises");
-            assert!(error < MAX_STEP_ERROR, "{kind:?} {bends}: {error} noises");
+            println!("{kind:?}, bristles {bends}: {error} times the noise");
+            assert!(
+                error < MAX_STEP_ERROR,
+                "{kind:?} {bends}: {error} times the noise"
+            );
         }
     }
 }
@@ -218,7 +221,7 @@ fn sensors_have_declared_noise_and_delay() {
     let setup = Kind::Stage.setup();
     let machine = Kind::Stage.nominal();
     let drive = &drives(Kind::Stage, &setup, 3)[0];
-    let mut draw = Draw::new(3, 1);
+    let mut draw = RandomStream::new(3, 1);
     let mut sensors = Sensors::ideal(1);
     let clean = window(&machine, &setup, drive, &drive.start, 0, drive.input.len());
     let seen = eomgen_blind::records::sensor_readings(&machine, &setup, drive, &sensors, &mut draw);

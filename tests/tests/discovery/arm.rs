@@ -8,7 +8,7 @@ use eomgen_blind::friction::AxisForces;
 use eomgen_blind::hidden::Sensors;
 use eomgen_blind::inputs::{Excitation, drive};
 use eomgen_blind::machines::{Kind, Machine, Setup};
-use eomgen_blind::random::Draw;
+use eomgen_blind::random::RandomStream;
 use eomgen_blind::records::sensor_readings;
 use eomgen_tests::models::path;
 use eomgen_tests::program;
@@ -39,7 +39,7 @@ fn write_records(folder: &Path) {
         ..Kind::Arm.setup()
     };
     let machine = arm_with_friction();
-    let mut draw = Draw::new(16, 1);
+    let mut draw = RandomStream::new(16, 1);
     for (place, name) in ["train.csv", "test.csv"].iter().enumerate() {
         let drive = drive(Kind::Arm, &setup, Excitation::Usual, place, &mut draw);
         let sensors = Sensors::ideal(setup.channels.len());

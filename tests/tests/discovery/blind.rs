@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use eomgen_blind::plan::{Case, Group, plan};
 use eomgen_blind::records::{self, Label};
-use eomgen_blind::run::{Ending, Outcome, run};
+use eomgen_blind::run::{Ending, RunResult, run};
 use eomgen_blind::score::{self, Judgement, Score};
 use eomgen_tests::models::project;
 use eomgen_tests::program;
@@ -98,7 +98,7 @@ fn label(group: Group, effects: &[&str]) -> Label {
 }
 
 /// Returns an answer with these effects; each has an estimated value and optionally an equivalent.
-fn answer(verdict: &str, effects: &[(&str, f64, Option<&str>)]) -> Outcome {
+fn answer(verdict: &str, effects: &[(&str, f64, Option<&str>)]) -> RunResult {
     let effect = |(name, value, other): &(&str, f64, Option<&str>)| {
         json!({
             "effect": name, "on": "q",
@@ -107,7 +107,7 @@ fn answer(verdict: &str, effects: &[(&str, f64, Option<&str>)]) -> Outcome {
             "parameters": {"p": {"value": value, "sd": 0.1, "unit": "N"}},
         })
     };
-    Outcome {
+    RunResult {
         case: 1,
         ending: Ending::Answered,
         seconds: 1.5,
@@ -359,7 +359,7 @@ fn closure_is_counted_with_a_gap_or_without_an_answer() {
         discovery["closure"]["test"] = closure;
         answer
     };
-    let late = Outcome {
+    let late = RunResult {
         ending: Ending::Timeout,
         discovery: None,
         ..answered(Value::Null)
@@ -380,7 +380,7 @@ fn closure_is_counted_with_a_gap_or_without_an_answer() {
             late.clone(),
             unexplained.clone(),
         ];
-        let judged = |outcome: &Outcome| score::judge(&label(group, &hidden), outcome);
+        let judged = |outcome: &RunResult| score::judge(&label(group, &hidden), outcome);
         let score = score::sum_judgements(outcomes.iter().map(judged).collect());
         let closure = match group {
             Group::Single => score.single_closure,

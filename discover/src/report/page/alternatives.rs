@@ -10,7 +10,7 @@ use crate::report::result::{EffectSite, RejectedEffect};
 use crate::report::summary::describe_effect;
 
 /// Number of rows that are always visible; further rows are folded.
-const SHOWN: usize = 8;
+const VISIBLE_ROW_COUNT: usize = 8;
 
 /// Effects with the same reason or experiment.
 struct Group<'a> {
@@ -23,7 +23,7 @@ struct Group<'a> {
 
 impl<'a> Group<'a> {
     /// Groups the effects by `key`, in the order of their first effects.
-    fn all<K: PartialEq>(
+    fn group_by<K: PartialEq>(
         list: &'a [RejectedEffect],
         key: impl Fn(&'a RejectedEffect) -> K,
     ) -> Vec<Self> {
@@ -51,7 +51,7 @@ impl<'a> Group<'a> {
     }
 
     /// Returns the names of the effects; sites of the same effect are joined.
-    fn names(&self) -> String {
+    fn join_names(&self) -> String {
         let mut by_effect: Vec<(&str, Vec<&str>)> = Vec::new();
         for at in &self.effects {
             match by_effect
@@ -81,7 +81,7 @@ impl<'a> Group<'a> {
     }
 
     /// Returns the first line of the reason, because compiler messages have several lines.
-    fn why(&self) -> String {
+    fn shorten_reason(&self) -> String {
         format_readable(self.reason.lines().next().unwrap_or_default())
     }
 }
@@ -91,9 +91,9 @@ pub(super) fn list_rejected(list: &[RejectedEffect]) -> Markup {
     if list.is_empty() {
         return html! {};
     }
-    let mut groups = Group::all(list, |of| &of.reason);
+    let mut groups = Group::group_by(list, |of| &of.reason);
     groups.sort_by_key(|group| group.effects.len());
-    let row = |group: &Group<'_>| html! { tr { td { (prose(&group.names())) } td { (prose(&group.why())) } } };
+    let row = |group: &Group<'_>| html! { tr { td { (prose(&group.join_names())) } td { (prose(&group.shorten_reason())) } } };
     section(
         "Rejected effects",
         &html! {
@@ -131,14 +131,14 @@ pub(super) fn list_untestable(list: &[RejectedEffect], files: &[ExperimentFile])
     if list.is_empty() {
         return html! {};
     }
-    let groups = Group::all(list, |of| (&of.at.effect, &of.experiment));
+    let groups = Group::group_by(list, |of| (&of.at.effect, &of.experiment));
     let row = |group: &Group<'_>| {
-        html! { tr { td { (prose(&group.names())) } td { (prose(&group.why())) } td { (prose(group.experiment)) (prose(&group.next(files))) } } }
+        html! { tr { td { (prose(&group.join_names())) } td { (prose(&group.shorten_reason())) } td { (prose(group.experiment)) (prose(&group.next(files))) } } }
     };
     section(
         "Effects that these records cannot show",
         &html! {
-            p { "These effects may be present or not; the records do not show the difference." }
+            p { "These effects may or may not be present: the records do not show the difference." }
             (write_folded(&groups, &["effect", "why", "experiment"], row))
         },
     )
@@ -150,7 +150,7 @@ fn write_folded(
     headings: &[&str],
     row: impl Fn(&Group<'_>) -> Markup,
 ) -> Markup {
-    let (first, rest) = groups.split_at(groups.len().min(SHOWN));
+    let (first, rest) = groups.split_at(groups.len().min(VISIBLE_ROW_COUNT));
     let rows = |groups: &[Group<'_>]| html! { @for group in groups { (row(group)) } };
     html! {
         (table(headings, &rows(first)))

@@ -17,11 +17,11 @@ pub(super) fn list_effects(effects: &[FoundEffect], files: &[ExperimentFile]) ->
     }
     section(
         "Found effects",
-        &html! { @for found in effects { (effect(found, files)) } },
+        &html! { @for found in effects { (write_effect(found, files)) } },
     )
 }
 
-fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
+fn write_effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
     let is_value = effect.parameters.keys().any(|name| {
         let rest = effect.term.strip_prefix(name.as_str());
         rest.is_some_and(|rest| rest.starts_with(" = "))
@@ -69,7 +69,7 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
                 "reduction of the held-out residual: " (prose(&format_percent(effect.statistics.held_out_reduction)))
                 ", " (format_number(effect.statistics.reduction_in_standard_errors, 2)) " standard errors"
                 @if let Some(p) = effect.adjusted_p_value {
-                    "; probability that noise alone gives as much for any fitted effect: " (probability(p))
+                    "; probability that noise alone supports any fitted effect as strongly: " (format_probability(p))
                 }
             }
         }
@@ -77,7 +77,7 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
 }
 
 /// Returns a probability in words; very small values are only given as an upper limit.
-fn probability(p: f64) -> String {
+fn format_probability(p: f64) -> String {
     match p < 1e-6 {
         true => "less than one in a million".to_owned(),
         false => format_number(p, 2),
@@ -104,13 +104,13 @@ pub(super) fn list_steps(discovery: &Discovery) -> Markup {
     section(
         heading,
         &html! {
-            @if has_steps { (step_table(&discovery.steps)) }
-            (validation_line(discovery))
+            @if has_steps { (write_step_table(&discovery.steps)) }
+            (write_validation(discovery))
         },
     )
 }
 
-fn step_table(steps: &[SearchStep]) -> Markup {
+fn write_step_table(steps: &[SearchStep]) -> Markup {
     let rows = html! {
         @for step in steps {
             tr {
@@ -130,7 +130,7 @@ fn step_table(steps: &[SearchStep]) -> Markup {
 }
 
 /// Returns the result of the validation of the extended equations.
-fn validation_line(discovery: &Discovery) -> Markup {
+fn write_validation(discovery: &Discovery) -> Markup {
     let Some(validation) = &discovery.validation else {
         return html! {};
     };

@@ -13,8 +13,8 @@ pub(super) fn write_gap_table(compared: &CommonResult) -> Markup {
             tr {
                 th scope="row" { (quantity_symbol(name)) }
                 td.number { (format_quantity(gap.floor, 3, &gap.unit)) }
-                (both(gap, has_after, |on| on.test))
-                (both(gap, has_after, |on| on.train))
+                (format_before_after(gap, has_after, |on| on.test))
+                (format_before_after(gap, has_after, |on| on.train))
             }
         }
     };
@@ -40,7 +40,7 @@ pub(super) fn write_gap_table(compared: &CommonResult) -> Markup {
 }
 
 /// Formats the value before the search and, if available, after it.
-fn both(gap: &ChannelGap, has_after: bool, of: fn(TrainTest<f64>) -> f64) -> Markup {
+fn format_before_after(gap: &ChannelGap, has_after: bool, of: fn(TrainTest<f64>) -> f64) -> Markup {
     let cell = |value: f64| {
         html! {
             td.number {

@@ -26,13 +26,13 @@ impl Comparison {
     /// Returns the page as a self-contained HTML document.
     pub fn to_html(&self) -> String {
         let compared = &self.compared;
-        whole(
+        write_document(
             compared,
             "Comparison of model and measurement",
             &html! {
                 (verdict::write_comparison_verdict(self))
-                (opening(compared))
-                (closing(compared))
+                (write_figures(compared))
+                (write_location(compared))
             },
         )
     }
@@ -42,19 +42,19 @@ impl Discovery {
     /// Returns the page as a self-contained HTML document.
     pub fn to_html(&self) -> String {
         let compared = &self.compared;
-        whole(
+        write_document(
             compared,
             "Search for missing effects of the model",
             &html! {
                 (verdict::write_discovery_verdict(self))
                 (found_effects::list_effects(&self.effects, &self.experiments))
                 (compared.pictures.experiments)
-                (playback(compared))
-                (opening(compared))
+                (write_playback(compared))
+                (write_figures(compared))
                 (found_effects::list_steps(self))
                 (alternatives::list_rejected(&self.rejected))
                 (alternatives::list_untestable(&self.untestable, &self.experiments))
-                (closing(compared))
+                (write_location(compared))
                 (found_effects::show_change(&self.original, &self.extended))
             },
         )
@@ -62,7 +62,7 @@ impl Discovery {
 }
 
 /// Returns a document with a header, a body and the origin. `kind`: kind of the report.
-fn whole(compared: &CommonResult, kind: &str, body: &Markup) -> String {
+fn write_document(compared: &CommonResult, kind: &str, body: &Markup) -> String {
     let title = compared.title.as_str();
     let origin = &compared.origin;
     let body = html! {
@@ -86,7 +86,7 @@ fn whole(compared: &CommonResult, kind: &str, body: &Markup) -> String {
 }
 
 /// Writes the interactive figure of the result.
-fn playback(compared: &CommonResult) -> Markup {
+fn write_playback(compared: &CommonResult) -> Markup {
     match &compared.pictures.playback {
         Playback::Computed { body, .. } => section("Interactive simulation", body),
         Playback::Unavailable(why) => html! {
@@ -97,7 +97,7 @@ fn playback(compared: &CommonResult) -> Markup {
 }
 
 /// Writes the figures of the gap.
-fn opening(compared: &CommonResult) -> Markup {
+fn write_figures(compared: &CommonResult) -> Markup {
     html! {
         (section("Measured and simulated", &html! {
             (compared.pictures.overlay)
@@ -108,7 +108,7 @@ fn opening(compared: &CommonResult) -> Markup {
 }
 
 /// Writes the location of the gap and the refitted parameters.
-fn closing(compared: &CommonResult) -> Markup {
+fn write_location(compared: &CommonResult) -> Markup {
     let force = compared.pictures.force.as_ref();
     let has_location = !compared.location.is_empty();
     html! {

@@ -12,7 +12,7 @@ pub(super) fn list_nuisances(compared: &CommonResult) -> Markup {
         return html! {};
     }
     let far = all.iter().filter(|of| of.is_at_bound()).count();
-    let rows = html! { @for of in all { (row(of)) } };
+    let rows = html! { @for of in all { (write_row(of)) } };
     section(
         "Refitted parameters and sensors",
         &html! {
@@ -33,11 +33,11 @@ pub(super) fn list_nuisances(compared: &CommonResult) -> Markup {
     )
 }
 
-fn row(of: &Nuisance) -> Markup {
+fn write_row(of: &Nuisance) -> Markup {
     let (mean, sd) = of.declared;
     let unit = &of.estimate.unit;
     let class = of.is_at_bound().then_some("failed");
-    let off = of.deviations_from_prior();
+    let deviation = of.deviations_from_prior();
     html! {
         tr {
             th scope="row" {
@@ -47,7 +47,7 @@ fn row(of: &Nuisance) -> Markup {
             td.number { (prose(&format_estimate(mean, sd, unit))) }
             td.number { (prose(&format_estimate(of.estimate.value, of.estimate.sd, unit))) }
             td class=[class] {
-                @if off.is_finite() { (format_tenths(off)) } @else { "–" }
+                @if deviation.is_finite() { (format_tenths(deviation)) } @else { "–" }
             }
         }
     }

@@ -153,7 +153,7 @@ fn comparison(text: &str) -> Comparison {
 }
 
 /// Returns the names of the opened elements, in order.
-fn elements(page: &str) -> Vec<&str> {
+fn list_elements(page: &str) -> Vec<&str> {
     let opened = page.split('<').skip(1);
     opened
         .filter_map(|piece| piece.split(|c: char| !c.is_ascii_alphanumeric()).next())
@@ -162,7 +162,7 @@ fn elements(page: &str) -> Vec<&str> {
 }
 
 #[test]
-fn text_from_outside_stays_text() {
+fn text_from_input_files_is_escaped() {
     let hostile = "</pre></title>\"'><script>alert(\"1\")</script>&<img src=x onerror='a'>";
     let pages = [
         (discovery(hostile).to_html(), discovery("plain").to_html()),
@@ -173,7 +173,7 @@ fn text_from_outside_stays_text() {
             assert!(!page.contains(forbidden), "{forbidden}");
         }
         assert!(page.matches("&lt;script&gt;").count() >= 8, "{page}");
-        assert_eq!(elements(&page), elements(&plain));
+        assert_eq!(list_elements(&page), list_elements(&plain));
     }
 }
 
@@ -193,7 +193,7 @@ fn hidden_characters_are_escaped_and_the_policy_forbids_scripts() {
 }
 
 #[test]
-fn large_remaining_gap_is_uncertain_in_the_summary() {
+fn large_remaining_gap_makes_summary_uncertain() {
     let mut found = discovery("x");
     found.effects[0].status = EffectStatus::Named;
     found.closure.test = Some(0.6);
@@ -219,7 +219,7 @@ fn large_remaining_gap_is_uncertain_in_the_summary() {
 }
 
 #[test]
-fn a_nuisance_at_its_bound_makes_an_answer_uncertain() {
+fn nuisance_at_bound_makes_effects_uncertain() {
     let mut found = discovery("x");
     found.compared.nuisances[0].estimate.value = 1.03;
     found.compared.nuisances[0].estimate.unit = "1".to_owned();
@@ -238,7 +238,7 @@ fn a_nuisance_at_its_bound_makes_an_answer_uncertain() {
 }
 
 #[test]
-fn a_nuisance_at_its_bound_is_said_where_nothing_else_is_missing() {
+fn nuisance_at_bound_is_reported_without_effects() {
     let mut found = discovery("x");
     found.verdict = Verdict::NoSignificantGap;
     found.effects.clear();
@@ -270,9 +270,9 @@ fn reports_name_their_kind() {
         "Comparison of model and measurement",
     ];
     let pages = [discovery("x").to_html(), comparison("x").to_html()];
-    for (place, page) in pages.iter().enumerate() {
+    for (index, page) in pages.iter().enumerate() {
         assert!(
-            page.contains(kinds[place]) && !page.contains(kinds[1 - place]),
+            page.contains(kinds[index]) && !page.contains(kinds[1 - index]),
             "{page}"
         );
         assert!(page.contains("<th scope=\"col\">training"), "{page}");

@@ -23,13 +23,13 @@ pub(super) fn write_controls(
     let unknowns = accepted.iter().flat_map(|effect| &effect.unknowns);
     html! {
         div.controls {
-            @for id in unknowns { (control(problem, best, model, *id)) }
+            @for id in unknowns { (write_slider(problem, best, model, *id)) }
             p.scripted { button #defaults type="button" { "Reset values" } }
         }
     }
 }
 
-fn control(
+fn write_slider(
     problem: &EstimationProblem<'_>,
     best: &Fit,
     model: &EstimationModel,
@@ -50,8 +50,8 @@ fn control(
         }
     };
     match &best.unknowns[id].kind {
-        UnknownKind::Parameter(name) => parameter(model, name, false),
-        UnknownKind::InverseParameter(name) => parameter(model, name, true),
+        UnknownKind::Parameter(name) => write_parameter_slider(model, name, false),
+        UnknownKind::InverseParameter(name) => write_parameter_slider(model, name, true),
         UnknownKind::Gain(at) => of_sensor(at.index(), "gain", 1.0, "1").control("gain"),
         UnknownKind::Bias(at) => {
             let unit = &problem.dataset.channels[at.index()].unit;
@@ -65,14 +65,14 @@ fn control(
 
 /// Returns the slider of a parameter. `is_inverse`: the effect vanishes for an infinite value, so 0
 /// is excluded from the range.
-fn parameter(model: &EstimationModel, name: &str, is_inverse: bool) -> Markup {
+fn write_parameter_slider(model: &EstimationModel, name: &str, is_inverse: bool) -> Markup {
     let declared = model.specification().parameters.iter();
     let mut declared = declared.filter(|parameter| parameter.name == name);
-    let (Some(declared), Some(place)) = (declared.next(), model.find_parameter(name)) else {
+    let (Some(declared), Some(index)) = (declared.next(), model.find_parameter(name)) else {
         return html! {};
     };
-    let place = place.index();
-    let mut slider = Slider::from_parameter(declared, place, model.values[place]);
+    let index = index.index();
+    let mut slider = Slider::from_parameter(declared, index, model.values[index]);
     if is_inverse {
         (slider.low, slider.high) = (0.2 * slider.value, 5.0 * slider.value);
     }

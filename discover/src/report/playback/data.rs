@@ -36,18 +36,18 @@ pub(super) fn write_json(
     let document = json!({
         "moving": moving,
         "parameters": model.values,
-        "times": doubles(stretch.times.iter().copied()),
-        "driven": doubles(rows),
-        "measured": doubles(stretch.measured.iter().copied()),
-        "before": doubles(stretch.before.iter().copied()),
+        "times": encode_doubles(stretch.times.iter().copied()),
+        "driven": encode_doubles(rows),
+        "measured": encode_doubles(stretch.measured.iter().copied()),
+        "before": encode_doubles(stretch.before.iter().copied()),
         "windows": stretch.windows.iter().map(piece).collect::<Vec<Value>>(),
-        "channels": channels(problem, best, model, stretch),
+        "channels": write_channels(problem, best, model, stretch),
     });
     document.to_string()
 }
 
 /// Returns column, sensor and residual of each channel.
-fn channels(
+fn write_channels(
     problem: &EstimationProblem<'_>,
     best: &Fit,
     model: &EstimationModel,
@@ -62,11 +62,11 @@ fn channels(
     let of =
         |((id, channel), output): ((ChannelId, &eomgen_records::dataset::Channel), &Output)| {
             let from = match output {
-                Output::State(place) => json!({ "state": place }),
-                Output::Observable(place) => json!({ "observable": place }),
-                Output::Acceleration(of) => json!({ "observable": of.place }),
-                Output::Rate(place) => json!({ "rate": place }),
-                Output::Input(place) => json!({ "input": place }),
+                Output::State(index) => json!({ "state": index }),
+                Output::Observable(index) => json!({ "observable": index }),
+                Output::Acceleration(of) => json!({ "observable": of.index }),
+                Output::Rate(index) => json!({ "rate": index }),
+                Output::Input(index) => json!({ "input": index }),
             };
             json!({
                 "symbol": name_letters(&channel.name),
@@ -82,6 +82,6 @@ fn channels(
 }
 
 /// Returns numbers as base64-encoded little-endian bytes, the byte order of all current browsers.
-fn doubles(numbers: impl Iterator<Item = f64>) -> String {
+fn encode_doubles(numbers: impl Iterator<Item = f64>) -> String {
     encode_base64(&numbers.flat_map(f64::to_le_bytes).collect::<Vec<u8>>())
 }

@@ -83,7 +83,7 @@ impl Playback {
         let controls = write_controls(problem, best, &model, accepted);
         let data = data::write_json(problem, best, &model, &stretch, moving);
         Self::Computed {
-            body: body(problem, &stretch, &controls),
+            body: write_body(problem, &stretch, &controls),
             data,
         }
     }
@@ -107,7 +107,11 @@ fn embed_model(model: &EstimationModel) -> Result<Value, String> {
     moving.map_err(|why| why.to_string())
 }
 
-fn body(problem: &EstimationProblem<'_>, stretch: &RecordExcerpt, controls: &Markup) -> Markup {
+fn write_body(
+    problem: &EstimationProblem<'_>,
+    stretch: &RecordExcerpt,
+    controls: &Markup,
+) -> Markup {
     let seconds = stretch.times.last().zip(stretch.times.first());
     let seconds = seconds.map_or(0.0, |(last, first)| last - first);
     let channels = problem.dataset.channels.iter();

@@ -6,13 +6,13 @@ use crate::fit::fit_result::Fit;
 use crate::model::problem::EstimationProblem;
 
 /// Maximum number of samples.
-const SAMPLES: usize = 3000;
+const MAX_SAMPLES: usize = 3000;
 
 /// Maximum number of values in all columns, which need 260 kB as text.
-const NUMBERS: usize = 24_000;
+const MAX_VALUES: usize = 24_000;
 
 /// Minimum number of samples of a truncated window.
-const MIN_SAMPLES: usize = 32;
+const MIN_WINDOW_SAMPLES: usize = 32;
 
 /// Consecutive windows of the first test record.
 pub(super) struct RecordExcerpt {
@@ -48,7 +48,7 @@ impl RecordExcerpt {
     pub fn from_fits(problem: &EstimationProblem<'_>, null: &Fit, best: &Fit) -> Option<Self> {
         let channels = problem.noise.len();
         let inputs = problem.dataset.test.first()?.input_columns.len();
-        let most = SAMPLES.min(NUMBERS / (1 + inputs + 2 * channels));
+        let most = MAX_SAMPLES.min(MAX_VALUES / (1 + inputs + 2 * channels));
         let mut stretch = Self {
             times: Vec::new(),
             measured: Vec::new(),
@@ -60,21 +60,21 @@ impl RecordExcerpt {
         let mut sums = vec![[0.0; 2]; channels];
         let mut counts = vec![0.0; channels];
         let all = problem.test.windows.iter().enumerate();
-        for (place, window) in all.filter(|(_, window)| window.record == 0) {
+        for (index, window) in all.filter(|(_, window)| window.record == 0) {
             let whole = window.times.len();
             let samples = whole.min(most - stretch.times.len());
-            if samples < whole && (samples < MIN_SAMPLES || place > 0) {
+            if samples < whole && (samples < MIN_WINDOW_SAMPLES || index > 0) {
                 stretch.is_complete = false;
                 break;
             }
             stretch.is_complete &= samples == whole;
-            let fitted = best.test.window_residuals.get(place)?;
+            let fitted = best.test.window_residuals.get(index)?;
             if fitted.is_empty() {
                 return None;
             }
             let judged = compared_samples(whole);
             let judged = judged.start..judged.end.min(samples);
-            let null = null.test.window_residuals.get(place)?;
+            let null = null.test.window_residuals.get(index)?;
             for sample in 0..samples {
                 for channel in 0..channels {
                     let number = sample * channels + channel;
@@ -96,7 +96,7 @@ impl RecordExcerpt {
                 .measured
                 .extend_from_slice(&window.measured[..samples * channels]);
             stretch.windows.push(ExcerptWindow {
-                window: place,
+                window: index,
                 first_sample: first,
                 samples,
                 compared_samples: judged,

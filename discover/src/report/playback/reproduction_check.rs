@@ -14,7 +14,7 @@ use crate::report::quantity::format_quantity;
 
 /// Maximum number of steps in one window and in all windows: some seconds of computation in a
 /// browser.
-const MOST_STEPS: u64 = 400_000;
+const MAX_STEPS: u64 = 400_000;
 
 /// Maximum relative difference between the residuals of page and fit. Both are accurate to a small
 /// fraction of the noise, but the methods differ; the error limit of the fit is `MAX_STEP_ERROR`.
@@ -41,7 +41,7 @@ pub(super) fn check_reproduces_fit(
     for piece in &stretch.windows {
         let (seen, own) = simulate_outputs(problem, best, model, stretch, piece)?;
         steps += own;
-        if steps > MOST_STEPS {
+        if steps > MAX_STEPS {
             return Err(too_many_steps());
         }
         let measured = stretch.measured[piece.first_sample * channels..].iter();
@@ -74,12 +74,12 @@ pub(super) fn check_reproduces_fit(
 }
 
 /// Alternative for a motion that a page cannot simulate.
-const CURE: &str =
+const ALTERNATIVE: &str =
     "`eomgen simulate extended.toml --record DATASET.toml` computes it with the other solvers";
 
 fn too_many_steps() -> String {
     format!(
-        "the motion needs more than {MOST_STEPS} steps, because it is too fast or too long for a page; {CURE}"
+        "the motion needs more than {MAX_STEPS} steps, because it is too fast or too long for a page; {ALTERNATIVE}"
     )
 }
 
@@ -109,7 +109,7 @@ fn simulate_outputs(
     let mut motion = ExportedMotion::new(exported, options);
     let failed = |error: eomgen_compiled_model::Error| {
         format!(
-            "the engine of pages fails in the window of the test record from {begin:.6} s: {error}; {CURE}"
+            "the engine of pages fails in the window of the test record from {begin:.6} s: {error}; {ALTERNATIVE}"
         )
     };
     let given = HeldInputs::constant(inputs.last_sample(begin).to_vec());
@@ -118,7 +118,7 @@ fn simulate_outputs(
     let mut buffers = model.measured.create_buffers();
     for t in times.iter() {
         motion.advance(*t).map_err(failed)?;
-        if motion.step_count() > MOST_STEPS {
+        if motion.step_count() > MAX_STEPS {
             return Err(too_many_steps());
         }
         let held = inputs.last_sample(*t);

@@ -8,7 +8,7 @@ pub mod two_bodies;
 
 use crate::friction::{AxisForces, FrictionLaw};
 use crate::integrate::Motion;
-use crate::random::Draw;
+use crate::random::RandomStream;
 use arm::{Arm, Mesh};
 use axes::{Pendulum, Stage};
 pub use setup::{Channel, Setup, Specification};
@@ -226,7 +226,7 @@ impl Machine {
     }
 
     /// Selects the law of dry friction on every axis.
-    pub fn choose_dry(&mut self, draw: &mut Draw) {
+    pub fn choose_dry(&mut self, draw: &mut RandomStream) {
         let bristles = draw.between(0.0, 1.0) < 0.5;
         let choose = |forces: &mut AxisForces, reach: f64, inertia: f64| {
             if bristles {

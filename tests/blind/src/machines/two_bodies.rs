@@ -6,7 +6,7 @@ use super::setup::{Channel, Setup, Specification};
 use super::spring::Spring;
 use crate::friction::{AxisForces, FrictionLaw};
 use crate::integrate::Motion;
-use crate::random::Draw;
+use crate::random::RandomStream;
 
 /// Number of states.
 pub const STATE: usize = 6;
@@ -56,7 +56,7 @@ impl TwoBodies {
     /// Returns a machine with random parameters and without hidden effects.
     pub fn random(form: Form, seed: u64) -> Self {
         // Machines use the last random streams, because cases use the streams 1, 2, ...
-        let mut draw = Draw::new(seed, u64::MAX - form as u64);
+        let mut draw = RandomStream::new(seed, u64::MAX - form as u64);
         let mut between = |low: f64, high: f64| round_to_four_digits(draw.between(low, high));
         let friction = |speed: f64| AxisForces::none(FrictionLaw::Steep { speed });
         let plain = |inertia, viscous, spring, speeds: [f64; 2]| Self {

@@ -2,16 +2,16 @@
 
 use std::f64::consts::PI;
 
-use super::{Case, Group, Nuisances, Planned};
-use crate::hidden::{Effect, Hidden};
+use super::{Case, Group, Nuisances, PlannedEffect};
+use crate::hidden::{Effect, HiddenEffect};
 use crate::inputs::Excitation;
 use crate::machines::Kind;
 use crate::machines::two_bodies::Form;
-use crate::random::Draw;
+use crate::random::RandomStream;
 
 /// True parameters deviate according to their priors, biases by a fifth of their priors. There are
 /// no other sensor errors.
-const USUAL: Nuisances = Nuisances {
+const USUAL_NUISANCES: Nuisances = Nuisances {
     declared: 1.0,
     bias: 0.2,
     gain: 0.0,
@@ -22,18 +22,18 @@ const USUAL: Nuisances = Nuisances {
 /// found, and three larger ones.
 const LEVELS: [f64; 5] = [1.5, 3.0, 6.0, 15.0, 60.0];
 
-fn case(group: Group, machine: Kind, manner: Excitation, hidden: Vec<Planned>) -> Case {
+fn case(group: Group, machine: Kind, manner: Excitation, hidden: Vec<PlannedEffect>) -> Case {
     Case {
         number: 0,
         group,
         machine,
         manner,
         hidden,
-        nuisances: USUAL,
+        nuisances: USUAL_NUISANCES,
     }
 }
 
-fn plan_effect(effect: Effect, on: &str, level: f64, draw: &mut Draw) -> Planned {
+fn plan_effect(effect: Effect, on: &str, level: f64, draw: &mut RandomStream) -> PlannedEffect {
     use Effect::{
         AsymmetricBacklash, AsymmetricFriction, EndStop, ForceOffset, ForeignHum, InputGain,
         ParameterShift, SensorBias, SensorGain, StiffnessNonlinearity, StiffnessVariation,
@@ -66,7 +66,7 @@ fn plan_effect(effect: Effect, on: &str, level: f64, draw: &mut Draw) -> Planned
         (StiffnessNonlinearity, on) if on != "arm" => 1.0,
         _ => drawn,
     };
-    let hidden = Hidden {
+    let hidden = HiddenEffect {
         effect,
         on: on.to_owned(),
         order,
@@ -74,15 +74,15 @@ fn plan_effect(effect: Effect, on: &str, level: f64, draw: &mut Draw) -> Planned
         phase: draw.between(0.0, 2.0 * PI),
         amount: 0.0,
     };
-    Planned {
+    PlannedEffect {
         hidden,
         level,
-        indistinguishable: indistinguishable(effect, on, order),
+        inseparable: list_inseparable(effect, on, order),
     }
 }
 
 /// Returns the effects that are inseparable from a hidden effect.
-fn indistinguishable(effect: Effect, on: &str, order: f64) -> Vec<(String, String)> {
+fn list_inseparable(effect: Effect, on: &str, order: f64) -> Vec<(String, String)> {
     if effect == Effect::TorqueRipple && order == 1.0 {
         // An unbalanced weight on any rotating body.
         return vec![("gravity".to_owned(), on.to_owned())];
@@ -114,7 +114,7 @@ fn two_bodies(seed: u64) -> [Kind; 3] {
 
 /// Returns cases with each single effect of the catalogue. In every second case, the nuisances
 /// deviate by their full priors.
-pub fn single_effects(seed: u64, draw: &mut Draw) -> Vec<Case> {
+pub fn single_effects(seed: u64, draw: &mut RandomStream) -> Vec<Case> {
     use Effect::{
         AsymmetricBacklash, AsymmetricFriction, Backlash, CoulombFriction, ElasticRestraint,
         EndStop, EndStops, ForceOffset, Gravity, InputGain, JointCompliance, ParameterShift,
@@ -128,7 +128,7 @@ pub fn single_effects(seed: u64, draw: &mut Draw) -> Vec<Case> {
     let (stage, pendulum) = ((Stage, "q"), (Pendulum, "theta"));
     let arm = (Arm, "arm");
     let mesh = (Arm, "x_sp");
-    let either = |one, other, draw: &mut Draw| draw.one_of(&[one, other]);
+    let either = |one, other, draw: &mut RandomStream| draw.one_of(&[one, other]);
     let list: [(Effect, [(Kind, &str); 2]); 20] = [
         (
             CoulombFriction,
@@ -235,10 +235,10 @@ pub fn without_effects(seed: u64) -> Vec<Case> {
     cases
 }
 
-type Placed<'a> = (Effect, &'a str);
+type EffectAtSite<'a> = (Effect, &'a str);
 
 /// Returns cases with two large effects.
-pub fn effect_pairs(seed: u64, draw: &mut Draw) -> Vec<Case> {
+pub fn effect_pairs(seed: u64, draw: &mut RandomStream) -> Vec<Case> {
     use Effect::{
         AsymmetricFriction, Backlash, CoulombFriction, ElasticRestraint, EndStop, ForceOffset,
         QuadraticDrag, SensorBias, StiffnessNonlinearity, StructuralDamping, TipMass, TorqueRipple,
@@ -283,7 +283,10 @@ pub fn effect_pairs(seed: u64, draw: &mut Draw) -> Vec<Case> {
         ),
         (Pendulum, (CoulombFriction, "theta"), (SensorBias, "theta")),
     ];
-    let pair = |(number, (machine, first, second)): (usize, (Kind, Placed<'_>, Placed<'_>))| {
+    let pair = |(number, (machine, first, second)): (
+        usize,
+        (Kind, EffectAtSite<'_>, EffectAtSite<'_>),
+    )| {
         let mut level = || draw.one_of(&[6.0, 10.0, 15.0]);
         let (one, other) = (level(), level());
         let hidden = vec![
@@ -300,7 +303,7 @@ pub fn effect_pairs(seed: u64, draw: &mut Draw) -> Vec<Case> {
 }
 
 /// Returns cases with effects outside the catalogue.
-pub fn outside_catalogue(seed: u64, draw: &mut Draw) -> Vec<Case> {
+pub fn outside_catalogue(seed: u64, draw: &mut RandomStream) -> Vec<Case> {
     use Effect::{ForeignHum, WeakeningDrive, WornFriction};
     use Kind::{Arm, Pendulum, Stage};
     let [drive, crane, car] = two_bodies(seed);
@@ -322,7 +325,7 @@ pub fn outside_catalogue(seed: u64, draw: &mut Draw) -> Vec<Case> {
 }
 
 /// Returns cases with effects that are inseparable from others.
-pub fn indistinguishable_effects(draw: &mut Draw) -> Vec<Case> {
+pub fn inseparable_effects(draw: &mut RandomStream) -> Vec<Case> {
     use Effect::{CoulombFriction, ElasticRestraint, ForceOffset, ParameterShift};
     use Kind::{Arm, Pendulum, Stage};
     let list = [
@@ -384,8 +387,8 @@ pub fn indistinguishable_effects(draw: &mut Draw) -> Vec<Case> {
                 hidden.hidden.sign = -1.0;
             }
             let other = (other.0.to_owned(), other.1.to_owned());
-            if !hidden.indistinguishable.contains(&other) {
-                hidden.indistinguishable.push(other);
+            if !hidden.inseparable.contains(&other) {
+                hidden.inseparable.push(other);
             }
             case(Group::Untellable, machine, manner, vec![hidden])
         };

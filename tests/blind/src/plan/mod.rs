@@ -6,10 +6,10 @@ mod lists;
 
 use serde::{Deserialize, Serialize};
 
-use crate::hidden::{Hidden, Sensors};
+use crate::hidden::{HiddenEffect, Sensors};
 use crate::inputs::Excitation;
 use crate::machines::{Kind, Machine, Setup};
-use crate::random::Draw;
+use crate::random::RandomStream;
 
 /// Group of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -29,13 +29,13 @@ pub enum Group {
 
 /// Planned effect.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Planned {
+pub struct PlannedEffect {
     /// Effect; its size is determined later.
-    pub hidden: Hidden,
+    pub hidden: HiddenEffect,
     /// Size in noise floors.
     pub level: f64,
     /// Effects that are inseparable from the hidden effect, with their sites.
-    pub indistinguishable: Vec<(String, String)>,
+    pub inseparable: Vec<(String, String)>,
 }
 
 /// Machine with its excitation and hidden effects.
@@ -50,7 +50,7 @@ pub struct Case {
     /// Excitation.
     pub manner: Excitation,
     /// Hidden effects.
-    pub hidden: Vec<Planned>,
+    pub hidden: Vec<PlannedEffect>,
     /// Deviations that are not effects.
     pub nuisances: Nuisances,
 }
@@ -81,7 +81,7 @@ impl Nuisances {
         setup: &Setup,
         machine: &mut Machine,
         sensors: &mut Sensors,
-        draw: &mut Draw,
+        draw: &mut RandomStream,
     ) -> Vec<(String, f64)> {
         let mut declared = Vec::new();
         for (name, relative) in &setup.uncertain {
@@ -114,12 +114,12 @@ impl Case {
 
 /// Returns all cases of a seed.
 pub fn plan(seed: u64) -> Vec<Case> {
-    let mut draw = Draw::new(seed, 0);
+    let mut draw = RandomStream::new(seed, 0);
     let mut cases = lists::single_effects(seed, &mut draw);
     cases.extend(lists::without_effects(seed));
     cases.extend(lists::effect_pairs(seed, &mut draw));
     cases.extend(lists::outside_catalogue(seed, &mut draw));
-    cases.extend(lists::indistinguishable_effects(&mut draw));
+    cases.extend(lists::inseparable_effects(&mut draw));
     draw.shuffle(&mut cases);
     for (number, case) in cases.iter_mut().enumerate() {
         case.number = number;

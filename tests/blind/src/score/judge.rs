@@ -2,22 +2,22 @@
 
 use serde_json::Value;
 
-use super::{Judged, Judgement};
+use super::{CaseScore, Judgement};
 use crate::hidden::Effect;
 use crate::plan::Group;
 use crate::records::{Label, Truth};
-use crate::run::{Ending, Outcome};
+use crate::run::{Ending, RunResult};
 
 /// Half-width of a 90 % interval, in standard deviations.
 const HALF_WIDTH_90: f64 = 1.645;
 
 /// Judges one case.
-pub fn judge(label: &Label, outcome: &Outcome) -> Judged {
+pub fn judge(label: &Label, outcome: &RunResult) -> CaseScore {
     let empty = Vec::new();
     let discovery = outcome.discovery.as_ref();
     let list = |key: &str| discovery.and_then(|d| d[key].as_array()).unwrap_or(&empty);
     let effects = list("effects");
-    let mut judged = Judged {
+    let mut judged = CaseScore {
         case: label.case,
         group: label.group,
         hidden: (label.hidden.iter())
@@ -25,16 +25,22 @@ pub fn judge(label: &Label, outcome: &Outcome) -> Judged {
             .collect(),
         found: effects
             .iter()
-            .map(|e| (text_of(e, "effect"), text_of(e, "on"), text_of(e, "status")))
+            .map(|e| {
+                (
+                    read_text(e, "effect"),
+                    read_text(e, "on"),
+                    read_text(e, "status"),
+                )
+            })
             .collect(),
-        judgement: judgement(label, outcome, effects),
+        judgement: classify_case(label, outcome, effects),
         full_priors: label.full_priors,
-        classes: effects.iter().filter_map(class_size).collect(),
+        classes: effects.iter().filter_map(read_class_size).collect(),
         extra: 0,
         wrong_signs: 0,
         intervals: (0, 0),
         refitted: (0, 0),
-        closure: closure(outcome),
+        closure: read_closure(outcome),
         seconds: outcome.seconds,
     };
     for found in effects {
@@ -43,9 +49,12 @@ pub fn judge(label: &Label, outcome: &Outcome) -> Judged {
             .iter()
             .find(|truth| match_effect(found, truth) == Match::Named)
         {
-            Some(truth) => {
-                check_parameters(truth, ordinary_error(label, truth), found, &mut judged)
-            }
+            Some(truth) => check_parameters(
+                truth,
+                compute_ordinary_error(label, truth),
+                found,
+                &mut judged,
+            ),
             None if label
                 .hidden
                 .iter()
@@ -63,14 +72,14 @@ pub fn judge(label: &Label, outcome: &Outcome) -> Judged {
 }
 
 /// Returns the closure on held-out records; zero if there is no answer.
-fn closure(outcome: &Outcome) -> Option<f64> {
+fn read_closure(outcome: &RunResult) -> Option<f64> {
     match (outcome.ending, &outcome.discovery) {
         (Ending::Answered, Some(discovery)) => discovery["closure"]["test"].as_f64(),
         _ => Some(0.0),
     }
 }
 
-fn judgement(label: &Label, outcome: &Outcome, effects: &[Value]) -> Judgement {
+fn classify_case(label: &Label, outcome: &RunResult, effects: &[Value]) -> Judgement {
     match outcome.ending {
         Ending::Timeout => return Judgement::Timeout,
         Ending::Failed => return Judgement::Failed,
@@ -80,7 +89,7 @@ fn judgement(label: &Label, outcome: &Outcome, effects: &[Value]) -> Judgement {
     match (label.group, effects) {
         (Group::Nothing, []) => return Judgement::Right,
         (Group::Outside, found) if found.iter().all(is_empirical) => {
-            let verdict = outcome.discovery.as_ref().map(|d| text_of(d, "verdict"));
+            let verdict = outcome.discovery.as_ref().map(|d| read_text(d, "verdict"));
             return match verdict.as_deref() {
                 Some("no_significant_gap") => Judgement::Missed,
                 _ => Judgement::Right,
@@ -88,7 +97,7 @@ fn judgement(label: &Label, outcome: &Outcome, effects: &[Value]) -> Judgement {
         }
         (Group::Outside | Group::Nothing, _) => return Judgement::Wrong,
         (_, []) => {
-            let verdict = outcome.discovery.as_ref().map(|d| text_of(d, "verdict"));
+            let verdict = outcome.discovery.as_ref().map(|d| read_text(d, "verdict"));
             return match verdict.as_deref() {
                 Some("no_significant_gap") => Judgement::Missed,
                 _ => Judgement::Unexplained,
@@ -139,10 +148,10 @@ enum Match {
 
 fn match_effect(found: &Value, truth: &Truth) -> Match {
     let same = |entry: &Value| {
-        text_of(entry, "effect") == truth.effect && text_of(entry, "on") == truth.hidden.on
+        read_text(entry, "effect") == truth.effect && read_text(entry, "on") == truth.hidden.on
     };
     let equivalent = found["equivalent"].as_array().into_iter().flatten();
-    let class = text_of(found, "status") == "class";
+    let class = read_text(found, "status") == "class";
     if class && (same(found) || equivalent.into_iter().any(same)) {
         Match::Class
     } else if !class && same(found) {
@@ -153,17 +162,17 @@ fn match_effect(found: &Value, truth: &Truth) -> Match {
 }
 
 fn is_empirical(found: &Value) -> bool {
-    text_of(found, "status") == "empirical"
+    read_text(found, "status") == "empirical"
 }
 
 /// Returns the number of effects in a class; `None` for a named effect.
-fn class_size(found: &Value) -> Option<usize> {
+fn read_class_size(found: &Value) -> Option<usize> {
     let others = found["equivalent"].as_array()?.len();
-    (text_of(found, "status") == "class").then_some(1 + others)
+    (read_text(found, "status") == "class").then_some(1 + others)
 }
 
 /// Returns the ordinary error of a sensor whose fault is hidden, which adds to the fault.
-fn ordinary_error(label: &Label, truth: &Truth) -> f64 {
+fn compute_ordinary_error(label: &Label, truth: &Truth) -> f64 {
     let of = match truth.hidden.effect {
         Effect::SensorBias => &label.sensors.bias,
         Effect::SensorGain => &label.sensors.gain,
@@ -177,7 +186,7 @@ fn ordinary_error(label: &Label, truth: &Truth) -> f64 {
 
 /// Checks signs and intervals of the parameters of a correct effect, sorted by name. `usual`:
 /// ordinary error in addition to the hidden effect.
-fn check_parameters(truth: &Truth, usual: f64, found: &Value, judged: &mut Judged) {
+fn check_parameters(truth: &Truth, usual: f64, found: &Value, judged: &mut CaseScore) {
     let Some(parameters) = found["parameters"].as_object() else {
         return;
     };
@@ -208,7 +217,7 @@ fn count_refitted(label: &Label, discovery: &Value) -> (usize, usize) {
     };
     for (name, factor) in &label.declared {
         let entry = &discovery["refitted"][name];
-        let nominal = nominal_value(label, name);
+        let nominal = find_nominal_value(label, name);
         let (Some(value), Some(sd), Some(nominal)) =
             (entry["value"].as_f64(), entry["sd"].as_f64(), nominal)
         else {
@@ -222,7 +231,7 @@ fn count_refitted(label: &Label, discovery: &Value) -> (usize, usize) {
     counts
 }
 
-fn nominal_value(label: &Label, name: &str) -> Option<f64> {
+fn find_nominal_value(label: &Label, name: &str) -> Option<f64> {
     use crate::machines::Machine;
     match (label.machine.nominal(), name) {
         (Machine::Arm(arm), "b_m") => Some(arm.b_m),
@@ -235,6 +244,6 @@ fn nominal_value(label: &Label, name: &str) -> Option<f64> {
     }
 }
 
-fn text_of(value: &Value, key: &str) -> String {
+fn read_text(value: &Value, key: &str) -> String {
     value[key].as_str().unwrap_or_default().to_owned()
 }

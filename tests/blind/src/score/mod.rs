@@ -19,7 +19,7 @@ pub const MIN_FLOORS: f64 = 2.85;
 
 /// Judgement of a case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Judged {
+pub struct CaseScore {
     /// Number of the case.
     pub case: usize,
     /// Group.
@@ -50,7 +50,7 @@ pub struct Judged {
     pub seconds: f64,
 }
 
-impl Judged {
+impl CaseScore {
     /// Returns true if there is an answer without a false effect: each reported effect was hidden,
     /// or its class contains a hidden effect, and its sign is correct.
     pub fn has_no_false_effect(&self) -> bool {
@@ -135,7 +135,7 @@ pub struct Score {
     /// Total and maximum duration, s.
     pub seconds: (f64, f64),
     /// Judgements of all cases.
-    pub cases: Vec<Judged>,
+    pub cases: Vec<CaseScore>,
 }
 
 /// Closures of a group of cases.
@@ -171,8 +171,8 @@ pub fn score(out: &Path, cases: &[usize]) -> std::io::Result<Score> {
 }
 
 /// Computes the success rates of judged cases.
-pub fn sum_judgements(cases: Vec<Judged>) -> Score {
-    let large = |judged: &&Judged| {
+pub fn sum_judgements(cases: Vec<CaseScore>) -> Score {
+    let large = |judged: &&CaseScore| {
         judged.group == Group::Single && judged.hidden.iter().all(|(_, _, f)| *f >= MIN_FLOORS)
     };
     let of = |group: Group| cases.iter().filter(move |judged| judged.group == group);
@@ -180,15 +180,15 @@ pub fn sum_judgements(cases: Vec<Judged>) -> Score {
         let right = of(group).filter(|judged| judged.judgement == is).count();
         (right, of(group).count())
     };
-    let singles: Vec<&Judged> = cases.iter().filter(large).collect();
-    let pairs: Vec<&Judged> = of(Group::Pair).collect();
-    let are = |of: &[&Judged], wanted: &[Judgement]| {
+    let singles: Vec<&CaseScore> = cases.iter().filter(large).collect();
+    let pairs: Vec<&CaseScore> = of(Group::Pair).collect();
+    let are = |of: &[&CaseScore], wanted: &[Judgement]| {
         let right = of
             .iter()
             .filter(|judged| wanted.contains(&judged.judgement));
         (right.count(), of.len())
     };
-    let full: Vec<&Judged> = singles
+    let full: Vec<&CaseScore> = singles
         .iter()
         .copied()
         .filter(|judged| judged.full_priors)
@@ -198,12 +198,12 @@ pub fn sum_judgements(cases: Vec<Judged>) -> Score {
             .iter()
             .flat_map(|judged| judged.classes.iter().copied())
     };
-    let all = |part: fn(&Judged) -> (usize, usize)| {
+    let all = |part: fn(&CaseScore) -> (usize, usize)| {
         let add = |sum: (usize, usize), next: (usize, usize)| (sum.0 + next.0, sum.1 + next.1);
         cases.iter().map(part).fold((0, 0), add)
     };
     let ended = |is: Judgement| cases.iter().filter(|judged| judged.judgement == is).count();
-    let nothing: Vec<&Judged> = of(Group::Nothing).collect();
+    let nothing: Vec<&CaseScore> = of(Group::Nothing).collect();
     Score {
         named: are(&singles, &[Judgement::Right]),
         named_or_first_of_class: (
@@ -230,8 +230,8 @@ pub fn sum_judgements(cases: Vec<Judged>) -> Score {
         wrong_signs: cases.iter().map(|judged| judged.wrong_signs).sum(),
         intervals: all(|judged| judged.intervals),
         refitted: all(|judged| judged.refitted),
-        single_closure: closure(&singles, 0.8),
-        pair_closure: closure(&pairs, 0.6),
+        single_closure: summarise_closures(&singles, 0.8),
+        pair_closure: summarise_closures(&pairs, 0.6),
         pairs: count(Group::Pair, Judgement::Right),
         classes: count(Group::Untellable, Judgement::Right),
         outside: count(Group::Outside, Judgement::Right),
@@ -247,7 +247,7 @@ pub fn sum_judgements(cases: Vec<Judged>) -> Score {
     }
 }
 
-fn closure(of: &[&Judged], enough: f64) -> Closure {
+fn summarise_closures(of: &[&CaseScore], enough: f64) -> Closure {
     let values: Vec<f64> = of.iter().filter_map(|judged| judged.closure).collect();
     Closure {
         mean: values.iter().sum::<f64>() / values.len().max(1) as f64,

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use super::{Closure, Judged, Judgement, MIN_FLOORS, Score};
+use super::{CaseScore, Closure, Judgement, MIN_FLOORS, Score};
 use crate::plan::Group;
 
 /// Formats the success rates and the confusion table.
 pub fn table(score: &Score) -> String {
     let mut rows: BTreeMap<String, BTreeMap<String, usize>> = BTreeMap::new();
     for judged in &score.cases {
-        let (row, column) = row_and_column(judged);
+        let (row, column) = choose_row_and_column(judged);
         *rows.entry(row).or_default().entry(column).or_default() += 1;
     }
     let mut text = "hidden                                    found\n".to_owned();
@@ -40,26 +40,35 @@ pub fn table(score: &Score) -> String {
             "... named, with nuisances at full priors",
             part(score.named_at_full_priors),
         ),
-        ("answers with nothing false", part(score.nothing_false)),
+        ("answers without a false effect", part(score.nothing_false)),
         (
-            "classes, their mean size, the largest",
+            "classes: number, mean size, largest size",
             format_sizes(score.class_sizes),
         ),
         ("false alarms", part(score.false_alarms)),
         ("wrong signs", score.wrong_signs.to_string()),
-        ("90 % intervals that hold", part(score.intervals)),
+        ("90 % intervals with the true value", part(score.intervals)),
         ("... of refitted parameters", part(score.refitted)),
         (
             "closure, single effects",
             closed(&score.single_closure, 0.8),
         ),
         ("closure, pairs", closed(&score.pair_closure, 0.6)),
-        ("pairs found whole", part(score.pairs)),
-        ("untellable reported as a class", part(score.classes)),
-        ("outside the catalogue, not named", part(score.outside)),
-        ("too long, no answer", format!("{:?}", score.without_answer)),
+        ("pairs of which both effects were found", part(score.pairs)),
         (
-            "seconds in all, longest",
+            "inseparable effects reported as a class",
+            part(score.classes),
+        ),
+        (
+            "effects outside the catalogue, not named",
+            part(score.outside),
+        ),
+        (
+            "time limit exceeded, no answer",
+            format!("{:?}", score.without_answer),
+        ),
+        (
+            "total and longest duration, s",
             format!("{:.0}, {:.1}", score.seconds.0, score.seconds.1),
         ),
     ] {
@@ -75,7 +84,7 @@ fn format_sizes((count, sum, largest): (usize, usize, usize)) -> String {
     }
 }
 
-fn row_and_column(judged: &Judged) -> (String, String) {
+fn choose_row_and_column(judged: &CaseScore) -> (String, String) {
     let group = format!("{:?}", judged.group).to_lowercase();
     let row = match (&judged.hidden[..], judged.group) {
         ([(effect, _, floors)], Group::Single) => {

@@ -5,9 +5,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::linear::{Nudges, SECANTS, SLOPES, Step, moved_along, step};
-use super::windows::{Span, outputs, simulate_window, spans, states, with_sensor_errors};
-use crate::hidden::{Hidden, Sensors};
+use super::linear::{Perturbations, SECANTS, SLOPES, Step, move_along, step};
+use super::windows::{Span, list_spans, outputs, simulate_window, states, with_sensor_errors};
+use crate::hidden::{HiddenEffect, Sensors};
 use crate::inputs::Drive;
 use crate::machines::{Machine, Setup};
 
@@ -136,8 +136,8 @@ impl<'a> Fit<'a> {
     /// fails. The better of two fits is used. A fit of whole windows with derivatives is accurate
     /// for smooth motion. A fit with secants that starts with initial segments is better for motion
     /// with impacts.
-    pub fn floors(&self, hidden: &Hidden) -> f64 {
-        let records = self.records(hidden);
+    pub fn floors(&self, hidden: &HiddenEffect) -> f64 {
+        let records = self.simulate_records(hidden);
         let begin = self.initial_estimate(&records);
         if !begin.floors().is_finite() {
             return f64::NAN;
@@ -151,20 +151,20 @@ impl<'a> Fit<'a> {
         &self,
         records: &Records,
         mut estimate: Estimate,
-        nudges: Nudges,
+        perturbations: Perturbations,
     ) -> Estimate {
         for part in SEGMENT_FRACTIONS {
             let beginnings = records.initial_segments(part);
             estimate = self.fit_estimate(
                 &beginnings,
                 self.with_residuals(&beginnings, estimate),
-                nudges,
+                perturbations,
             );
         }
         estimate
     }
 
-    fn records(&self, hidden: &Hidden) -> Records {
+    fn simulate_records(&self, hidden: &HiddenEffect) -> Records {
         let mut machine = self.plain.clone();
         let mut sensors = Sensors::ideal(self.setup.channels.len());
         hidden.hide(&mut machine, self.setup, &mut sensors);
@@ -181,15 +181,15 @@ impl<'a> Fit<'a> {
             }
         };
         Records {
-            windows: spans(self.setup, self.drives)
+            windows: list_spans(self.setup, self.drives)
                 .into_iter()
                 .map(window)
                 .collect(),
-            ranges: self.ranges(all.iter().flatten()),
+            ranges: self.compute_ranges(all.iter().flatten()),
         }
     }
 
-    fn ranges<'s>(&self, states: impl Iterator<Item = &'s Vec<f64>>) -> Vec<f64> {
+    fn compute_ranges<'s>(&self, states: impl Iterator<Item = &'s Vec<f64>>) -> Vec<f64> {
         let directions: Vec<DVector<f64>> =
             (self.plain.directions().into_iter().map(DVector::from)).collect();
         let of = DMatrix::from_columns(&directions)
@@ -228,12 +228,17 @@ impl<'a> Fit<'a> {
         estimate
     }
 
-    fn fit_estimate(&self, records: &Records, mut estimate: Estimate, nudges: Nudges) -> Estimate {
+    fn fit_estimate(
+        &self,
+        records: &Records,
+        mut estimate: Estimate,
+        perturbations: Perturbations,
+    ) -> Estimate {
         for _ in 0..MAX_STEPS {
             let before = estimate.cost();
-            let mut step = step(self, records, &estimate, nudges);
+            let mut step = step(self, records, &estimate, perturbations);
             let better = |step: &Step, part: f64| {
-                let moved = self.after_step(records, &estimate, step, part);
+                let moved = self.take_step(records, &estimate, step, part);
                 (moved.cost() < before).then_some(moved)
             };
             let moved = STEP_FRACTIONS.iter().find_map(|part| better(&step, *part));
@@ -279,7 +284,7 @@ impl<'a> Fit<'a> {
 
     /// Returns the estimate after a fraction of a step. The step of the initial state is smaller
     /// for windows that improve more with it.
-    fn after_step(&self, records: &Records, from: &Estimate, step: &Step, part: f64) -> Estimate {
+    fn take_step(&self, records: &Records, from: &Estimate, step: &Step, part: f64) -> Estimate {
         let shared = &from.shared + part * &step.shared;
         let (machine, sensors) = self.with(&shared);
         let directions = self.plain.directions();
@@ -288,7 +293,7 @@ impl<'a> Fit<'a> {
             let trial = |part: f64| {
                 let moves = directions.iter().zip(start.iter());
                 let start = moves.fold(old.start.clone(), |state, (direction, by)| {
-                    moved_along(&state, direction, part * by)
+                    move_along(&state, direction, part * by)
                 });
                 WindowEstimate {
                     residual: self.residual(&machine, &sensors, window, &start),

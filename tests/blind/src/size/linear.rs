@@ -16,7 +16,7 @@ const UNDETERMINED_STEP: f64 = 0.02;
 
 /// Perturbations of the unknowns for finite differences.
 #[derive(Clone, Copy)]
-pub struct Nudges {
+pub struct Perturbations {
     /// Perturbation of initial states, in ranges of their motion.
     start: f64,
     /// Perturbation of shared unknowns, in standard deviations.
@@ -24,14 +24,14 @@ pub struct Nudges {
 }
 
 /// Small perturbations for derivatives.
-pub const SLOPES: Nudges = Nudges {
+pub const SLOPES: Perturbations = Perturbations {
     start: 1e-6,
     shared: 1e-4,
 };
 
 /// Perturbations of about the size of a step, for secants. With impacts, derivatives do not predict
 /// a whole step.
-pub const SECANTS: Nudges = Nudges {
+pub const SECANTS: Perturbations = Perturbations {
     start: 1e-2,
     shared: 0.3,
 };
@@ -45,7 +45,7 @@ pub struct Step {
 }
 
 /// Linearised window with its initial state eliminated.
-struct Linear {
+struct LinearisedWindow {
     residual: DVector<f64>,
     shared: DMatrix<f64>,
     /// Step of the initial state: a constant part, and a part per shared unknown that is
@@ -54,21 +54,21 @@ struct Linear {
 }
 
 /// Returns the step from an estimate to the minimum of the linearised cost.
-pub fn step(fit: &Fit<'_>, records: &Records, at: &Estimate, nudges: Nudges) -> Step {
+pub fn step(fit: &Fit<'_>, records: &Records, at: &Estimate, perturbations: Perturbations) -> Step {
     let unknowns = at.shared.len();
-    let around = PerturbedMachines::new(fit, records, &at.shared, nudges);
+    let around = PerturbedMachines::new(fit, records, &at.shared, perturbations);
     // The prior of the unknowns is the identity, because they are in standard deviations.
     let mut normal = DMatrix::identity(unknowns, unknowns);
     let mut right = -&at.shared;
     let mut parts = Vec::new();
     for (window, fitted) in records.windows.iter().zip(&at.windows) {
-        let part = around.linear(window, fitted);
+        let part = around.linearise(window, fitted);
         normal += part.shared.transpose() * &part.shared;
         right += part.shared.transpose() * &part.residual;
         parts.push(part);
     }
     let shared = solve_bounded(&normal, &right, &at.shared);
-    let start = |part: &Linear| &part.start.0 - &part.start.1 * &shared;
+    let start = |part: &LinearisedWindow| &part.start.0 - &part.start.1 * &shared;
     Step {
         starts: parts.iter().map(start).collect(),
         shared,
@@ -79,29 +79,34 @@ pub fn step(fit: &Fit<'_>, records: &Records, at: &Estimate, nudges: Nudges) -> 
 struct PerturbedMachines<'a> {
     fit: &'a Fit<'a>,
     ranges: &'a [f64],
-    nudges: Nudges,
+    perturbations: Perturbations,
     here: (Machine, Sensors),
     /// Machines and sensors with one perturbed shared unknown each.
     nudged: Vec<(Machine, Sensors)>,
 }
 
 impl<'a> PerturbedMachines<'a> {
-    fn new(fit: &'a Fit<'a>, records: &'a Records, shared: &DVector<f64>, nudges: Nudges) -> Self {
+    fn new(
+        fit: &'a Fit<'a>,
+        records: &'a Records,
+        shared: &DVector<f64>,
+        perturbations: Perturbations,
+    ) -> Self {
         let nudged = (0..shared.len()).map(|unknown| {
             let mut other = shared.clone();
-            other[unknown] += nudges.shared;
+            other[unknown] += perturbations.shared;
             fit.with(&other)
         });
         Self {
             fit,
             ranges: &records.ranges,
-            nudges,
+            perturbations,
             here: fit.with(shared),
             nudged: nudged.collect(),
         }
     }
 
-    fn linear(&self, window: &Window, at: &WindowEstimate) -> Linear {
+    fn linearise(&self, window: &Window, at: &WindowEstimate) -> LinearisedWindow {
         let (samples, size) = (at.residual.len(), self.ranges.len());
         let longer = |seen: DVector<f64>| seen.resize_vertically(samples + size, 0.0);
         let residual = longer(at.residual.clone());
@@ -119,7 +124,7 @@ impl<'a> PerturbedMachines<'a> {
             .unwrap_or_else(|| DMatrix::zeros(size, size));
         let scale = DVector::from_column_slice(self.ranges) * UNDETERMINED_STEP;
         let inverse = DMatrix::from_diagonal(&scale) * inverse;
-        Linear {
+        LinearisedWindow {
             residual,
             shared: directions,
             start: (&inverse * taken.0, inverse * taken.1),
@@ -134,10 +139,10 @@ impl<'a> PerturbedMachines<'a> {
         let samples = at.residual.len();
         let mut starts = DMatrix::zeros(samples + directions.len(), directions.len());
         for (column, direction) in directions.iter().enumerate() {
-            let nudge = self.nudges.start * self.ranges[column];
-            let moved = moved_along(&at.start, direction, nudge);
+            let perturbation = self.perturbations.start * self.ranges[column];
+            let moved = move_along(&at.start, direction, perturbation);
             let residual = self.fit.residual(machine, sensors, window, &moved);
-            let change = (&at.residual - residual) * (UNDETERMINED_STEP / self.nudges.start);
+            let change = (&at.residual - residual) * (UNDETERMINED_STEP / self.perturbations.start);
             starts
                 .view_mut((0, column), (samples, 1))
                 .copy_from(&change);
@@ -156,7 +161,7 @@ impl<'a> PerturbedMachines<'a> {
             } else {
                 &window.seen - with_sensor_errors(&base, fit.setup, sensors)
             };
-            (&at.residual - residual) / self.nudges.shared
+            (&at.residual - residual) / self.perturbations.shared
         };
         self.nudged.iter().enumerate().map(column).collect()
     }
@@ -191,7 +196,7 @@ fn solve_bounded(normal: &DMatrix<f64>, right: &DVector<f64>, at: &DVector<f64>)
 }
 
 /// Returns a state plus a multiple of a direction.
-pub fn moved_along(state: &[f64], direction: &[f64], by: f64) -> Vec<f64> {
+pub fn move_along(state: &[f64], direction: &[f64], by: f64) -> Vec<f64> {
     let moved = state.iter().zip(direction);
     moved.map(|(value, part)| value + by * part).collect()
 }

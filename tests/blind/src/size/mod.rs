@@ -10,7 +10,7 @@ mod projection;
 mod search;
 mod windows;
 
-use crate::hidden::{Effect, Hidden};
+use crate::hidden::{Effect, HiddenEffect};
 use crate::inputs::Drive;
 use crate::machines::two_bodies::TwoBodies;
 use crate::machines::{Machine, Setup};
@@ -36,7 +36,7 @@ const STEP_DIVISORS: [usize; 3] = [8, 4, 2];
 /// Effect with its size.
 pub struct SizedEffect {
     /// Effect.
-    pub hidden: Hidden,
+    pub hidden: HiddenEffect,
     /// Residual of the effect, in noise floors.
     pub floors: f64,
 }
@@ -50,7 +50,7 @@ pub fn determine_size(
     setup: &Setup,
     drives: &[Drive],
     declared: &[(String, f64)],
-    mut hidden: Hidden,
+    mut hidden: HiddenEffect,
     level: f64,
 ) -> SizedEffect {
     if matches!(hidden.effect, Effect::EndStop | Effect::EndStops) {
@@ -61,7 +61,7 @@ pub fn determine_size(
         ..setup.clone()
     };
     // Records and fit use the same step size, so that its errors cancel.
-    let left = |hidden: &Hidden| {
+    let left = |hidden: &HiddenEffect| {
         let of = |part: &usize| Fit::new(machine, &coarse(*part), drives, declared).floors(hidden);
         let mut all = STEP_DIVISORS.iter().map(of);
         all.find(|floors| floors.is_finite()).unwrap_or(f64::NAN)
@@ -76,7 +76,7 @@ pub fn determine_size(
     hidden.amount = begin;
     let training = &drives[..setup.records.0];
     let basis = Basis::new(machine, &halved, training, &hidden);
-    let projected = |hidden: &Hidden| basis.floors(machine, &halved, training, hidden);
+    let projected = |hidden: &HiddenEffect| basis.floors(machine, &halved, training, hidden);
     let search = Search::new(level, PROJECTION_ACCURACY);
     (hidden.amount, _) = search.run(hidden.clone(), largest, MAX_PROJECTIONS, projected);
     let search = Search::new(level, FIT_ACCURACY);
@@ -94,7 +94,7 @@ fn largest_deflection(machine: &Machine, setup: &Setup, drives: &[Drive], side: 
         .fold(0.0, f64::max)
 }
 
-fn size_range(hidden: &Hidden, machine: &Machine, drives: &[Drive]) -> (f64, f64) {
+fn size_range(hidden: &HiddenEffect, machine: &Machine, drives: &[Drive]) -> (f64, f64) {
     let free = f64::INFINITY;
     let inputs = drives.iter().flat_map(|drive| &drive.input);
     let strongest = inputs.fold(0.0f64, |most, input| most.max(input.abs()));
@@ -146,24 +146,24 @@ fn size_range(hidden: &Hidden, machine: &Machine, drives: &[Drive]) -> (f64, f64
 #[cfg(test)]
 mod tests {
     use super::{Basis, Fit, determine_size};
-    use crate::hidden::{Effect, Hidden};
+    use crate::hidden::{Effect, HiddenEffect};
     use crate::inputs::{Drive, Excitation, drive};
     use crate::machines::{Kind, Setup};
-    use crate::random::Draw;
+    use crate::random::RandomStream;
 
     fn pendulum() -> (Setup, Vec<Drive>) {
         let setup = Setup {
             steps: 25,
             ..Kind::Pendulum.setup()
         };
-        let mut draw = Draw::new(11, 0);
+        let mut draw = RandomStream::new(11, 0);
         let drives = (0..5).map(|p| drive(Kind::Pendulum, &setup, Excitation::Usual, p, &mut draw));
         let drives = drives.collect();
         (setup, drives)
     }
 
-    fn hidden(effect: Effect, amount: f64) -> Hidden {
-        Hidden {
+    fn hidden(effect: Effect, amount: f64) -> HiddenEffect {
+        HiddenEffect {
             effect,
             on: "theta".to_owned(),
             order: 0.0,

@@ -4,8 +4,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::windows::{Span, outputs, simulate_window, spans, states, with_sensor_errors};
-use crate::hidden::{Effect, Hidden, Sensors};
+use super::windows::{Span, list_spans, outputs, simulate_window, states, with_sensor_errors};
+use crate::hidden::{Effect, HiddenEffect, Sensors};
 use crate::inputs::Drive;
 use crate::machines::{Machine, Setup};
 
@@ -25,7 +25,7 @@ struct Part {
 impl Basis {
     /// Computes the directions along the motion of a machine, without the direction of the effect
     /// itself.
-    pub fn new(machine: &Machine, setup: &Setup, drives: &[Drive], hidden: &Hidden) -> Self {
+    pub fn new(machine: &Machine, setup: &Setup, drives: &[Drive], hidden: &HiddenEffect) -> Self {
         let all: Vec<_> = drives
             .iter()
             .map(|drive| states(machine, setup, drive))
@@ -34,12 +34,18 @@ impl Basis {
             let start = &all[span.record][span.first];
             window_part(machine, setup, drives, start, span, hidden)
         };
-        let windows = spans(setup, drives).into_iter().map(part).collect();
+        let windows = list_spans(setup, drives).into_iter().map(part).collect();
         Self { windows }
     }
 
     /// Returns the RMS residual of the effect, relative to the noise.
-    pub fn floors(&self, plain: &Machine, setup: &Setup, drives: &[Drive], hidden: &Hidden) -> f64 {
+    pub fn floors(
+        &self,
+        plain: &Machine,
+        setup: &Setup,
+        drives: &[Drive],
+        hidden: &HiddenEffect,
+    ) -> f64 {
         let mut machine = plain.clone();
         let mut sensors = Sensors::ideal(setup.channels.len());
         hidden.hide(&mut machine, setup, &mut sensors);
@@ -88,15 +94,15 @@ fn window_part(
     drives: &[Drive],
     start: &[f64],
     span: Span,
-    hidden: &Hidden,
+    hidden: &HiddenEffect,
 ) -> Part {
     let seen = simulate_window(machine, setup, drives, start, span);
     let mut starts = Vec::new();
     for place in machine.states_of_model() {
         let mut moved = start.to_vec();
-        let nudge = 1e-7;
-        moved[place] += nudge;
-        starts.push((simulate_window(machine, setup, drives, &moved, span) - &seen) / nudge);
+        let perturbation = 1e-7;
+        moved[place] += perturbation;
+        starts.push((simulate_window(machine, setup, drives, &moved, span) - &seen) / perturbation);
     }
     let scaled: Vec<DVector<f64>> = starts
         .into_iter()
@@ -130,7 +136,11 @@ fn window_part(
 
 /// Returns the influence of one standard deviation of gain, bias and delay of each sensor, without
 /// the hidden error.
-fn sensor_directions(seen: &DVector<f64>, setup: &Setup, hidden: &Hidden) -> Vec<DVector<f64>> {
+fn sensor_directions(
+    seen: &DVector<f64>,
+    setup: &Setup,
+    hidden: &HiddenEffect,
+) -> Vec<DVector<f64>> {
     let channels = setup.channels.len();
     let mut columns = Vec::new();
     for unknown in 0..3 * channels {
@@ -156,7 +166,7 @@ pub fn floors_of_missing_modes(machine: &Machine, setup: &Setup, drives: &[Drive
     model.modes = setup.order.unwrap_or(model.modes);
     model.prepare();
     let model = Machine::Arm(model);
-    let none = Hidden {
+    let none = HiddenEffect {
         effect: Effect::CoulombFriction,
         on: "theta_s".to_owned(),
         order: 0.0,

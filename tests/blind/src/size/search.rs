@@ -1,6 +1,6 @@
 //! Search for the size of an effect with a given number of noise floors.
 
-use crate::hidden::Hidden;
+use crate::hidden::HiddenEffect;
 
 /// Search for a size. Sizes are scaled proportionally until two of them bracket the level; then
 /// logarithms are interpolated.
@@ -29,10 +29,10 @@ impl Search {
     /// Evaluates sizes from `start` up to `largest`. Returns the best size and its noise floors.
     pub fn run(
         mut self,
-        mut hidden: Hidden,
+        mut hidden: HiddenEffect,
         largest: f64,
         most_looks: usize,
-        floors: impl Fn(&Hidden) -> f64,
+        floors: impl Fn(&HiddenEffect) -> f64,
     ) -> (f64, f64) {
         self.record_size(hidden.amount, floors(&hidden));
         for _ in 1..most_looks {

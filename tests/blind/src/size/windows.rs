@@ -20,8 +20,8 @@ pub struct Span {
 }
 
 /// Returns the windows of all records. A last window shorter than half the length is left out.
-pub fn spans(setup: &Setup, drives: &[Drive]) -> Vec<Span> {
-    let mut spans = Vec::new();
+pub fn list_spans(setup: &Setup, drives: &[Drive]) -> Vec<Span> {
+    let mut list_spans = Vec::new();
     for (record, drive) in drives.iter().enumerate() {
         let samples = drive.input.len();
         let length = setup
@@ -30,7 +30,7 @@ pub fn spans(setup: &Setup, drives: &[Drive]) -> Vec<Span> {
         for first in (0..samples).step_by(length) {
             let count = length.min(samples - first);
             if count * 2 >= length {
-                spans.push(Span {
+                list_spans.push(Span {
                     record,
                     first,
                     count,
@@ -38,7 +38,7 @@ pub fn spans(setup: &Setup, drives: &[Drive]) -> Vec<Span> {
             }
         }
     }
-    spans
+    list_spans
 }
 
 /// Returns the states at all samples of a record.
