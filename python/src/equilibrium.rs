@@ -7,7 +7,7 @@ use crate::error;
 use crate::model::Model;
 
 /// Names and values in SI units.
-type Values = Vec<(String, f64)>;
+type NamedValues = Vec<(String, f64)>;
 
 /// Result of `trim`: time, state, inputs and residual of an equilibrium, names of its steady rates and of the unknowns,
 /// stability, and true if forces depend on time.
@@ -27,8 +27,8 @@ type EquilibriumTuple = (
 pub fn trim(
     py: Python<'_>,
     model: &Model,
-    start: Values,
-    fixed: Values,
+    start: NamedValues,
+    fixed: NamedValues,
 ) -> PyResult<EquilibriumTuple> {
     let (start, fixed) = (borrowed(&start), borrowed(&fixed));
     let request = EquilibriumRequest {

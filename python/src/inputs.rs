@@ -77,12 +77,12 @@ impl Failures {
             return Some(error);
         }
         let message = format!("{what} at t = {t}: {}", error.value(py));
-        let raised = match is_refused(py, &error) {
+        let raised = match is_rejection(py, &error) {
             Some(true) => PyValueError::new_err(message),
             Some(false) => PyTypeError::new_err(message),
             None => SimulationError::new_err(format!("{what} at t = {t} raised {error}")),
         };
-        if is_refused(py, &error).is_none() {
+        if is_rejection(py, &error).is_none() {
             raised.set_cause(py, Some(error));
         }
         Some(raised)
@@ -90,7 +90,7 @@ impl Failures {
 }
 
 /// Returns true for a rejected value and false for a rejected type; `None` if the function raised the error.
-fn is_refused(py: Python<'_>, error: &PyErr) -> Option<bool> {
+fn is_rejection(py: Python<'_>, error: &PyErr) -> Option<bool> {
     if error.is_instance_of::<RefusedValue>(py) {
         return Some(true);
     }

@@ -121,8 +121,8 @@ pub fn simulate<'py>(
     };
     let controller = controller.map(|entry| (entry, failures.clone()));
     let found = interruptible(py, hear, |line| match gradients {
-        true => record(model, &request, line),
-        false => follow(model, &request, controller, line),
+        true => record_motion(model, &request, line),
+        false => simulate_motion(model, &request, controller, line),
     })?;
     let raised = failures.take(py);
     // If a function stopped the motion, its samples are kept, unless the value or its type was rejected.
@@ -136,7 +136,7 @@ pub fn simulate<'py>(
         (Some(raised), _) => return Err(raised),
         (None, _) => None,
     };
-    let Found {
+    let SimulationResult {
         motion,
         observables,
         warnings,
@@ -205,7 +205,7 @@ pub fn parse_solver(name: &str) -> PyResult<Solver> {
 }
 
 /// Motion with its observables (row-major) and warnings.
-struct Found {
+struct SimulationResult {
     motion: Motion,
     observables: Vec<f64>,
     warnings: Vec<String>,
@@ -225,12 +225,12 @@ fn report_progress(line: &Connection<'_, f64>) -> impl FnMut(f64) {
 }
 
 /// Simulates a motion.
-fn follow(
+fn simulate_motion(
     model: &Model,
     request: &Request<'_>,
     controller: Option<(ControllerEntry, Failures)>,
     line: &Connection<'_, f64>,
-) -> Result<Found, Error> {
+) -> Result<SimulationResult, Error> {
     let instance = model.instance()?;
     let mut progress = report_progress(line);
     let motion = match controller {
@@ -249,21 +249,25 @@ fn follow(
 }
 
 /// Simulates a motion and records it for gradients.
-fn record(
+fn record_motion(
     model: &Model,
     request: &Request<'_>,
     line: &Connection<'_, f64>,
-) -> Result<Found, Error> {
+) -> Result<SimulationResult, Error> {
     let instance = model.shared_instance()?;
     let recorded = instance.record_motion(request, &mut report_progress(line))?;
     let found = observe(&instance, recorded.motion().clone(), request)?;
-    Ok(Found {
+    Ok(SimulationResult {
         recorded: Some(recorded),
         ..found
     })
 }
 
-fn observe(instance: &Instance<'_>, motion: Motion, request: &Request<'_>) -> Result<Found, Error> {
+fn observe(
+    instance: &Instance<'_>,
+    motion: Motion,
+    request: &Request<'_>,
+) -> Result<SimulationResult, Error> {
     let mut observables = Vec::new();
     instance.observe(&motion, |_, _, row| observables.extend_from_slice(row))?;
     let overlap = instance.find_first_overlap(&motion, request.tolerance)?;
@@ -273,7 +277,7 @@ fn observe(instance: &Instance<'_>, motion: Motion, request: &Request<'_>) -> Re
     let warnings = warnings.chain(overlap.as_ref().map(Overlap::warning_message));
     let integral = instance.find_unresolved_integral(&motion)?;
     let warnings = warnings.chain(integral.map(|found| found.warning_message()));
-    Ok(Found {
+    Ok(SimulationResult {
         warnings: warnings.collect(),
         motion,
         observables,

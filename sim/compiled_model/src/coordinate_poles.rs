@@ -33,7 +33,7 @@ impl Instance<'_> {
                 *value += displacement * part;
             }
             let state = &state;
-            pivots(&mut evaluator, Point { state, ..point })
+            compute_pivots(&mut evaluator, Point { state, ..point })
         };
         let here = pivots_at(0.0);
         let beside = [-DISPLACEMENT, DISPLACEMENT].map(pivots_at);
@@ -47,7 +47,7 @@ impl Instance<'_> {
 }
 
 /// Returns the pivots D of the mass matrix, up to the first that is not positive.
-fn pivots(evaluator: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
+fn compute_pivots(evaluator: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
     let degrees = evaluator.program().degrees_of_freedom();
     let mut mass = vec![0.0; degrees * degrees];
     evaluator.mass_matrix(point, &mut mass);

@@ -54,12 +54,12 @@ impl Instance<'_> {
     /// See [`Instance::jacobian_evaluator`].
     pub fn find_cyclic_directions(&self, at: &OperatingPoint) -> Result<Vec<Vec<f64>>, Error> {
         let degrees = self.model().program().degrees_of_freedom();
-        let scales = self.natural_scales()?;
-        let here = self.sized_rates(at, &scales)?;
+        let scales = self.compute_natural_scales()?;
+        let here = self.evaluate_sized_rates(at, &scales)?;
         if !here.is_finite() {
             return Ok(Vec::new());
         }
-        let mut found = null_space_basis(&here.rows, degrees);
+        let mut found = compute_null_space_basis(&here.rows, degrees);
         if found.is_empty() {
             return Ok(found);
         }
@@ -69,7 +69,7 @@ impl Instance<'_> {
         for (value, part) in moved.state.iter_mut().zip(self.generic_direction()?) {
             *value += NEIGHBOUR_FRACTION * part;
         }
-        let there = self.sized_rates(&moved, &scales)?;
+        let there = self.evaluate_sized_rates(&moved, &scales)?;
         let mut points = vec![(at, here)];
         if there.is_finite() {
             points.push((&moved, there));
@@ -88,7 +88,7 @@ impl Instance<'_> {
     /// # Errors
     /// Invalid parameter values.
     pub(crate) fn generic_direction(&self) -> Result<Vec<f64>, Error> {
-        let scales = self.natural_scales()?;
+        let scales = self.compute_natural_scales()?;
         let sizes = self.model().typical_sizes().iter().enumerate();
         let part = |(place, size): (usize, &f64)| {
             generic_weight(place) * scales.get(place).copied().flatten().unwrap_or(*size)
@@ -97,13 +97,13 @@ impl Instance<'_> {
     }
 
     /// Returns the rates at a state with their derivatives and their largest terms.
-    fn sized_rates(
+    fn evaluate_sized_rates(
         &self,
         at: &OperatingPoint,
         scales: &[Option<f64>],
     ) -> Result<SizedRates, Error> {
         let degrees = self.model().program().degrees_of_freedom();
-        let rates = self.accelerations(&mut self.interpreter()?, at);
+        let rates = self.compute_accelerations(&mut self.interpreter()?, at);
         let matrix = self.state_space_evaluator()?.evaluate(at.point())?.a;
         let states = at.state.len();
         let row = |row: usize| &matrix[(degrees + row) * states..][..states];
@@ -139,7 +139,7 @@ impl Instance<'_> {
             for (value, speed) in moved.state.iter_mut().zip(direction) {
                 *value += way * speed;
             }
-            let there = self.accelerations(evaluator, &moved);
+            let there = self.compute_accelerations(evaluator, &moved);
             (0..there.len()).all(|r| {
                 let added = here.rows[r].iter().zip(direction);
                 let added = added.map(|(entry, speed)| (entry * way * speed).abs());
@@ -166,7 +166,7 @@ impl Instance<'_> {
         for at in points {
             let mut turned = at.clone();
             turned.state[coordinate] += std::f64::consts::TAU;
-            pairs.push([at, &turned].map(|at| self.accelerations(&mut evaluator, at)));
+            pairs.push([at, &turned].map(|at| self.compute_accelerations(&mut evaluator, at)));
             // In steady motion the terms of a rate cancel. The derivative times one radian does not cancel.
             let matrix = state_space
                 .as_mut()
@@ -199,7 +199,7 @@ impl Instance<'_> {
     }
 
     /// Returns the accelerations and the rates of first-order states.
-    fn accelerations(&self, evaluator: &mut Evaluator, at: &OperatingPoint) -> Vec<f64> {
+    fn compute_accelerations(&self, evaluator: &mut Evaluator, at: &OperatingPoint) -> Vec<f64> {
         let mut rates = vec![0.0; at.state.len()];
         let OperatingPoint { t, state, inputs } = at;
         evaluator.rates(
@@ -218,7 +218,7 @@ impl Instance<'_> {
     ///
     /// # Errors
     /// Invalid parameter values.
-    pub(crate) fn natural_scales(&self) -> Result<Vec<Option<f64>>, Error> {
+    pub(crate) fn compute_natural_scales(&self) -> Result<Vec<Option<f64>>, Error> {
         let model = self.model().model();
         let ranges = model
             .coordinate_ranges()
@@ -241,7 +241,7 @@ impl Instance<'_> {
 
 /// Returns a basis of the null space of a matrix given by rows. Each vector has a 1 at an index at which the others are
 /// 0. Rows and columns may have different units.
-fn null_space_basis(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
+fn compute_null_space_basis(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
     let row_sizes = rows.iter().map(max_magnitude);
     let mut matrix: Vec<Vec<f64>> = rows
         .iter()

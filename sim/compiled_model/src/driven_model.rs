@@ -184,7 +184,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
 
     /// Returns cause and remedy if the motion stopped because bodies overlap at an impact.
     pub(crate) fn overlap_message(&self) -> Option<String> {
-        self.contacts.as_ref()?.borrow().overlap()
+        self.contacts.as_ref()?.borrow().failure_message()
     }
 
     /// Returns the times at which contact friction admits several motions.
@@ -200,7 +200,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
     }
 
     /// Returns the inputs just before a time (s) and at it.
-    fn inputs_around(&self, t: f64) -> [Vec<f64>; 2] {
+    fn evaluate_inputs_around(&self, t: f64) -> [Vec<f64>; 2] {
         let given = self.inputs.borrow();
         [t.next_down(), t].map(|t| given.evaluate(t).into_owned())
     }
@@ -226,7 +226,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         let (given, arrived) = (self.inputs.borrow(), y.to_vec());
         let inputs = [before.0, t].map(|t| given.evaluate(t).into_owned());
         let inputs = [&inputs[0][..], &inputs[1][..]];
-        let touching = self.touching_contacts((t, y));
+        let touching = self.find_touching_contacts((t, y));
         let mut corners = corners.borrow_mut();
         let Some(energy) = corners.apply(before, (t, y), inputs, &touching) else {
             return false;
@@ -243,12 +243,12 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
     }
 
     /// Returns the contacts at which bodies touch at rest; they act when the rates jump.
-    fn touching_contacts(&self, (t, state): (f64, &[f64])) -> Vec<TouchingContact> {
+    fn find_touching_contacts(&self, (t, state): (f64, &[f64])) -> Vec<TouchingContact> {
         let Some(contacts) = &self.contacts else {
             return Vec::new();
         };
         self.with_contacts(contacts, (t, state), |contacts, own, inputs| {
-            contacts.touching_contacts(own, Point { t, state, inputs })
+            contacts.find_touching_contacts(own, Point { t, state, inputs })
         })
     }
 
@@ -257,7 +257,9 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
     fn decide_contacts_after_jump(&self, (t, state): (f64, &[f64])) {
         if let Some(sliding) = &self.sliding {
             let inputs = &self.inputs.borrow().evaluate(t);
-            sliding.borrow_mut().release_moved((t, state), inputs);
+            sliding
+                .borrow_mut()
+                .release_left_surfaces((t, state), inputs);
         }
         if let Some(contacts) = &self.contacts {
             self.with_contacts(contacts, (t, state), |contacts, own, inputs| {
@@ -310,7 +312,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
                 contacts.revise_modes(own, Point { t, state, inputs });
             });
         }
-        contacts.borrow_mut().refuse_modes();
+        contacts.borrow_mut().stop_at_contradiction();
     }
 
     /// Closes the open contacts at bodies that the surfaces no longer hold, if they then push. The bodies touch at
@@ -349,7 +351,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         let (Some(sliding), Some(contacts)) = (&self.sliding, &self.contacts) else {
             return;
         };
-        let held = sliding.borrow().held_directions();
+        let held = sliding.borrow().list_held_directions();
         self.with_contacts(contacts, at, |contacts, own, inputs| {
             let (t, state) = at;
             contacts.note_drifts(own, Point { t, state, inputs }, &held);
@@ -427,7 +429,10 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
     /// Returns the switching functions; a function over modes gives one per mode. A function counts as a speed if it
     /// depends on rates and is constant at zero rates.
     pub fn surfaces(&self) -> Vec<Surface> {
-        let (here, there) = (self.guards_at_rest(0.11), self.guards_at_rest(0.17));
+        let (here, there) = (
+            self.evaluate_guards_at_rest(0.11),
+            self.evaluate_guards_at_rest(0.17),
+        );
         let evaluator = self.evaluator();
         let program = evaluator.program();
         let is_rate =
@@ -466,7 +471,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
     }
 
     /// Evaluates the switching functions at zero rates, with coordinates of the given size.
-    fn guards_at_rest(&self, size: f64) -> Vec<f64> {
+    fn evaluate_guards_at_rest(&self, size: f64) -> Vec<f64> {
         let mut values = vec![0.0; self.evaluator().guard_count()];
         let mut state = vec![0.0; self.state_count()];
         let degrees = self.evaluator().program().degrees_of_freedom();
@@ -735,9 +740,9 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         let Some(corners) = &self.corners else {
             return false;
         };
-        let inputs = self.inputs_around(t);
+        let inputs = self.evaluate_inputs_around(t);
         let around = [&inputs[0][..], &inputs[1][..]];
-        let touching = self.touching_contacts((t, y));
+        let touching = self.find_touching_contacts((t, y));
         let mut corners = corners.borrow_mut();
         let Some(energy) = corners.apply_input_jump((t, y), around, &touching) else {
             return false;

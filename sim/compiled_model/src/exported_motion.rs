@@ -130,7 +130,7 @@ impl ExportedMotion {
     /// The motion cannot follow the jump.
     pub fn set_inputs(&mut self, inputs: HeldInputs) -> Result<(), Error> {
         let inputs = match &mut self.controls {
-            Some(controls) => controls.give(self.t, inputs),
+            Some(controls) => controls.change_external_inputs(self.t, inputs),
             None => inputs,
         };
         self.follow_inputs(inputs)
@@ -249,7 +249,7 @@ impl Plant for ExportedMotion {
         self.follow_inputs(inputs)
     }
 
-    fn go_on(
+    fn continue_until(
         &mut self,
         (until, _): (f64, &[f64]),
         _: &mut Trajectory,

@@ -36,7 +36,7 @@ impl GeneralMotion {
         let start = (t, &run.initial[..]);
         let simulation = Simulation::new(&run.system, start, FIRST_LENGTH_S, settings);
         let simulation = simulation.map_err(|error| {
-            let stop = run.early_stop(model, &error, (t, &run.initial));
+            let stop = run.describe_early_stop(model, &error, (t, &run.initial));
             Error::from(stop)
         })?;
         let changes = std::mem::take(&mut run.initial_changes);
@@ -89,7 +89,9 @@ impl GeneralMotion {
             .simulation
             .advance(&self.run.system, asked, trajectory, progress);
         let error = ended.err()?;
-        let stop = self.run.early_stop(model, &error, (begin, self.state()));
+        let stop = self
+            .run
+            .describe_early_stop(model, &error, (begin, self.state()));
         let next = match &stop.cause {
             StopCause::Stiff(what) if self.run.solver != Solver::Radau => {
                 Some((Solver::Radau, SolverChoice::Stiff(what.clone())))
@@ -129,7 +131,9 @@ impl GeneralMotion {
         self.run.system.set_inputs(inputs);
         let followed = self.simulation.follow_input_jump(&self.run.system, log);
         followed.map_err(|error| {
-            let stop = self.run.early_stop(model, &error, (begin, self.state()));
+            let stop = self
+                .run
+                .describe_early_stop(model, &error, (begin, self.state()));
             Error::from(stop)
         })
     }

@@ -71,7 +71,7 @@ impl dyn MotionModel + '_ {
 impl GeneralRun {
     /// Returns time, cause and remedy of an error. The motion began at the time `begin` (s) and
     /// ended at `state`.
-    pub fn early_stop(
+    pub fn describe_early_stop(
         &self,
         model: &dyn MotionModel,
         error: &SolveError,

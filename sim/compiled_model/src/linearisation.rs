@@ -171,7 +171,7 @@ impl Instance<'_> {
             entries
                 .map(|place| {
                     let near = (below[place], above[place]);
-                    derivative_across(near, (far_below[place], far_above[place]))
+                    extrapolate_derivative(near, (far_below[place], far_above[place]))
                 })
                 .collect::<Option<Vec<f64>>>()
         };
@@ -197,7 +197,7 @@ impl Instance<'_> {
     /// Returns the error for a point without a linearisation, with its cause.
     pub(crate) fn no_linearisation_error(&self, point: Point<'_>) -> Error {
         let model = self.model().model();
-        if let Some(far) = self.out_of_range(point) {
+        if let Some(far) = self.describe_out_of_range(point) {
             return Error::Request(far);
         }
         if let Ok(Some(coordinate)) = self.find_coordinate_pole(point) {
@@ -227,13 +227,13 @@ impl Instance<'_> {
             model.name
         );
         let diagnostic = Diagnostic::error(message)
-            .with_span(first.span, self.singularity(first, point))
+            .with_span(first.span, self.describe_singularity(first, point))
             .with_help(format!(
                 "choose another state ({}), or {SMOOTH_FORMS}",
                 Argument::OperatingState
             ));
         let diagnostic = others.iter().fold(diagnostic, |diagnostic, other| {
-            diagnostic.with_related_span(other.span, self.singularity(other, point))
+            diagnostic.with_related_span(other.span, self.describe_singularity(other, point))
         });
         Diagnostics::from_one(model.source.clone(), diagnostic).into()
     }
@@ -284,7 +284,7 @@ impl Instance<'_> {
     }
 
     /// Returns a message if a state or an input is so large that its powers overflow.
-    fn out_of_range(&self, point: Point<'_>) -> Option<String> {
+    fn describe_out_of_range(&self, point: Point<'_>) -> Option<String> {
         let states = self.model().state_names().into_iter().zip(point.state);
         let inputs = self.model().model().inputs.iter();
         let inputs = inputs.map(|input| input.name.clone()).zip(point.inputs);
@@ -297,7 +297,7 @@ impl Instance<'_> {
     }
 
     /// Describes a singularity for a message: its kind, variables and point.
-    fn singularity(&self, term: &SingularTerm, point: Point<'_>) -> String {
+    fn describe_singularity(&self, term: &SingularTerm, point: Point<'_>) -> String {
         let program = self.model().program();
         let names = self.model().state_names();
         let units = self.model().state_units();
@@ -342,7 +342,7 @@ impl Instance<'_> {
 /// Returns the derivative on a surface, extrapolated from derivatives on both sides at one distance and at twice the
 /// distance; `None` if the derivative jumps. Without a jump, the difference between both sides grows at least in
 /// proportion to the distance, and the mean is extrapolated.
-fn derivative_across(
+fn extrapolate_derivative(
     (below, above): (f64, f64),
     (far_below, far_above): (f64, f64),
 ) -> Option<f64> {
@@ -430,7 +430,7 @@ pull = { value = "k*x + u", unit = "N" }
                 "the force `motor` has no derivative by `x` at x = 0 m, u = 0 N",
             ),
         ] {
-            let found = refused(force, [0.0, 0.0]).to_string();
+            let found = linearisation_error(force, [0.0, 0.0]).to_string();
             for part in [cause, place, force, "sqrt(v^2 + eps^2)"] {
                 assert!(found.contains(part), "{part}: {found}");
             }
@@ -439,12 +439,12 @@ pull = { value = "k*x + u", unit = "N" }
 
     #[test]
     fn state_out_of_range_is_named() {
-        let found = refused("F*x/l", [1e300, 0.0]).to_string();
+        let found = linearisation_error("F*x/l", [1e300, 0.0]).to_string();
         assert!(
             found.starts_with("x = 1e300 (SI) is out of range"),
             "{found}"
         );
-        let found = refused("F*(x/l)^3", [0.0, -1e200]).to_string();
+        let found = linearisation_error("F*(x/l)^3", [0.0, -1e200]).to_string();
         assert!(
             found.starts_with("x_dot = -1e200 (SI) is out of range"),
             "{found}"
@@ -452,7 +452,7 @@ pull = { value = "k*x + u", unit = "N" }
     }
 
     /// Returns the error of the driven machine with another force.
-    fn refused(force: &str, state: [f64; 2]) -> Error {
+    fn linearisation_error(force: &str, state: [f64; 2]) -> Error {
         let text = DRIVEN
             .replace("value = \"u\"", &format!("value = \"u + {force}\""))
             .replace("1/2*k*x^2", "1/2*k*x^2 + 1/4*k*x^4/l^2")

@@ -33,9 +33,9 @@ impl Instance<'_> {
         if (f64::EPSILON * largest).sqrt() <= MAX_HIDDEN_RATE {
             return None;
         }
-        let here = entries(here);
+        let here = collect_entries(here);
         for name in self.model().parameter_names() {
-            let scaled = |factor: f64| self.scaled_entries(&name, factor, point);
+            let scaled = |factor: f64| self.evaluate_scaled_entries(&name, factor, point);
             let Some(doubled) = scaled(2.0) else { continue };
             let large = LARGE_FACTORS.into_iter().find_map(|factor| {
                 let there = scaled(factor)?;
@@ -64,7 +64,12 @@ impl Instance<'_> {
 
     /// Returns the entries with a parameter multiplied by a factor; `None` if the parameter is 0 or an entry is not
     /// finite.
-    fn scaled_entries(&self, name: &str, factor: f64, point: Point<'_>) -> Option<Vec<f64>> {
+    fn evaluate_scaled_entries(
+        &self,
+        name: &str,
+        factor: f64,
+        point: Point<'_>,
+    ) -> Option<Vec<f64>> {
         let mut parameters = self.model().model().parameters.iter();
         let unit = &parameters.find(|known| known.name == name)?.unit;
         let value = unit.from_si(self.value(name)?);
@@ -75,12 +80,12 @@ impl Instance<'_> {
         let others = settings.filter(|(known, _)| *known != name);
         let settings: Vec<(&str, f64)> = others.chain([(name, factor * value)]).collect();
         let changed = self.model().with_parameters(&settings).ok()?;
-        let found = entries(&changed.linearise(point).ok()?);
+        let found = collect_entries(&changed.linearise(point).ok()?);
         (value != 0.0 && found.iter().all(|entry| entry.is_finite())).then_some(found)
     }
 }
 
 /// Returns the entries of the state matrix, followed by the rates.
-fn entries(linear: &Linearisation) -> Vec<f64> {
+fn collect_entries(linear: &Linearisation) -> Vec<f64> {
     [&linear.a[..], &linear.rates].concat()
 }

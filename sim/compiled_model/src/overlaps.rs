@@ -56,7 +56,7 @@ impl Instance<'_> {
         let mut evaluator = self.evaluator()?;
         let degrees = evaluator.program().degrees_of_freedom();
         let trajectory = &motion.trajectory;
-        let step = (motion.solver == Solver::Fixed).then(|| mean_step(trajectory));
+        let step = (motion.solver == Solver::Fixed).then(|| compute_mean_step(trajectory));
         let typical = self.model().typical_sizes().iter();
         let mut sizes: Vec<f64> = typical.map(|size| UNMOVED_SIZE_FRACTION * size).collect();
         for (&t, state) in trajectory.times.iter().zip(&trajectory.states) {
@@ -75,7 +75,7 @@ impl Instance<'_> {
                 };
                 let change = find_allowed_change(state, &sizes, tolerance, of_impact);
                 let moved = step.map_or(0.0, |step| {
-                    let moves = moves_in_step(&sizes, step, degrees);
+                    let moves = estimate_moves_in_step(&sizes, step, degrees);
                     find_allowed_change(state, &moves, 1.0, of_impact)
                 });
                 let point = Point { t, state, inputs };
@@ -94,7 +94,7 @@ impl Instance<'_> {
         Ok(None)
     }
 
-    pub(crate) fn input_driven_impact(&self) -> Option<&str> {
+    pub(crate) fn find_input_driven_impact(&self) -> Option<&str> {
         let program = self.model().program();
         let is_driven = |op: &Op| matches!(op, Op::Input(_));
         let mut impacts = program.impacts.iter();
@@ -133,7 +133,7 @@ fn evaluate_distances(evaluator: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
 }
 
 /// Returns the mean length of the steps of a motion, s.
-fn mean_step(trajectory: &Trajectory) -> f64 {
+fn compute_mean_step(trajectory: &Trajectory) -> f64 {
     match (trajectory.times.first(), trajectory.times.last()) {
         (Some(first), Some(last)) if trajectory.statistics.steps > 0 => {
             (last - first) / trajectory.statistics.steps as f64
@@ -144,7 +144,7 @@ fn mean_step(trajectory: &Trajectory) -> f64 {
 
 /// Returns the largest change of each state in a step, from the magnitudes of the states; coordinates move with their
 /// rates.
-fn moves_in_step(sizes: &[f64], step: f64, degrees: usize) -> Vec<f64> {
+fn estimate_moves_in_step(sizes: &[f64], step: f64, degrees: usize) -> Vec<f64> {
     let rates = sizes[degrees..2 * degrees].iter().map(|rate| step * rate);
     rates.chain(sizes[degrees..].iter().map(|_| 0.0)).collect()
 }

@@ -42,7 +42,7 @@ pub fn with_prescribed_inputs(mut model: Model, given: &[Assignment]) -> Result<
             value: given.value().to_owned(),
         });
         let edited = edit::apply(&model.source, &[edit]);
-        let edited = edited.map_err(|error| not_prescribed(&error, given, &model))?;
+        let edited = edited.map_err(|error| prescription_error(&error, given, &model))?;
         let source = model.source.with_text(edited);
         model = eomgen_model_spec::check(source)?.model;
     }
@@ -90,7 +90,7 @@ pub(crate) fn with_one_prescribed_input(model: &Model, given: &Assignment) -> Re
 }
 
 /// Returns the error of an input, with its location in the option's text.
-fn not_prescribed(error: &EditError, given: &Assignment, model: &Model) -> Error {
+fn prescription_error(error: &EditError, given: &Assignment, model: &Model) -> Error {
     let found = match error {
         EditError::Invalid(found) => given.relocated(found),
         EditError::Expression { text, diagnostic } => {
@@ -98,7 +98,7 @@ fn not_prescribed(error: &EditError, given: &Assignment, model: &Model) -> Error
             given.relocated(&Diagnostics::from_one(source, (**diagnostic).clone()))
         }
         EditError::MissingTerm { .. } => {
-            Some(given.name_error(messages(error, given, model), None))
+            Some(given.name_error(format_messages(error, given, model), None))
         }
         _ => None,
     };
@@ -108,13 +108,13 @@ fn not_prescribed(error: &EditError, given: &Assignment, model: &Model) -> Error
             "{} {}: {}",
             given.option(),
             given.text(),
-            messages(error, given, model)
+            format_messages(error, given, model)
         )),
     }
 }
 
 /// Returns the messages of an edit without locations, because they refer to the edited text.
-fn messages(error: &EditError, given: &Assignment, model: &Model) -> String {
+fn format_messages(error: &EditError, given: &Assignment, model: &Model) -> String {
     match error {
         EditError::Invalid(found) => {
             let messages: Vec<String> = found.list().iter().map(Diagnostic::summary).collect();

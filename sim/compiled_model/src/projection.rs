@@ -131,7 +131,7 @@ impl Projection {
                 })
             });
             let point = Point { t, state, inputs };
-            let [_, of_values, of_rates] = self.corrections(own, point, &mut rates)?;
+            let [_, of_values, of_rates] = self.evaluate_corrections(own, point, &mut rates)?;
             let mut relative = 0.0_f64;
             for row in 0..degrees {
                 let (of_value, of_rate) = (of_values[row], of_rates[row]);
@@ -149,7 +149,7 @@ impl Projection {
 
     /// Computes the corrections P g of the coordinates and P r of their rates. They are the second and third of the
     /// three returned rate vectors. Returns `None` if a correction is not finite.
-    fn corrections<'r>(
+    fn evaluate_corrections<'r>(
         &self,
         own: &mut Evaluator,
         point: Point<'_>,

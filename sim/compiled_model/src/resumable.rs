@@ -599,7 +599,7 @@ impl Simulation<'_> {
             )));
         }
         if let Some(controls) = &mut self.controls {
-            let all = controls.give(t, HeldInputs::constant(inputs.to_vec()));
+            let all = controls.change_external_inputs(t, HeldInputs::constant(inputs.to_vec()));
             self.present_inputs = inputs.to_vec();
             self.inputs = all;
             return self.follow_input_jump();

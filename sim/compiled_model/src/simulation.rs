@@ -49,12 +49,12 @@ pub struct Request<'r> {
 
 /// Request with measurements.
 #[derive(Clone, Copy)]
-pub(crate) struct Observed<'r> {
+pub(crate) struct ObservedRequest<'r> {
     pub request: &'r Request<'r>,
     pub measurements: &'r [Measurement],
 }
 
-impl<'r> Observed<'r> {
+impl<'r> ObservedRequest<'r> {
     pub fn new(request: &'r Request<'r>) -> Self {
         Self {
             request,
@@ -115,7 +115,7 @@ impl Instance<'_> {
         request: &Request<'_>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
-        self.simulate_observed(Observed::new(request), progress)
+        self.simulate_observed(ObservedRequest::new(request), progress)
     }
 
     /// Simulates like [`Instance::simulate_until_stop`] and measures quantities; see [`Motion::measured`].
@@ -133,7 +133,7 @@ impl Instance<'_> {
                 "the solver fixed has no states inside its steps, so it measures no quantity";
             return Err(Error::Request(message.to_owned()));
         }
-        let observed = Observed {
+        let observed = ObservedRequest {
             request,
             measurements,
         };
@@ -142,7 +142,7 @@ impl Instance<'_> {
 
     fn simulate_observed(
         &self,
-        observed: Observed<'_>,
+        observed: ObservedRequest<'_>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
         let request = observed.request;
@@ -239,7 +239,7 @@ impl Instance<'_> {
     /// Simulates with the explicit solver, and again with the implicit one if the motion is stiff.
     fn simulate_automatically(
         &self,
-        observed: Observed<'_>,
+        observed: ObservedRequest<'_>,
         choice: Option<SolverChoice>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
@@ -264,7 +264,7 @@ impl Instance<'_> {
     /// Simulates with a solver that supports any model.
     fn simulate_general(
         &self,
-        observed: Observed<'_>,
+        observed: ObservedRequest<'_>,
         settings: &Settings,
         choice: Option<SolverChoice>,
         progress: &mut dyn FnMut(f64),
@@ -299,7 +299,7 @@ impl Instance<'_> {
             Ok(()) => Ok(so_far),
             Err(error) => {
                 let reached = (request.time_span().0, &so_far.trajectory.final_state[..]);
-                let stop = run.early_stop(self, &error, reached);
+                let stop = run.describe_early_stop(self, &error, reached);
                 with_early_stop(so_far, stop)
             }
         }
@@ -341,7 +341,7 @@ impl Instance<'_> {
     }
 
     fn auditor(&self, tolerance: Option<f64>) -> Auditor {
-        let driven = self.input_driven_impact().map(|name| {
+        let driven = self.find_input_driven_impact().map(|name| {
             format!(
                 "the distance or slip of the impact `{name}` depends on inputs, so the contact jumps when they jump"
             )

@@ -112,7 +112,7 @@ impl SingularityWatch {
             }
         }
         if let Some(last) = self.passed.pop() {
-            let path = cubic(&last, &here, self.degrees());
+            let path = interpolate_cubic(&last, &here, self.degrees());
             let fold = self.find_singularity_between(&last, &here, &path, inputs);
             self.passed.push(last);
             if let Some(fold) = fold {
@@ -147,7 +147,7 @@ impl SingularityWatch {
         ahead.or_else(|| self.found.clone())
     }
 
-    fn scaled_rows(&mut self, t: f64, state: &[f64], inputs: &HeldInputs) -> DMatrix<f64> {
+    fn compute_scaled_rows(&mut self, t: f64, state: &[f64], inputs: &HeldInputs) -> DMatrix<f64> {
         let inputs = &inputs.evaluate(t);
         let rows = self.rows.rows(Point { t, state, inputs });
         for (length, row) in self.lengths.iter_mut().zip(&rows) {
@@ -165,7 +165,7 @@ impl SingularityWatch {
         state: Vec<f64>,
         inputs: &HeldInputs,
     ) -> Option<WatchedState> {
-        let rows = self.scaled_rows(t, &state, inputs);
+        let rows = self.compute_scaled_rows(t, &state, inputs);
         if rows.iter().any(|entry| !entry.is_finite()) {
             return None;
         }
@@ -173,7 +173,7 @@ impl SingularityWatch {
         Some(WatchedState {
             t,
             state,
-            frame: (self.excess == 0).then(|| orthonormal_rows(rank.squares, &rows)),
+            frame: (self.excess == 0).then(|| compute_orthonormal_rows(rank.squares, &rows)),
             rows,
             least: rank.least,
             dependent_combination: rank.dependent_combination,
@@ -181,7 +181,7 @@ impl SingularityWatch {
     }
 
     /// Returns the frames F of two states, for the same constraints.
-    fn frames(&self, a: &WatchedState, b: &WatchedState) -> Option<[DMatrix<f64>; 2]> {
+    fn compute_frames(&self, a: &WatchedState, b: &WatchedState) -> Option<[DMatrix<f64>; 2]> {
         if let (Some(a), Some(b)) = (&a.frame, &b.frame) {
             return Some([a.clone(), b.clone()]);
         }
@@ -194,7 +194,7 @@ impl SingularityWatch {
         let frame = |state: &WatchedState| {
             let rows = state.rows.select_rows(&best);
             let squares = symmetric_eigen(&(&rows * rows.transpose()))?;
-            Some(orthonormal_rows(squares, &rows))
+            Some(compute_orthonormal_rows(squares, &rows))
         };
         Some([frame(a)?, frame(b)?])
     }
@@ -251,7 +251,7 @@ impl SingularityWatch {
         inputs: &HeldInputs,
         halvings: u32,
     ) -> Option<WatchedState> {
-        let [from, to] = self.frames(a, b)?;
+        let [from, to] = self.compute_frames(a, b)?;
         let turned = from * to.transpose();
         let symmetric = 0.5 * (&turned + turned.transpose());
         if symmetric_eigen(&symmetric)?.eigenvalues.min() > MIN_TURN_EIGENVALUE {
@@ -283,14 +283,21 @@ impl SingularityWatch {
 }
 
 /// Returns (R R^T)^(-1/2) R for the rows R, from the eigenvalues of R R^T.
-fn orthonormal_rows(mut squares: SymmetricEigen<f64, Dyn>, rows: &DMatrix<f64>) -> DMatrix<f64> {
+fn compute_orthonormal_rows(
+    mut squares: SymmetricEigen<f64, Dyn>,
+    rows: &DMatrix<f64>,
+) -> DMatrix<f64> {
     for value in squares.eigenvalues.iter_mut() {
         *value = value.max(f64::MIN_POSITIVE).sqrt().recip();
     }
     squares.recompose() * rows
 }
 
-fn cubic(a: &WatchedState, b: &WatchedState, degrees: usize) -> impl Fn(f64) -> Vec<f64> + use<> {
+fn interpolate_cubic(
+    a: &WatchedState,
+    b: &WatchedState,
+    degrees: usize,
+) -> impl Fn(f64) -> Vec<f64> + use<> {
     let (begin, step) = (a.t, b.t - a.t);
     let (from, to) = (a.state.clone(), b.state.clone());
     move |t| {

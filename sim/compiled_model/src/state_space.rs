@@ -206,7 +206,7 @@ height = { value = "r.y", unit = "m" }
 "#;
 
     /// Returns the matrices computed along directions and entry by entry.
-    fn both(inputs: &[f64]) -> [StateSpace; 2] {
+    fn compute_both(inputs: &[f64]) -> [StateSpace; 2] {
         let model = CompiledModel::from_text("forced.toml", FORCED, Orders::Declared);
         let model = model.unwrap_or_else(|error| panic!("{error}"));
         let run = model.with_declared_parameters().expect("an instance");
@@ -231,7 +231,7 @@ height = { value = "r.y", unit = "m" }
 
     #[test]
     fn derivatives_along_variables_match_jacobians() {
-        let [found, expected] = both(&[0.5, -2.0]);
+        let [found, expected] = compute_both(&[0.5, -2.0]);
         for (found, expected) in [
             (found.a, expected.a),
             (found.b, expected.b),
@@ -250,7 +250,7 @@ height = { value = "r.y", unit = "m" }
 
     #[test]
     fn infinite_derivative_by_an_input_leaves_the_others_finite() {
-        let [found, _] = both(&[0.5, 0.0]);
+        let [found, _] = compute_both(&[0.5, 0.0]);
         assert!(found.a.iter().all(|entry| entry.is_finite()));
         assert!(found.b.iter().any(|entry| !entry.is_finite()));
     }

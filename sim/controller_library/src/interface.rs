@@ -63,7 +63,7 @@ pub fn open(path: &Path) -> Result<(Functions, u32), MissingFunction> {
     // SAFETY: opening a library runs its initialisers; the user trusts the library, see the module.
     let library = unsafe { Library::new(path) };
     let library = library.map_err(|error| MissingFunction("", error.to_string()))?;
-    let version: Version = function(&library, "eomgen_controller_abi")?;
+    let version: Version = find_function(&library, "eomgen_controller_abi")?;
     // SAFETY: the function has this type according to the header.
     let version = unsafe { version() };
     if version != crate::VERSION {
@@ -75,8 +75,8 @@ pub fn open(path: &Path) -> Result<(Functions, u32), MissingFunction> {
         };
         return Ok((functions, version));
     }
-    let start: Start = function(&library, "eomgen_controller_start")?;
-    let sample: SampleFunction = function(&library, "eomgen_controller_sample")?;
+    let start: Start = find_function(&library, "eomgen_controller_start")?;
+    let sample: SampleFunction = find_function(&library, "eomgen_controller_sample")?;
     let functions = Functions {
         start,
         sample,
@@ -99,7 +99,7 @@ unsafe extern "C" fn never_sample(
     1
 }
 
-fn function<F: Copy>(library: &Library, name: &'static str) -> Result<F, MissingFunction> {
+fn find_function<F: Copy>(library: &Library, name: &'static str) -> Result<F, MissingFunction> {
     // SAFETY: `F` is the type that the header declares for this name, and `Functions` keeps the library loaded.
     let found: Result<Symbol<'_, F>, _> = unsafe { library.get(name) };
     let found = found.map_err(|error| MissingFunction(name, error.to_string()))?;

@@ -45,8 +45,8 @@ pub fn bind_description<'d>(
     check_lists(description, &mut found);
     let time = found.push_error(time_unit(description));
     let inputs = bind_inputs(description, model, &mut found);
-    let input_priors = input_priors(description, model, &mut found);
-    let motion = given_motion::given_columns(description, model, &mut found);
+    let input_priors = bind_input_priors(description, model, &mut found);
+    let motion = given_motion::bind_given_columns(description, model, &mut found);
     let (mut channels, mut channel_units) = (Vec::new(), Vec::new());
     for entry in &description.channels {
         if let Some((channel, unit)) = found.push_error(bind_channel(entry, description, model)) {
@@ -55,7 +55,7 @@ pub fn bind_description<'d>(
         }
     }
     if !description.motion.is_empty() {
-        given_motion::required_inputs(description, &channels, model, &mut found);
+        given_motion::check_required_inputs(description, &channels, model, &mut found);
     }
     let initial = bind_initial(&description.initial, model, &mut found);
     let mut uncertain = Vec::new();
@@ -111,7 +111,7 @@ pub fn bind_inputs<'d>(
 }
 
 /// Returns the priors of the inputs. Other functions check their columns.
-fn input_priors(
+fn bind_input_priors(
     description: &Description,
     model: &Model,
     found: &mut Diagnostics,
@@ -158,9 +158,9 @@ fn input_priors(
         let one = Unit::coherent(Dimension::DIMENSIONLESS);
         Some(InputPriors {
             name: input.name.clone(),
-            gain: column.gain.map(|gain| prior_in_si(gain, &one)),
-            bias: column.bias.map(|bias| prior_in_si(bias, &own)),
-            delay: column.delay.map(|delay| prior_in_si(delay, &one)),
+            gain: column.gain.map(|gain| convert_prior_to_si(gain, &one)),
+            bias: column.bias.map(|bias| convert_prior_to_si(bias, &own)),
+            delay: column.delay.map(|delay| convert_prior_to_si(delay, &one)),
         })
     };
     description
@@ -259,15 +259,15 @@ fn bind_channel(
         unit: expected,
         noise,
         priors: TransducerPriors {
-            gain: entry.gain.map(|gain| prior_in_si(gain, &one)),
-            bias: entry.bias.map(|bias| prior_in_si(bias, &unit)),
-            delay: entry.delay.map(|delay| prior_in_si(delay, &one)),
+            gain: entry.gain.map(|gain| convert_prior_to_si(gain, &one)),
+            bias: entry.bias.map(|bias| convert_prior_to_si(bias, &unit)),
+            delay: entry.delay.map(|delay| convert_prior_to_si(delay, &one)),
         },
     };
     Ok((channel, unit))
 }
 
-fn prior_in_si(prior: Prior, unit: &Unit) -> PriorInSi {
+fn convert_prior_to_si(prior: Prior, unit: &Unit) -> PriorInSi {
     PriorInSi {
         mean: prior.mean.map(|mean| unit.to_si(mean.value)),
         sd: unit.to_si(prior.sd.value),

@@ -8,7 +8,7 @@ use crate::dataset::Dataset;
 use crate::gaps::describe_missing;
 use crate::record::Record;
 use crate::refusal::Refusal;
-use crate::samples::{MAX_JITTER_FRACTION, shown_time, span, typical_step};
+use crate::samples::{MAX_JITTER_FRACTION, round_file_time, span, typical_step};
 use crate::windows::{MAX_DELAY_SAMPLES, MAX_LEAD_SAMPLES};
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::Input;
@@ -43,9 +43,9 @@ pub fn check_records(
 ) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();
     for record in dataset.train.iter().chain(&dataset.test) {
-        notes.extend(timing_note(record));
-        notes.extend(missing_inputs_notes(record, inputs));
-        input_sizes(record, inputs)?;
+        notes.extend(describe_uneven_timing(record));
+        notes.extend(list_missing_inputs(record, inputs));
+        reject_large_inputs(record, inputs)?;
         for (channel, column) in dataset.channels.iter().zip(&record.channels) {
             notes.extend(check_values(record, &channel.name, channel.noise, column)?);
         }
@@ -91,7 +91,7 @@ fn check_delays(dataset: &Dataset, description: &Description) -> Result<(), Refu
     Ok(())
 }
 
-fn timing_note(record: &Record) -> Option<String> {
+fn describe_uneven_timing(record: &Record) -> Option<String> {
     let step = typical_step(&record.times);
     let steps = record.times.windows(2).map(|pair| pair[1] - pair[0]);
     let uneven = steps
@@ -108,7 +108,7 @@ fn timing_note(record: &Record) -> Option<String> {
 }
 
 /// Returns notes on empty cells of held inputs and of prescribed motions.
-pub(crate) fn missing_inputs_notes(record: &Record, inputs: &[Input]) -> Vec<String> {
+pub(crate) fn list_missing_inputs(record: &Record, inputs: &[Input]) -> Vec<String> {
     let note = |is_prescribed: bool, replacement: &str| {
         let columns = inputs.iter().zip(&record.input_columns);
         let gaps = columns.filter_map(|(input, column)| {
@@ -133,7 +133,7 @@ pub(crate) fn missing_inputs_notes(record: &Record, inputs: &[Input]) -> Vec<Str
 }
 
 /// Rejects inputs that are so large that their powers overflow.
-fn input_sizes(record: &Record, inputs: &[Input]) -> Result<(), Refusal> {
+fn reject_large_inputs(record: &Record, inputs: &[Input]) -> Result<(), Refusal> {
     for (input, column) in inputs.iter().zip(&record.input_columns) {
         let samples = record.times.iter().zip(column);
         if let Some((time, value)) = samples.into_iter().find(|(_, v)| v.abs() > LARGEST_INPUT) {
@@ -141,7 +141,7 @@ fn input_sizes(record: &Record, inputs: &[Input]) -> Result<(), Refusal> {
                 "input `{}` is {value:e} (SI) at t = {} s: its powers exceed the largest number of a computer, \
                  about 1e308; expected values that the machine can reach",
                 input.name,
-                shown_time(record.origin, *time)
+                round_file_time(record.origin, *time)
             );
             return Err(Refusal::file_error(&record.path, message));
         }
@@ -320,7 +320,7 @@ mod tests {
     use eomgen_model_spec::source::Source;
     use eomgen_sim::inputs::HeldInputs;
 
-    use super::{is_shifted_copy, missing_inputs_notes};
+    use super::{is_shifted_copy, list_missing_inputs};
     use crate::record::Record;
 
     #[test]
@@ -353,7 +353,7 @@ push = { on = "x", value = "u + v + k*s" }
                 channels: Vec::new(),
                 is_continued: false,
             };
-            missing_inputs_notes(&record, &checked.model.inputs)
+            list_missing_inputs(&record, &checked.model.inputs)
         };
         let (known, missing) = (vec![0.0, 1.0], vec![0.0, f64::NAN]);
         assert_eq!(notes(std::slice::from_ref(&known)), [""; 0]);

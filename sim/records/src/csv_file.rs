@@ -9,7 +9,7 @@ use eomgen_model_spec::unit::Unit;
 
 use crate::description::columns::ColumnKey;
 use crate::description::format::{Format, Separator};
-use crate::header::{COMMENT, MAX_SAMPLES, Table, find_columns, too_many_samples};
+use crate::header::{COMMENT, MAX_SAMPLES, Table, find_columns, too_many_samples_error};
 use crate::number::{parse_decimal, parse_number};
 use crate::proposal::layout::detect_layout;
 use crate::refusal::Refusal;
@@ -38,7 +38,7 @@ pub fn read_columns(
             .starts_with(COMMENT)
         {
             true => refusal,
-            false => names_below(path, bytes, format, wanted).unwrap_or(refusal),
+            false => names_below_error(path, bytes, format, wanted).unwrap_or(refusal),
         })?;
     let mut table = Table {
         columns: vec![Vec::new(); wanted.len()],
@@ -47,7 +47,7 @@ pub fn read_columns(
     };
     while let Some((line, record)) = file.next_record()? {
         if table.lines.len() == MAX_SAMPLES {
-            return Err(too_many_samples(path));
+            return Err(too_many_samples_error(path));
         }
         table.lines.push(line);
         if let Some(place) = places.first() {
@@ -235,7 +235,7 @@ fn has_wide_characters(bytes: &[u8]) -> bool {
 }
 
 /// Returns the error for names that follow other lines, with the number of lines to skip.
-fn names_below(
+fn names_below_error(
     path: &Path,
     bytes: &[u8],
     format: &Format,

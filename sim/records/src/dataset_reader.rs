@@ -12,9 +12,9 @@ use crate::dataset::{Channel, Dataset, StartSource};
 use crate::decimation::Decimation;
 use crate::description::Description;
 use crate::description::records::Stretch;
-use crate::given_motion::speed_notes;
-use crate::initial_readings::initial_readings;
-use crate::inputs::input_notes;
+use crate::given_motion::list_speed_notes;
+use crate::initial_readings::compute_initial_readings;
+use crate::inputs::list_input_notes;
 use crate::record::{Record, RecordReader};
 use crate::record_parts::split_at_gaps;
 use crate::refusal::Refusal;
@@ -56,11 +56,11 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
             true => Vec::new(),
             false => model.coordinates.iter().map(|c| c.name.clone()).collect(),
         },
-        notes: input_notes(&description, (model, &[])),
+        notes: list_input_notes(&description, (model, &[])),
     };
-    let speeds = speed_notes(&bound.motion, &description);
+    let speeds = list_speed_notes(&bound.motion, &description);
     dataset.notes.extend(speeds);
-    let starts = initial_readings(&dataset, model);
+    let starts = compute_initial_readings(&dataset, model);
     let decimation = Decimation::new(description.time.every, description.time.filter);
     let smooth_noises: Vec<Option<f64>> =
         (dataset.channels.iter().map(Channel::smooth_noise)).collect();

@@ -29,7 +29,7 @@ impl Decimation {
     pub fn new(every: usize, filter: bool) -> Self {
         Self {
             factor: every,
-            low_pass: (filter && every > 1).then(|| low_pass_weights(every)),
+            low_pass: (filter && every > 1).then(|| compute_low_pass_weights(every)),
         }
     }
 
@@ -68,7 +68,7 @@ impl Decimation {
 
     /// Returns the first moment of held samples about the middle of their interval, the time between two kept samples.
     /// The length of the interval is the unit of time.
-    fn moment(&self, samples: &[f64], mean: f64) -> f64 {
+    fn compute_moment(&self, samples: &[f64], mean: f64) -> f64 {
         if samples.len() < self.factor {
             return 0.0;
         }
@@ -98,7 +98,7 @@ impl Decimation {
         let mut held: Vec<f64> = column.chunks(self.factor).map(mean).collect();
         let moments = column.chunks(self.factor).zip(&held);
         let moments: Vec<f64> = moments
-            .map(|(samples, mean)| self.moment(samples, *mean))
+            .map(|(samples, mean)| self.compute_moment(samples, *mean))
             .collect();
         for (place, moment) in moments.into_iter().enumerate() {
             let last = held.len() - 1;
@@ -114,7 +114,7 @@ impl Decimation {
 }
 
 /// Returns one half of a sinc function in Blackman's window with the sum 1, from its middle on.
-fn low_pass_weights(every: usize) -> Vec<f64> {
+fn compute_low_pass_weights(every: usize) -> Vec<f64> {
     let reach = (HALF_LENGTH_SAMPLES * every) as f64;
     let weight = |k: usize| {
         let k = k as f64;

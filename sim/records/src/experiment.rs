@@ -88,7 +88,7 @@ pub(crate) fn bind_experiment(
             continue;
         };
         bounds.inputs[place] = InputBounds {
-            range: input.range.map(|range| range_in_si(range, unit)),
+            range: input.range.map(|range| convert_range_to_si(range, unit)),
             rate: input.rate.map(|rate| unit.to_si(rate.value)),
             band: input.band.map(|band| (band.low.value, band.high.value)),
         };
@@ -97,7 +97,7 @@ pub(crate) fn bind_experiment(
         let place = description.channels.iter();
         let place = { place }.position(|channel| channel.name.text == name.text);
         match place.and_then(|place| Some((place, channels.get(place)?))) {
-            Some((place, unit)) => bounds.limits[place] = Some(range_in_si(*limit, unit)),
+            Some((place, unit)) => bounds.limits[place] = Some(convert_range_to_si(*limit, unit)),
             None => {
                 let known = description.channels.iter();
                 let known = known.map(|channel| channel.name.text.as_str());
@@ -112,6 +112,6 @@ pub(crate) fn bind_experiment(
     bounds
 }
 
-fn range_in_si(range: NumberRange, unit: &Unit) -> (f64, f64) {
+fn convert_range_to_si(range: NumberRange, unit: &Unit) -> (f64, f64) {
     (unit.to_si(range.low.value), unit.to_si(range.high.value))
 }

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use crate::samples::{MIN_GAP_STEPS, shown_time, typical_step};
+use crate::samples::{MIN_GAP_STEPS, round_file_time, typical_step};
 
 /// Number of gaps between rows above which a record counts as unevenly sampled and is not split.
 const MAX_GAPS: usize = 20;
@@ -129,7 +129,7 @@ pub(crate) fn split_samples(times: &[f64], mut gaps: Vec<Gap>) -> Vec<Range<usiz
 pub(crate) fn describe_missing((times, origin): (&[f64], f64), column: &[f64]) -> Option<String> {
     let count = column.iter().filter(|value| !value.is_finite()).count();
     let first = column.iter().position(|value| !value.is_finite())?;
-    let t = shown_time(origin, *times.get(first)?);
+    let t = round_file_time(origin, *times.get(first)?);
     Some(match count {
         1 => format!("the sample at t = {t} s"),
         count => format!("{count} samples from t = {t} s on"),

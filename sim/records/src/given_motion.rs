@@ -13,7 +13,7 @@ use crate::description::motion::InitialState;
 use crate::motion_rates::{GivenColumn, GivenKind};
 use crate::units::parse_unit;
 
-pub(crate) fn given_columns<'d>(
+pub(crate) fn bind_given_columns<'d>(
     description: &'d Description,
     model: &Model,
     found: &mut Diagnostics,
@@ -79,8 +79,8 @@ pub(crate) fn given_columns<'d>(
         let mut given = description.motion.iter();
         match given.find(|given| given.name.text == coordinate.name) {
             Some(given) => {
-                let start = initial_position(model, &coordinate.name);
-                columns.extend(found.push_error(given_column(given, &coordinate.unit, start)));
+                let start = find_initial_position(model, &coordinate.name);
+                columns.extend(found.push_error(bind_given_column(given, &coordinate.unit, start)));
             }
             None if found.list().len() == before => found.push(
                 Diagnostic::error(format!(
@@ -98,7 +98,7 @@ pub(crate) fn given_columns<'d>(
 
 /// Returns the column of a coordinate whose unit is `own`. The unit of the column decides between position and speed.
 /// `initial` is the default position at the first sample.
-fn given_column<'d>(
+fn bind_given_column<'d>(
     given: &'d MotionColumn,
     own: &Unit,
     initial: f64,
@@ -139,7 +139,7 @@ fn given_column<'d>(
 }
 
 /// Returns the initial position of a coordinate in the specification, in SI; 0 by default.
-fn initial_position(model: &Model, coordinate: &str) -> f64 {
+fn find_initial_position(model: &Model, coordinate: &str) -> f64 {
     let place = model.coordinates.iter().position(|c| c.name == coordinate);
     let orders: Vec<usize> = model.fields.iter().map(|field| field.order).collect();
     let state = model.initial_state(&orders).unwrap_or_default();
@@ -148,7 +148,10 @@ fn initial_position(model: &Model, coordinate: &str) -> f64 {
         .unwrap_or(0.0)
 }
 
-pub(crate) fn speed_notes(columns: &[GivenColumn<'_>], description: &Description) -> Vec<String> {
+pub(crate) fn list_speed_notes(
+    columns: &[GivenColumn<'_>],
+    description: &Description,
+) -> Vec<String> {
     let is_stated = |name: &str| {
         let mut given = description.motion.iter();
         given.any(|given| given.name.text == name && given.initial.is_some())
@@ -197,7 +200,7 @@ pub(crate) fn check_channel(
 }
 
 /// Checks that one input per coordinate is measured, and that no measured input is also given.
-pub(crate) fn required_inputs(
+pub(crate) fn check_required_inputs(
     description: &Description,
     channels: &[Channel],
     model: &Model,

@@ -87,7 +87,7 @@ fn guess_separator(there: &[String]) -> Option<String> {
     Some(format!("{name}; write separator = \"{word}\" in [format]"))
 }
 
-pub fn too_many_samples(path: &Path) -> Refusal {
+pub fn too_many_samples_error(path: &Path) -> Refusal {
     Refusal::file_error(
         path,
         format!(

@@ -7,7 +7,7 @@ use crate::dataset::{Channel, Dataset, Initial, Quantity};
 
 /// Returns the reading of each channel at the start of a file, in SI. `None` if the initial state is unknown, or if the
 /// quantity depends on more than parameters and state.
-pub(crate) fn initial_readings(dataset: &Dataset, model: &Model) -> Vec<Option<f64>> {
+pub(crate) fn compute_initial_readings(dataset: &Dataset, model: &Model) -> Vec<Option<f64>> {
     let start = KnownStart::new(&dataset.initial, model);
     let reading = |channel: &Channel| {
         let value = start.as_ref()?.evaluate_quantity(channel.quantity)?;

@@ -9,7 +9,7 @@ use eomgen_model_spec::suggest::did_you_mean;
 use eomgen_sim::inputs::HeldInputs;
 
 use crate::binding;
-use crate::checks::missing_inputs_notes;
+use crate::checks::list_missing_inputs;
 use crate::decimation::Decimation;
 use crate::description::Description;
 use crate::files::{find_record, list_record_files};
@@ -67,7 +67,7 @@ pub fn read_inputs(
         decimation: &Decimation::new(description.time.every, description.time.filter),
         min_samples: MIN_INPUT_SAMPLES,
     };
-    let mut warnings = input_notes(&description, (model, driven));
+    let mut warnings = list_input_notes(&description, (model, driven));
     let (record, _) = columns.read_record(record, file, &mut warnings)?;
     warnings.extend(find_missing_rows(&record.times).iter().map(|gap| {
         format!(
@@ -77,7 +77,7 @@ pub fn read_inputs(
             gap.describe(record.origin)
         )
     }));
-    warnings.extend(missing_inputs_notes(&record, &model.inputs));
+    warnings.extend(list_missing_inputs(&record, &model.inputs));
     Ok(RecordInputs {
         inputs: record.inputs,
         warnings,
@@ -86,7 +86,10 @@ pub fn read_inputs(
 }
 
 /// Returns notes on input columns that the model does not have, and on inputs without a column, except those of `driven`.
-pub fn input_notes(description: &Description, (model, driven): (&Model, &[&str])) -> Vec<String> {
+pub fn list_input_notes(
+    description: &Description,
+    (model, driven): (&Model, &[&str]),
+) -> Vec<String> {
     // Rates of prescribed motion are computed from the spline through its samples.
     let own = || model.inputs.iter().filter(|input| input.rate_of.is_none());
     let inputs = || own().map(|input| input.name.as_str());

@@ -49,7 +49,7 @@ pub fn estimate_noise(column: &[f64]) -> Option<f64> {
     };
     let lowest = (0..estimates.len()).find(|place| agrees(*place));
     let noise = lowest.map_or(0.0, |place| estimates[place].noise);
-    let found = noise.max(resolution(column)? / f64::sqrt(12.0));
+    let found = noise.max(estimate_resolution(column)? / f64::sqrt(12.0));
     (found > 0.0 && found.is_finite()).then_some(found)
 }
 
@@ -58,8 +58,9 @@ pub fn estimate_noise(column: &[f64]) -> Option<f64> {
 /// n)^2.
 fn estimate_of_order(differences: &[f64], order: usize) -> Option<OrderEstimate> {
     let variance = central_binomial(order);
-    let limit =
-        MAX_DIFFERENCE_OVER_NOISE * variance.sqrt() * noise_of_differences(differences, variance)?;
+    let limit = MAX_DIFFERENCE_OVER_NOISE
+        * variance.sqrt()
+        * estimate_noise_of_differences(differences, variance)?;
     let squares = differences
         .iter()
         .filter(|d| d.abs() <= limit)
@@ -83,7 +84,7 @@ fn central_binomial(n: usize) -> f64 {
 
 /// Returns the standard deviation of white noise from differences, robust against outliers. `variance` is the variance
 /// of the differences for noise with a standard deviation of 1. `None` without known differences.
-pub(crate) fn noise_of_differences(differences: &[f64], variance: f64) -> Option<f64> {
+pub(crate) fn estimate_noise_of_differences(differences: &[f64], variance: f64) -> Option<f64> {
     let known = differences
         .iter()
         .map(|d| d.abs())
@@ -92,7 +93,7 @@ pub(crate) fn noise_of_differences(differences: &[f64], variance: f64) -> Option
     Some(median / NORMAL_MEDIAN / variance.sqrt())
 }
 
-fn resolution(column: &[f64]) -> Option<f64> {
+fn estimate_resolution(column: &[f64]) -> Option<f64> {
     let mut values: Vec<f64> = column.iter().copied().filter(|v| v.is_finite()).collect();
     values.sort_by(f64::total_cmp);
     let largest = values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
@@ -107,7 +108,7 @@ mod tests {
     use super::estimate_noise;
 
     /// Returns nearly normal numbers with mean 0 and standard deviation 1.
-    fn normal(count: usize) -> Vec<f64> {
+    fn draw_normal_numbers(count: usize) -> Vec<f64> {
         let mut state = 7u64;
         let mut uniform = || {
             state = state
@@ -124,7 +125,7 @@ mod tests {
     fn noise_ignores_motion_and_is_at_least_resolution() {
         let motion = |k: usize| 0.3 * (0.02 * k as f64).sin() + 0.05 * (0.21 * k as f64).cos();
         let noisy = |sd: f64| -> Vec<f64> {
-            let noise = normal(4000).into_iter().enumerate();
+            let noise = draw_normal_numbers(4000).into_iter().enumerate();
             noise.map(|(k, n)| motion(k) + sd * n).collect()
         };
         for sd in [1e-5, 1e-3, 0.1] {
@@ -142,7 +143,7 @@ mod tests {
 
     #[test]
     fn short_columns_have_no_low_estimate() {
-        let all = normal(40 * 400);
+        let all = draw_normal_numbers(40 * 400);
         let estimates: Vec<f64> = (0..40)
             .map(|part| {
                 let period = 20.0 + 5.0 * part as f64;

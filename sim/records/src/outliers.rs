@@ -3,7 +3,7 @@
 //! A wrong sample changes the fourth differences by its error times 1, -4, 6, -4, 1. The fourth differences of a smooth
 //! motion with a step or a kink have other patterns (F. B. Hildebrand, *Introduction to Numerical Analysis*, 4.9).
 
-use crate::noise::noise_of_differences;
+use crate::noise::estimate_noise_of_differences;
 use crate::samples::{MAX_JITTER_FRACTION, typical_step};
 
 /// Fourth differences of an error of 1 in one sample.
@@ -43,7 +43,7 @@ pub(crate) fn find_outliers(times: &[f64], column: &[f64], noise: f64) -> Vec<Ou
                 .sum()
         })
         .collect();
-    let Some(own_noise) = noise_of_differences(&differences, PATTERN_SQUARE) else {
+    let Some(own_noise) = estimate_noise_of_differences(&differences, PATTERN_SQUARE) else {
         return Vec::new();
     };
     let least = MIN_ERROR_OVER_NOISE * noise.max(own_noise);

@@ -11,7 +11,7 @@ use parquet::record::Field;
 
 use crate::decimal::Decimal;
 use crate::description::columns::ColumnKey;
-use crate::header::{MAX_SAMPLES, Table, find_columns, too_many_samples};
+use crate::header::{MAX_SAMPLES, Table, find_columns, too_many_samples_error};
 use crate::refusal::Refusal;
 
 /// Reads columns; a missing number becomes NaN.
@@ -65,7 +65,7 @@ fn decode_columns(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<
     let schema = metadata.schema_descr_ptr();
     let columns = schema.columns();
     if metadata.num_rows() > MAX_SAMPLES as i64 {
-        return Err(too_many_samples(path));
+        return Err(too_many_samples_error(path));
     }
     if columns.iter().any(|column| column.path().parts().len() > 1) {
         return Err(Refusal::file_error(
@@ -94,7 +94,7 @@ fn decode_columns(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<
             .first()
             .is_some_and(|column| column.len() == MAX_SAMPLES)
         {
-            return Err(too_many_samples(path));
+            return Err(too_many_samples_error(path));
         }
         if let Some(place) = places.first() {
             let field = row.get_column_iter().nth(*place).map(|(_, field)| field);

@@ -20,10 +20,10 @@ pub(crate) fn remove_rest(dataset: &mut Dataset, model: &Model) -> Vec<String> {
         let Quantity::Input(input) = dataset.channels[place].quantity else {
             continue;
         };
-        let coordinates = driven_coordinates(model, input);
+        let coordinates = find_driven_coordinates(model, input);
         let name = &dataset.channels[place].name;
         for record in dataset.train.iter_mut().chain(&mut dataset.test) {
-            let resting = samples_at_rest(record, model, &coordinates);
+            let resting = find_samples_at_rest(record, model, &coordinates);
             let mut count = 0;
             for (value, rests) in record.channels[place].iter_mut().zip(resting) {
                 if rests && value.is_finite() {
@@ -43,7 +43,7 @@ pub(crate) fn remove_rest(dataset: &mut Dataset, model: &Model) -> Vec<String> {
     notes
 }
 
-fn driven_coordinates(model: &Model, input: usize) -> Vec<usize> {
+fn find_driven_coordinates(model: &Model, input: usize) -> Vec<usize> {
     let mut found = Vec::new();
     for force in &model.forces {
         if !contains_part(
@@ -86,7 +86,7 @@ fn contains_part(model: &Model, expr: &Expr, is: &dyn Fn(&ExprKind) -> bool) -> 
 }
 
 /// Returns true for samples at which a coordinate is at rest or reverses, because the friction force is then unknown.
-fn samples_at_rest(record: &Record, model: &Model, coordinates: &[usize]) -> Vec<bool> {
+fn find_samples_at_rest(record: &Record, model: &Model, coordinates: &[usize]) -> Vec<bool> {
     let (inputs, count) = (model.inputs.len(), model.coordinates.len());
     let mut resting = vec![false; record.times.len()];
     for coordinate in coordinates {

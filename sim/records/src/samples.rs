@@ -82,7 +82,7 @@ pub fn typical_step(times: &[f64]) -> f64 {
 }
 
 /// Returns the time `origin + time` of a file, in s, without the rounding error of the sum.
-pub fn shown_time(origin: f64, time: f64) -> f64 {
+pub fn round_file_time(origin: f64, time: f64) -> f64 {
     let shown = ((origin + time) * SHOWN_PARTS).round() / SHOWN_PARTS;
     if shown.is_finite() {
         shown

@@ -85,10 +85,10 @@ pub(crate) fn detect_wrapping(
     }
     let times: Vec<f64> = samples.iter().map(|sample| times[*sample]).collect();
     let values: Vec<f64> = samples.iter().map(|sample| column[*sample]).collect();
-    let jumps = common_jumps(&values)?;
+    let jumps = find_common_jumps(&values)?;
     let period = estimate_period(&values, &jumps, unit)?;
     let motion = unwrap_values(&times, &values, period.value).values;
-    let crossings = crossings(&jumps, &values);
+    let crossings = group_crossings(&jumps, &values);
     let threshold = MIN_MOTION_OVER_NOISE * noise::estimate_noise(&motion).unwrap_or(0.0);
     let decided: Vec<bool> = crossings
         .iter()
@@ -112,7 +112,7 @@ pub(crate) fn detect_wrapping(
 
 /// Returns the samples before the jumps of a column. The size of a jump is corrected by the motion during its step.
 /// `None` if the sizes differ from each other or from the range.
-fn common_jumps(values: &[f64]) -> Option<Vec<usize>> {
+fn find_common_jumps(values: &[f64]) -> Option<Vec<usize>> {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let range = high - low;
@@ -163,7 +163,7 @@ impl Crossing {
     }
 }
 
-fn crossings(jumps: &[usize], values: &[f64]) -> Vec<Crossing> {
+fn group_crossings(jumps: &[usize], values: &[f64]) -> Vec<Crossing> {
     let mut found: Vec<(Crossing, f64)> = Vec::new();
     for jump in jumps {
         let sign = -(values[jump + 1] - values[*jump]).signum();

@@ -50,10 +50,10 @@ pub(crate) fn estimate_period(values: &[f64], jumps: &[usize], unit: ColumnUnit)
     let steps = Steps { values, jumps };
     let sizes: Vec<f64> = jumps
         .iter()
-        .map(|jump| steps.step_excess(*jump).abs())
+        .map(|jump| steps.compute_step_excess(*jump).abs())
         .collect();
     let seen = median(&sizes)?;
-    let deviation = steps.jump_deviation();
+    let deviation = steps.estimate_jump_deviation();
     let error = STANDARD_ERRORS * deviation / (jumps.len() as f64).sqrt();
     let is_whole = values
         .iter()
@@ -61,7 +61,7 @@ pub(crate) fn estimate_period(values: &[f64], jumps: &[usize], unit: ColumnUnit)
     let resolution = if is_whole {
         unit.size
     } else {
-        steps.resolution()
+        steps.estimate_resolution()
     };
     let uncertainty = error
         .max(MIN_UNCERTAINTY_DEVIATIONS * deviation)
@@ -75,7 +75,7 @@ pub(crate) fn estimate_period(values: &[f64], jumps: &[usize], unit: ColumnUnit)
             is_turn: true,
         });
     }
-    let near: Vec<f64> = usual_periods(seen, unit)
+    let near: Vec<f64> = list_common_periods(seen, unit)
         .into_iter()
         .filter(is_near)
         .collect();
@@ -97,7 +97,7 @@ pub(crate) fn estimate_period(values: &[f64], jumps: &[usize], unit: ColumnUnit)
     })
 }
 
-fn usual_periods(seen: f64, unit: ColumnUnit) -> Vec<f64> {
+fn list_common_periods(seen: f64, unit: ColumnUnit) -> Vec<f64> {
     let order = (seen / unit.size).log10().floor() as i32;
     let decimals = (order - 1..=order + 1)
         .flat_map(|power| DECIMAL_PERIOD_DIGITS.map(|digits| digits * 10f64.powi(power)));
@@ -137,7 +137,7 @@ impl Steps<'_> {
     }
 
     /// Returns the difference of the step at `k` and the mean of the regular steps near it.
-    fn step_excess(&self, k: usize) -> f64 {
+    fn compute_step_excess(&self, k: usize) -> f64 {
         let (sum, count) = self
             .regular_steps_near(k)
             .fold((0.0, 0.0), |(sum, count), other| {
@@ -147,19 +147,19 @@ impl Steps<'_> {
     }
 
     /// Returns the standard deviation of one step from the mean of its neighbours, from the regular steps near jumps.
-    fn jump_deviation(&self) -> f64 {
+    fn estimate_jump_deviation(&self) -> f64 {
         let regular = self
             .jumps
             .iter()
             .flat_map(|jump| self.regular_steps_near(*jump));
         let (sum, count) = regular.fold((0.0, 0.0), |(sum, count), k| {
-            (sum + self.step_excess(k).powi(2), count + 1.0)
+            (sum + self.compute_step_excess(k).powi(2), count + 1.0)
         });
         f64::sqrt(sum / f64::max(count, 1.0))
     }
 
     /// Returns the resolution of the sensor: the smallest difference between regular steps, or 0.
-    fn resolution(&self) -> f64 {
+    fn estimate_resolution(&self) -> f64 {
         let low = self.values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = self
             .values

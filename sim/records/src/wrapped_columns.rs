@@ -104,7 +104,7 @@ pub(crate) fn unwrap_columns(
                 notes.extend(unwrap_column(column, number, used, (times, values))?);
             }
             (None, Some(pattern)) => {
-                notes.extend(refuse_wrapped(column, (file, used.origin), &pattern)?)
+                notes.extend(reject_wrapped(column, (file, used.origin), &pattern)?)
             }
             _ => {}
         }
@@ -144,7 +144,7 @@ fn check_period(
                     "the column of `{name}` jumps by about {}",
                     format_with_unit(seen, unit)
                 ),
-                proposed_key(&pattern, seen, ""),
+                format_proposed_key(&pattern, seen, ""),
             )
         }
         _ => Ok(()),
@@ -158,7 +158,7 @@ fn format_with_unit(size: f64, unit: &Unit) -> String {
     }
 }
 
-fn proposed_key(pattern: &WrapPattern, period: f64, place: &str) -> String {
+fn format_proposed_key(pattern: &WrapPattern, period: f64, place: &str) -> String {
     let key = format!("write wrap = {}{place}", pattern.format_period(period));
     match pattern.uncertainty_note(period) {
         Some(doubt) => format!("{key} ({doubt})"),
@@ -201,7 +201,7 @@ fn unwrap_column(
     Ok(notes)
 }
 
-fn refuse_wrapped(
+fn reject_wrapped(
     column: &ReadColumn<'_>,
     (file, origin): (&Path, f64),
     pattern: &WrapPattern,
@@ -218,7 +218,7 @@ fn refuse_wrapped(
         format_with_unit(size, unit),
         origin + pattern.first
     );
-    let cure = proposed_key(pattern, size, &format!(" in [{table}.{name}]"));
+    let cure = format_proposed_key(pattern, size, &format!(" in [{table}.{name}]"));
     if pattern.is_wrapped(table == "inputs") {
         return Err(Diagnostic::error(jumps)
             .with_span(column.column.column.span(), "the values wrap around")

@@ -14,7 +14,7 @@ impl From<Error> for Failure {
     }
 }
 
-pub fn finished_motion(motion: Result<Motion, Error>) -> Result<Motion, Failure> {
+pub fn require_finished_motion(motion: Result<Motion, Error>) -> Result<Motion, Failure> {
     let motion = motion.map_err(|error| match error {
         // The motion has stopped at its start.
         Error::Stopped { .. } => Failure::NotFinite,

@@ -38,24 +38,24 @@ impl<'a> Lyapunov<'a> {
         let known = (model.model(), conditions);
         let times = Times::from_window(known, window, "lyapunov", MIN_GROWTHS)?;
         reject_controllers(model, "lyapunov")?;
-        let asked = Argument::Measure.with_text("lyapunov");
+        let measure_name = Argument::Measure.with_text("lyapunov");
         if let Some(constraint) = model.model().constraints.first() {
             return Err(SweepError::Request(format!(
-                "{asked}: the model has constraints (`{}`), which this measure does not \
+                "{measure_name}: the model has constraints (`{}`), which this measure does not \
                  support yet",
                 constraint.name
             )));
         }
         if let Some(impact) = model.model().impacts.first() {
             return Err(SweepError::Request(format!(
-                "{asked}: the model has impacts (`{}`), which this measure does not \
+                "{measure_name}: the model has impacts (`{}`), which this measure does not \
                  support yet",
                 impact.name
             )));
         }
         if let Some(surface) = model.first_corner() {
             return Err(SweepError::Request(format!(
-                "{asked}: the energies of the model jump where `{surface}` is zero, and the \
+                "{measure_name}: the energies of the model jump where `{surface}` is zero, and the \
                  rates with them, which this measure does not support yet"
             )));
         }
@@ -65,7 +65,7 @@ impl<'a> Lyapunov<'a> {
             times,
         };
         if !measure.is_exact() {
-            let refused = |error| SweepError::Request(format!("{asked}: {error}"));
+            let refused = |error| SweepError::Request(format!("{measure_name}: {error}"));
             model.differentiate().map_err(refused)?;
         }
         Ok(measure)
@@ -131,7 +131,9 @@ impl Measure for Lyapunov<'_> {
 impl Worker for &Lyapunov<'_> {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
         let instance = self.model.with_parameters(settings)?;
-        let stretches = self.times.stretches(&instance, self.conditions)?;
+        let stretches = self
+            .times
+            .list_growth_intervals(&instance, self.conditions)?;
         let start = self.conditions.start_at(&instance, settings)?;
         let GrowthMeasurements {
             growth_exponents: growths,

@@ -42,7 +42,7 @@ impl MissingNumbers {
                 let points = all.filter(|point| statuses[*point] == f64::from(code));
                 let points: Vec<usize> = points.collect();
                 if !points.is_empty() {
-                    let found = Missing {
+                    let found = MissingPoints {
                         job,
                         table,
                         measure,
@@ -60,14 +60,14 @@ impl MissingNumbers {
 }
 
 /// Points at which a measure has no number for one reason.
-struct Missing<'a> {
+struct MissingPoints<'a> {
     job: &'a Job,
     table: &'a Table,
     measure: &'a Description,
     points: &'a [usize],
 }
 
-impl Missing<'_> {
+impl MissingPoints<'_> {
     fn message(&self, code: u8, reason: &str) -> String {
         let (count, all) = (self.points.len(), self.job.points().count());
         let is_section = code == Failure::FewCrossings(0).code();
@@ -76,8 +76,8 @@ impl Missing<'_> {
             .map(|point| match is_section {
                 true => format!(
                     "{} of {} at {}",
-                    self.crossings(*point),
-                    self.wanted(),
+                    self.crossing_count(*point),
+                    self.required_crossings(),
                     self.name(*point)
                 ),
                 false => self.name(*point),
@@ -105,14 +105,14 @@ impl Missing<'_> {
     }
 
     /// Returns the number of crossings at a point.
-    fn crossings(&self, point: usize) -> f64 {
+    fn crossing_count(&self, point: usize) -> f64 {
         let column = self.table.column(&crossings_column(&self.measure.name));
         let count = column.and_then(|column| column.get(point));
         count.copied().unwrap_or(f64::NAN)
     }
 
     /// Returns the number of crossings that the measure requires.
-    fn wanted(&self) -> usize {
+    fn required_crossings(&self) -> usize {
         let option = |name: &str| self.measure.options.get(name)?.parse::<usize>().ok();
         ["transient", "periods"]
             .into_iter()

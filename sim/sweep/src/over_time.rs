@@ -10,7 +10,7 @@ use eomgen_model_spec::foreign::suggest_state;
 
 use crate::conditions::Conditions;
 use crate::error::SweepError;
-use crate::failure::finished_motion;
+use crate::failure::require_finished_motion;
 use crate::measure::{Column, Description, Failure, Measure, Worker};
 use crate::window::{Times, Window};
 
@@ -57,17 +57,17 @@ pub fn measure_names() -> impl Iterator<Item = String> {
 }
 
 /// Splits the name of a measure over time, for example `max:tip`.
-fn split_name(asked: &str) -> Option<(Number, &str)> {
-    let (number, name) = asked.split_once(':')?;
+fn split_name(measure_name: &str) -> Option<(Number, &str)> {
+    let (number, name) = measure_name.split_once(':')?;
     let mut numbers = Number::ALL.into_iter();
     Some((numbers.find(|known| known.name() == number)?, name))
 }
 
-fn find_number(model: &CompiledModel, asked: &str) -> Result<NumberOfQuantity, SweepError> {
-    let Some((number, name)) = split_name(asked) else {
+fn find_number(model: &CompiledModel, measure_name: &str) -> Result<NumberOfQuantity, SweepError> {
+    let Some((number, name)) = split_name(measure_name) else {
         let message = format!(
             "{}: expected a measure over time",
-            Argument::Measure.with_text(asked)
+            Argument::Measure.with_text(measure_name)
         );
         return Err(SweepError::Request(message));
     };
@@ -88,7 +88,7 @@ fn find_number(model: &CompiledModel, asked: &str) -> Result<NumberOfQuantity, S
         });
         return Err(SweepError::Request(format!(
             "{}: the model `{}` has no observable, coordinate or rate `{name}`: {hint}",
-            Argument::Measure.with_text(asked),
+            Argument::Measure.with_text(measure_name),
             model.model().name
         )));
     };
@@ -121,15 +121,15 @@ struct NumberOfQuantity {
 
 impl NumberOfQuantity {
     /// Returns the name on the command line.
-    fn asked(&self) -> String {
+    fn measure_name(&self) -> String {
         format!("{}:{}", self.number.name(), self.name)
     }
 }
 
 impl<'a> OverTime<'a> {
-    /// Returns true if `name` is a measure over time, for example `max:tip`.
-    pub fn accepts(asked: &str) -> bool {
-        split_name(asked).is_some()
+    /// Returns true for a measure over time, for example `max:tip`.
+    pub fn accepts(measure_name: &str) -> bool {
+        split_name(measure_name).is_some()
     }
 
     /// Creates the measures with the given names.
@@ -138,21 +138,23 @@ impl<'a> OverTime<'a> {
     /// The name of another measure, a quantity that the model does not have, or an invalid window.
     pub fn new(
         (model, conditions): (&'a CompiledModel, &'a Conditions),
-        asked: &[String],
+        measure_name: &[String],
         window: &Window,
     ) -> Result<Self, SweepError> {
-        let numbers = asked.iter().map(|asked| find_number(model, asked));
-        let asked = asked.join(",");
+        let numbers = measure_name
+            .iter()
+            .map(|measure_name| find_number(model, measure_name));
+        let measure_name = measure_name.join(",");
         Ok(Self {
             model,
             conditions,
             numbers: numbers.collect::<Result<_, _>>()?,
-            times: Times::from_window((model.model(), conditions), window, &asked, 1)?,
+            times: Times::from_window((model.model(), conditions), window, &measure_name, 1)?,
         })
     }
 
     /// Returns the output times of `simulate` up to the end of the window, s.
-    fn row_times(&self, (begin, end): (f64, f64)) -> Vec<f64> {
+    fn list_row_times(&self, (begin, end): (f64, f64)) -> Vec<f64> {
         if let (Times::Until(_), Some(record)) = (&self.times, self.conditions.record_times()) {
             return record.iter().copied().take_while(|t| *t <= end).collect();
         }
@@ -173,7 +175,7 @@ impl<'a> OverTime<'a> {
         let start = self.conditions.start_at(&instance, settings)?;
         let has_final = self.numbers.iter().any(|own| own.number == Number::Final);
         let rows = match has_final {
-            true => self.row_times((begin, end)),
+            true => self.list_row_times((begin, end)),
             false => vec![self.conditions.start(), end],
         };
         let request = Request {
@@ -196,12 +198,15 @@ impl<'a> OverTime<'a> {
         });
         let measurements: Vec<Measurement> = measurements.collect();
         let motion = instance.simulate_measured(&request, &measurements, &mut |_| {});
-        Ok((instance, finished_motion(motion)?))
+        Ok((instance, require_finished_motion(motion)?))
     }
 }
 
 /// Returns the state and the observables in the last row of a motion.
-fn last_row(instance: &Instance<'_>, motion: &Motion) -> Result<(Vec<f64>, Vec<f64>), Failure> {
+fn evaluate_last_row(
+    instance: &Instance<'_>,
+    motion: &Motion,
+) -> Result<(Vec<f64>, Vec<f64>), Failure> {
     let mut last = (Vec::new(), Vec::new());
     instance.observe(motion, |_, state, observables| {
         last.0.clear();
@@ -216,7 +221,7 @@ impl Measure for OverTime<'_> {
     fn describe(&self) -> Vec<Description> {
         let option = |name: &str, value: String| (name.to_owned(), value);
         let numbers = self.numbers.iter().map(|own| {
-            let asked = own.asked();
+            let measure_name = own.measure_name();
             let about = format!("{} {}", own.number.about(), own.name);
             Description {
                 about: match own.number {
@@ -227,10 +232,10 @@ impl Measure for OverTime<'_> {
                     option("solver", Solver::Auto.name().to_owned()),
                     option("tolerance", format!("{TOLERANCE:?}")),
                 ])),
-                columns: vec![Column::new(&asked, &own.unit, about)],
-                drawn: vec![asked.clone()],
+                columns: vec![Column::new(&measure_name, &own.unit, about)],
+                drawn: vec![measure_name.clone()],
                 quantity: own.name.clone(),
-                name: asked,
+                name: measure_name,
             }
         });
         numbers.collect()
@@ -246,7 +251,7 @@ impl Worker for &OverTime<'_> {
         let (instance, motion) = self.simulate(settings)?;
         let is_final = |own: &NumberOfQuantity| own.number == Number::Final;
         let (state, observables) = match self.numbers.iter().any(is_final) {
-            true => last_row(&instance, &motion)?,
+            true => evaluate_last_row(&instance, &motion)?,
             false => (Vec::new(), Vec::new()),
         };
         let mut measured = motion.measured.iter();

@@ -86,14 +86,14 @@ impl Sweep {
     /// An invalid request with its location, or a model that cannot be derived.
     pub fn new(declared: &Model, request: SweepRequest) -> Result<Self, Error> {
         let set = request.settings();
-        let points = points(declared, &request, &set)?;
+        let points = create_points(declared, &request, &set)?;
         // If both ends of an axis are admissible, so are all values between them, because admissible values form
         // intervals.
         let at = |point: usize| [&set[..], &points.settings(point)].concat();
         with_parameters(declared, &at(points.count() - 1))?;
         let first = at(0);
         let given = split_assignments(Argument::Inputs.name(), &request.inputs)?;
-        let (model, inputs) = driven_model(declared, &given, &request, &first)?;
+        let (model, inputs) = derive_driven_model(declared, &given, &request, &first)?;
         let driven: Vec<&str> = given.iter().map(Assignment::name).collect();
         let (record, warnings) = match &request.record {
             Some((dataset, name)) => {
@@ -142,8 +142,8 @@ impl Sweep {
                 .take_while(|name| OverTime::accepts(name))
                 .count();
             measures.push(match over_time {
-                0 => self.measure(name)?,
-                count => self.measure_over_time(&names[..count])?,
+                0 => self.create_measure(name)?,
+                count => self.create_measure_over_time(&names[..count])?,
             });
             names = &names[over_time.max(1)..];
         }
@@ -161,12 +161,15 @@ impl Sweep {
         }
     }
 
-    fn measure_over_time(&self, names: &[String]) -> Result<Box<dyn Measure + '_>, SweepError> {
+    fn create_measure_over_time(
+        &self,
+        names: &[String],
+    ) -> Result<Box<dyn Measure + '_>, SweepError> {
         let driven = (&self.model, &self.conditions);
         Ok(Box::new(OverTime::new(driven, names, &self.window())?))
     }
 
-    fn measure(&self, name: &str) -> Result<Box<dyn Measure + '_>, SweepError> {
+    fn create_measure(&self, name: &str) -> Result<Box<dyn Measure + '_>, SweepError> {
         let lines = self.points.axes().iter();
         let lines = lines.filter(|axis| axis.count > 1).count();
         let (model, conditions) = (&self.model, &self.conditions);
@@ -221,7 +224,11 @@ impl Sweep {
 }
 
 /// Returns the points of a sweep; `set` are parameters with other values.
-fn points(declared: &Model, request: &SweepRequest, set: &[(&str, f64)]) -> Result<Points, Error> {
+fn create_points(
+    declared: &Model,
+    request: &SweepRequest,
+    set: &[(&str, f64)],
+) -> Result<Points, Error> {
     if let Some(count) = request.samples {
         let model = with_parameters(declared, set)?;
         return Ok(Points::Samples(Samples::new(&model, count, request.seed)?));
@@ -246,7 +253,7 @@ fn with_parameters(model: &Model, settings: &[(&str, f64)]) -> Result<Model, Err
 }
 
 /// Derives the model with inputs given by expressions, as `simulate` does: controllers may measure these inputs.
-fn driven_model(
+fn derive_driven_model(
     declared: &Model,
     given: &[Assignment],
     request: &SweepRequest,

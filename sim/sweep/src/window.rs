@@ -38,24 +38,24 @@ pub enum Times {
 }
 
 impl Times {
-    /// Creates the window of the measure `name`, which requires at least `least` periods.
+    /// Creates the window of the measure `measure_name`, which requires at least `least` periods.
     ///
     /// # Errors
     /// An invalid window, or a parameter that is not a frequency.
     pub fn from_window(
         (model, conditions): (&Model, &Conditions),
         window: &Window,
-        asked: &str,
+        measure_name: &str,
         least: usize,
     ) -> Result<Self, SweepError> {
         match window {
             Window::Until(end) => check_end(*end, conditions).map(Self::Until),
             Window::Periods { forcing, span } => {
-                span.check(asked, least)?;
+                span.check(measure_name, least)?;
                 let known = frequency(model, forcing).map_err(|error| {
                     SweepError::Request(format!(
                         "{}: {error}; or give {}, the measured time in s",
-                        Argument::Measure.with_text(asked),
+                        Argument::Measure.with_text(measure_name),
                         Argument::Until
                     ))
                 })?;
@@ -103,7 +103,7 @@ impl Times {
     ///
     /// # Errors
     /// See [`Times::range`].
-    pub fn stretches(
+    pub fn list_growth_intervals(
         &self,
         instance: &Instance<'_>,
         conditions: &Conditions,

@@ -11,8 +11,10 @@ use eomgen_paper::studies::claims::{CLAIMS, Claim, cases};
 use eomgen_paper::studies::judge::{Readings, Verdict, judge};
 use eomgen_paper::studies::reading::{CaseKey, Forcing, Kind, Reading};
 use eomgen_paper::studies::search::{JudgedSet, SearchRequest, orders, search};
-use eomgen_paper::studies::sets::{RANGES, parameter_set};
-use eomgen_paper::studies::tally::{exclusive_pairs, histogram, share_with, shares, undecided};
+use eomgen_paper::studies::sets::{RANGES, create_parameter_set};
+use eomgen_paper::studies::tally::{
+    find_exclusive_pairs, histogram, share_with, shares, undecided,
+};
 use eomgen_sim::inputs::HeldInputs;
 
 /// Returns a reading whose transmission error increases with b and whose deflection is constant.
@@ -331,7 +333,9 @@ fn motion_without_backlash_is_regular_and_matches_observables() {
 
 #[test]
 fn sets_fill_their_ranges() {
-    let sets: Vec<UndisclosedParameters> = (0..1000).map(|index| parameter_set(index, 1)).collect();
+    let sets: Vec<UndisclosedParameters> = (0..1000)
+        .map(|index| create_parameter_set(index, 1))
+        .collect();
     let values =
         |set: &UndisclosedParameters| [set.second_moment, set.a_m, set.b_m, set.f_w, set.c];
     for (axis, range) in RANGES.iter().enumerate() {
@@ -424,6 +428,6 @@ fn tally_counts_verdicts() {
     assert_eq!((all[0].holds_strictly, all[2].holds_strictly), (0.0, 0.25));
     assert!((undecided(&sets) - 0.5 / CLAIMS.len() as f64).abs() < 1e-15);
     assert_eq!(histogram(&sets)[..4], [1, 2, 1, 0]);
-    assert_eq!(exclusive_pairs(&sets), [(0, 1), (1, 2)]);
+    assert_eq!(find_exclusive_pairs(&sets), [(0, 1), (1, 2)]);
     assert_eq!((share_with(&sets, 1), share_with(&sets, 2)), (0.75, 0.25));
 }

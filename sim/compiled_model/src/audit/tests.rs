@@ -13,7 +13,7 @@ fn oscillator(_: f64, state: &[f64]) -> EnergyAndPower {
 }
 
 /// Audits the oscillator's motion in steps of 0.1 s. `tamper` changes the states from step 20 on.
-fn audited(tamper: impl Fn(&mut [f64; 2]), energies: &mut dyn Energies) -> Audit {
+fn audit_oscillator(tamper: impl Fn(&mut [f64; 2]), energies: &mut dyn Energies) -> Audit {
     let mut auditor = Auditor::new(Some(1e-9), &[1.0; 2], None);
     let state = |t: f64| [t.cos(), -t.sin()];
     for count in 0..40 {
@@ -34,14 +34,14 @@ fn audited(tamper: impl Fn(&mut [f64; 2]), energies: &mut dyn Energies) -> Audit
 
 #[test]
 fn exact_motion_has_no_fault() {
-    let audit = audited(|_| {}, &mut oscillator);
+    let audit = audit_oscillator(|_| {}, &mut oscillator);
     assert_eq!(audit.fault_count, 0);
     assert!(audit.evaluations < 40 * 20, "{}", audit.evaluations);
 }
 
 #[test]
 fn fault_of_changed_state_has_its_time_and_size() {
-    let audit = audited(|state| state[1] *= 1.0 + 1e-4, &mut oscillator);
+    let audit = audit_oscillator(|state| state[1] *= 1.0 + 1e-4, &mut oscillator);
     let fault = audit.first_fault.expect("a fault");
     assert!((fault.t - 2.1).abs() < 1e-12);
     let v: f64 = (2.1_f64).sin();
@@ -60,7 +60,7 @@ fn jump_of_energy_is_a_fault() {
         energy: oscillator(t, state).energy + f64::from(state[0] < wall),
         power: 0.0,
     };
-    let audit = audited(|_| {}, &mut jump);
+    let audit = audit_oscillator(|_| {}, &mut jump);
     let fault = audit.first_fault.expect("a fault");
     assert!((fault.t - 2.1).abs() < 1e-12 && (fault.energy_gain - 1.0).abs() < 1e-9);
 }
@@ -72,14 +72,14 @@ fn energy_change_without_work_is_a_fault() {
         energy: oscillator(t, state).energy + 0.1 * t * t,
         power: 0.2 * t,
     };
-    let audit = audited(|_| {}, &mut pushed);
+    let audit = audit_oscillator(|_| {}, &mut pushed);
     assert_eq!(audit.fault_count, 0);
     assert!((audit.work - 1.6).abs() < 1e-12);
     let mut idle = |t: f64, state: &[f64]| EnergyAndPower {
         power: 0.0,
         ..pushed(t, state)
     };
-    assert_eq!(audited(|_| {}, &mut idle).fault_count, 40);
+    assert_eq!(audit_oscillator(|_| {}, &mut idle).fault_count, 40);
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn power_that_no_quadrature_resolves_is_not_audited() {
             energy: oscillator(t, state).energy + 10.0 * (frequency * t).sin(),
             power: 10.0 * frequency * (frequency * t).cos(),
         };
-        let audit = audited(|_| {}, &mut pulsating);
+        let audit = audit_oscillator(|_| {}, &mut pulsating);
         assert_eq!(audit.fault_count, 0, "{frequency}: {audit:?}");
         assert_eq!(
             audit.exclusion_reason.is_none(),
@@ -101,7 +101,7 @@ fn power_that_no_quadrature_resolves_is_not_audited() {
             power: 2.0 * pulsating(t, state).power,
             ..pulsating(t, state)
         };
-        let found = audited(|_| {}, &mut twice).fault_count > 0;
+        let found = audit_oscillator(|_| {}, &mut twice).fault_count > 0;
         assert!(found || !is_resolved, "{frequency}");
     }
 }
@@ -114,14 +114,14 @@ fn work_of_a_transient_in_a_long_step_is_found() {
         energy: oscillator(t, state).energy + rise(t),
         power: (1.0 - rise(t)) / 1e-6 * f64::from(t > 0.03),
     };
-    let audit = audited(|_| {}, &mut pushed);
+    let audit = audit_oscillator(|_| {}, &mut pushed);
     assert_eq!(audit.fault_count, 0);
     assert!((audit.work - 1.0).abs() < 1e-6, "{}", audit.work);
     let mut idle = |t: f64, state: &[f64]| EnergyAndPower {
         power: 0.0,
         ..pushed(t, state)
     };
-    assert_eq!(audited(|_| {}, &mut idle).fault_count, 1);
+    assert_eq!(audit_oscillator(|_| {}, &mut idle).fault_count, 1);
 }
 
 #[test]
@@ -162,9 +162,9 @@ fn fault_of_a_small_motion_is_found() {
 }
 
 /// Oscillator with a large constant in its energy, which causes rounding errors.
-struct Hidden(f64);
+struct OffsetOscillator(f64);
 
-impl Energies for Hidden {
+impl Energies for OffsetOscillator {
     fn evaluate(&mut self, (t, state): (f64, &[f64])) -> EnergyAndPower {
         let EnergyAndPower { energy, power } = oscillator(t, state);
         EnergyAndPower {
@@ -184,11 +184,14 @@ impl Energies for Hidden {
 #[test]
 fn rounding_of_terms_is_no_fault_but_larger_changes_are() {
     for constant in [0.0, 1e3, 1e9] {
-        let audit = audited(|_| {}, &mut Hidden(constant));
+        let audit = audit_oscillator(|_| {}, &mut OffsetOscillator(constant));
         assert!(!audit.has_failed(), "{constant}: {audit:?}");
     }
     for (constant, is_found) in [(0.0, true), (1e9, true), (1e13, false)] {
-        let audit = audited(|state| state[1] *= 1.0 + 1e-4, &mut Hidden(constant));
+        let audit = audit_oscillator(
+            |state| state[1] *= 1.0 + 1e-4,
+            &mut OffsetOscillator(constant),
+        );
         assert_eq!(audit.has_failed(), is_found, "{constant}: {audit:?}");
     }
 }

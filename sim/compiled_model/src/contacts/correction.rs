@@ -2,7 +2,7 @@
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
-use super::{CORRECTIONS, Contacts, DISTANCE_ROUNDING, Overlap};
+use super::{CORRECTIONS, ContactFailure, Contacts, DISTANCE_ROUNDING};
 
 /// A distance below zero by more than this fraction of its terms is no error of a step. For a closed contact, the same
 /// fraction of its distance before the correction may remain after it.
@@ -26,7 +26,7 @@ impl Contacts {
             return 1;
         }
         // A rejected step may have ended with a distance below zero.
-        self.overlap = None;
+        self.failure = None;
         self.uncorrected_offsets.clone_from(&self.offsets);
         self.uncorrected_redundant.clone_from(&self.redundant);
         let mut arrived = vec![0.0; self.names.len()];
@@ -44,7 +44,9 @@ impl Contacts {
         for (size, distance) in self.sizes.iter_mut().zip(&arrived) {
             *size = size.max(distance.abs());
         }
-        if let Some(place) = self.overlapping_open(own, Point { t, state, inputs }, &arrived) {
+        if let Some(place) =
+            self.find_overlapping_contact(own, Point { t, state, inputs }, &arrived)
+        {
             return self.stop_overlapping(place, state);
         }
         if self.closed.is_empty() {
@@ -81,7 +83,7 @@ impl Contacts {
             let (coordinates, rates) = state.split_at_mut(degrees);
             let corrections = self.solve_balance(&self.closed, |impact| impact.distance);
             self.add_impulses(&self.closed, &corrections, coordinates);
-            let corrections = self.stopping();
+            let corrections = self.solve_normal_stopping_impulses();
             self.add_forces(&self.closed, &corrections, rates);
         }
         own.impacts(Point { t, state, inputs }, &mut self.at);
@@ -106,7 +108,7 @@ impl Contacts {
 
     /// Discards the notes of the last projection.
     pub fn forget_correction(&mut self) {
-        self.overlap = None;
+        self.failure = None;
         self.offsets.clone_from(&self.uncorrected_offsets);
         self.redundant.clone_from(&self.uncorrected_redundant);
     }
@@ -127,7 +129,7 @@ impl Contacts {
 
     /// Returns the first open contact whose distance is below zero by more than step errors and rounding. Rounding
     /// includes that of the state, of the time and of the distance travelled since the start.
-    fn overlapping_open(
+    fn find_overlapping_contact(
         &mut self,
         own: &mut Evaluator,
         point: Point<'_>,
@@ -142,7 +144,8 @@ impl Contacts {
         let rounding = |place: usize| {
             let impact = &self.at[place];
             let covered = elapsed * (impact.rate.abs() + elapsed * impact.acceleration.abs());
-            self.distance_rounding(place, (point.t, point.state)) + DISTANCE_ROUNDING * covered
+            self.compute_distance_rounding(place, (point.t, point.state))
+                + DISTANCE_ROUNDING * covered
         };
         let allowed = |place: usize| deepest(self, place) + rounding(place);
         let mut open = (0..distances.len()).filter(|place| !self.rests(*place));
@@ -150,7 +153,7 @@ impl Contacts {
     }
 
     fn stop_overlapping(&mut self, place: usize, state: &mut [f64]) -> u64 {
-        self.overlap = Some((place, Overlap::Penetrated));
+        self.failure = Some((place, ContactFailure::Penetrated));
         state.fill(f64::NAN);
         1
     }

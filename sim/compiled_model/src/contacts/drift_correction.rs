@@ -16,7 +16,7 @@ impl Contacts {
         }
         own.impacts(point, &mut self.at);
         let degrees = own.program().degrees_of_freedom();
-        let rates = self.rate_magnitudes(own, point.state);
+        let rates = self.compute_rate_magnitudes(own, point.state);
         for place in 0..self.names.len() {
             let drifts = match self.rests(place) {
                 true => Vec::new(),
@@ -24,10 +24,11 @@ impl Contacts {
             };
             let distance: f64 = drifts.iter().map(|drift| drift.distance(point.t)).sum();
             let rate: f64 = drifts.iter().map(|drift| drift.rate(point.t)).sum();
-            let size = self.sizes[place].max(self.distance_size(place, &point.state[..degrees]));
+            let size =
+                self.sizes[place].max(self.compute_distance_size(place, &point.state[..degrees]));
             let touches = self.at[place].distance <= ROUNDING * size + distance;
-            let rests =
-                self.at[place].rate.abs() <= ROUNDING * self.rate_size(place, &rates) + rate;
+            let rests = self.at[place].rate.abs()
+                <= ROUNDING * self.compute_rate_size(place, &rates) + rate;
             let before = std::mem::take(&mut self.drifts[place]);
             if touches && rests && !drifts.is_empty() {
                 self.drifts[place] = drifts;

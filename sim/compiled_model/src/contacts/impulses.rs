@@ -27,7 +27,7 @@ pub(super) const ENERGY_GAIN_ROUNDING: f64 = 1e-12;
 pub(super) const RESTITUTION_HALVINGS: usize = 52;
 
 /// Limits of flights after an impact that count as rest.
-pub(super) struct Flight {
+pub(super) struct FlightLimits {
     /// Longest such flight of each contact, s.
     pub shortest: Vec<f64>,
     /// Greatest height of such a flight of each contact.
@@ -40,10 +40,10 @@ pub(super) struct Flight {
     pub slip_changes: Vec<f64>,
 }
 
-impl Flight {
+impl FlightLimits {
     /// Returns true if a contact with this rate and acceleration does not separate. Accelerations up to `even` count as
     /// zero.
-    pub fn is_none(&self, place: usize, (rate, acceleration): (f64, f64), even: f64) -> bool {
+    pub fn is_rest(&self, place: usize, (rate, acceleration): (f64, f64), even: f64) -> bool {
         let is_short = 2.0 * rate <= -acceleration * self.shortest[place];
         let is_low = rate * rate <= -2.0 * acceleration * self.lowest[place];
         let is_together = rate <= self.rate_roundings[place] && acceleration <= even;
@@ -82,7 +82,7 @@ impl Contacts {
             };
             let updated = self.change_modes(own, Point { t, state, inputs }, located);
             if let Err(cause) = updated {
-                self.overlap = Some(cause);
+                self.failure = Some(cause);
                 state.fill(f64::NAN);
             }
             return false;
@@ -96,7 +96,7 @@ impl Contacts {
             })
             .collect();
         let roundings: Vec<f64> = (0..count)
-            .map(|place| self.distance_rounding(place, (t, before.state)))
+            .map(|place| self.compute_distance_rounding(place, (t, before.state)))
             .collect();
         // A contact that touches without speed is hit by the jump of another contact, for example between two bodies
         // that fall together.
@@ -115,36 +115,39 @@ impl Contacts {
             })
             .collect();
         // Time since the first of these contacts hit, s.
-        let ago = |place: &usize| {
+        let time_since_hit = |place: &usize| {
             let (from, to) = (near[*place] + self.offset(*place, before.t), beyond[*place]);
             let to = to + self.offset(*place, t);
             (t - before.t) * (to / (to - from)).clamp(0.0, 1.0)
         };
-        let ago = hits.iter().map(ago).fold(0.0, f64::max);
-        if self.needs_no_impulse(&touching, ago) {
+        let time_since_hit = hits.iter().map(time_since_hit).fold(0.0, f64::max);
+        if self.needs_no_impulse(&touching, time_since_hit) {
             // The distance of a contact that separates slowly became negative by rounding.
             self.offset_by_rounding(&touching, (t, before.state));
             return true;
         }
         self.has_restitution = collapsing.is_empty();
-        let slip_changes = self.slip_acceleration_sizes().into_iter();
-        let slip_changes = slip_changes.map(|size| ago * size).collect();
-        let jumped = self.apply_impulses(own, (t, inputs), state, touching, ago);
+        let slip_changes = self.compute_slip_acceleration_sizes().into_iter();
+        let slip_changes = slip_changes.map(|size| time_since_hit * size).collect();
+        let jumped = self.apply_impulses(own, (t, inputs), state, touching, time_since_hit);
         let (touching, rate_roundings) = match jumped {
             Ok(jumped) => jumped,
             Err(cause) => {
-                self.overlap = Some((first, cause));
+                self.failure = Some((first, cause));
                 state.fill(f64::NAN);
                 return true;
             }
         };
-        let flight = Flight {
+        let flight = FlightLimits {
             shortest,
             lowest: (0..count)
-                .map(|place| MIN_FLIGHT_ROUNDINGS * self.position_rounding(place, before.state))
+                .map(|place| {
+                    MIN_FLIGHT_ROUNDINGS * self.compute_position_rounding(place, before.state)
+                })
                 .collect(),
             rate_roundings,
-            acceleration_roundings: self.acceleration_roundings(own, Point { t, state, inputs }),
+            acceleration_roundings: self
+                .compute_acceleration_roundings(own, Point { t, state, inputs }),
             slip_changes,
         };
         match self.has_friction() {
@@ -156,7 +159,7 @@ impl Contacts {
                 let point = Point { t, state, inputs };
                 if let Err(cause) = self.close_resting_with_friction(own, point, &touching, &flight)
                 {
-                    self.overlap = Some(cause);
+                    self.failure = Some(cause);
                     state.fill(f64::NAN);
                     return true;
                 }
@@ -174,21 +177,28 @@ impl Contacts {
         }
         let degrees = own.program().degrees_of_freedom();
         own.impacts(Point { t, state, inputs }, &mut self.at);
-        let closing = self.has_friction().then(|| self.closing_impulses());
-        let impulses = closing.flatten().unwrap_or_else(|| self.stopping());
+        let closing = self.has_friction().then(|| self.compute_closing_impulses());
+        let impulses = closing
+            .flatten()
+            .unwrap_or_else(|| self.solve_normal_stopping_impulses());
         self.add_forces(&self.closed, &impulses, &mut state[degrees..2 * degrees]);
-        self.impact_work += self.work_of(&self.closed, &impulses);
+        self.impact_work += self.compute_work(&self.closed, &impulses);
     }
 
     /// Returns true if no touching contact needs an impulse.
-    fn needs_no_impulse(&self, touching: &[usize], ago: f64) -> bool {
+    fn needs_no_impulse(&self, touching: &[usize], time_since_hit: f64) -> bool {
         let mut all = touching.iter();
-        all.all(|place| self.required_rate_change(*place, ago, 1.0) >= 0.0)
+        all.all(|place| self.compute_required_rate_change(*place, time_since_hit, 1.0) >= 0.0)
     }
 
-    /// Returns the change of rate that impulses must supply at a contact that was hit `ago` s before.
-    pub(super) fn required_rate_change(&self, place: usize, ago: f64, most: f64) -> f64 {
-        let rate = self.hit_rate(place, ago);
+    /// Returns the change of rate that impulses must supply at a contact that was hit `time_since_hit` s before.
+    pub(super) fn compute_required_rate_change(
+        &self,
+        place: usize,
+        time_since_hit: f64,
+        most: f64,
+    ) -> f64 {
+        let rate = self.compute_hit_rate(place, time_since_hit);
         // A contact that already separates must not be pulled back.
         rate + self.restitution(place).min(most) * rate.min(0.0)
     }
@@ -202,27 +212,31 @@ impl Contacts {
         }
     }
 
-    /// Returns the rate with which a contact was hit `ago` s before.
-    pub(super) fn hit_rate(&self, place: usize, ago: f64) -> f64 {
+    /// Returns the rate with which a contact was hit `time_since_hit` s before.
+    pub(super) fn compute_hit_rate(&self, place: usize, time_since_hit: f64) -> f64 {
         let impact = &self.at[place];
         match self.rests(place) {
             true => impact.rate,
-            false => impact.rate - ago * impact.acceleration,
+            false => impact.rate - time_since_hit * impact.acceleration,
         }
     }
 
-    /// Returns the impulses of touching contacts that were hit `ago` s before; `None` if no impulses keep the bodies
+    /// Returns the impulses of touching contacts that were hit `time_since_hit` s before; `None` if no impulses keep the bodies
     /// apart.
     ///
     /// Newton's law can add energy if contacts of different restitution touch at once, or if a separating contact is
     /// hit again. Two stops without play allow no restitution. In these cases the restitution of all contacts is
     /// limited to the largest admissible value. Without restitution, twice the energy changes by -P W P.
-    pub(super) fn solve_impulses(&self, touching: &[usize], ago: f64) -> Option<ContactForces> {
-        let delassus = self.delassus(touching);
+    pub(super) fn solve_impulses(
+        &self,
+        touching: &[usize],
+        time_since_hit: f64,
+    ) -> Option<ContactForces> {
+        let delassus = self.compute_delassus(touching);
         let with = |most: f64| {
             let stopped = touching.iter();
             let stopped: Vec<f64> = stopped
-                .map(|place| self.required_rate_change(*place, ago, most))
+                .map(|place| self.compute_required_rate_change(*place, time_since_hit, most))
                 .collect();
             let impulses = solve_complementarity(&delassus, &stopped);
             is_solution(&delassus, &stopped, &impulses).then_some(impulses)
@@ -232,7 +246,10 @@ impl Contacts {
             let rows = touching.iter().zip(&delassus).zip(impulses);
             let (mut gained, mut exchanged) = (0.0, 0.0);
             for ((place, row), impulse) in rows {
-                let (before, pushed) = (2.0 * self.hit_rate(*place, ago), dot(row, impulses));
+                let (before, pushed) = (
+                    2.0 * self.compute_hit_rate(*place, time_since_hit),
+                    dot(row, impulses),
+                );
                 gained += impulse * (before + pushed);
                 exchanged += impulse.abs() * (before.abs() + pushed.abs());
             }
@@ -277,26 +294,26 @@ impl Contacts {
     }
 
     /// Returns the rounding errors of the accelerations of the distances, without contact forces.
-    fn acceleration_roundings(&self, own: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
+    fn compute_acceleration_roundings(&self, own: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
         let degrees = own.program().degrees_of_freedom();
         let mut rates = vec![0.0; point.state.len()];
         own.rates(point, &mut rates);
         let accelerations = &rates[degrees..2 * degrees];
         (0..self.names.len())
-            .map(|place| DISTANCE_ROUNDING * self.rate_size(place, accelerations))
+            .map(|place| DISTANCE_ROUNDING * self.compute_rate_size(place, accelerations))
             .collect()
     }
 
     /// Closes the touching contacts that do not separate, or whose bodies move on together as two bodies that fall side
     /// by side.
-    fn close_resting(&mut self, touching: &[usize], flight: &Flight) {
+    fn close_resting(&mut self, touching: &[usize], flight: &FlightLimits) {
         self.closed.clear();
         self.redundant.clear();
         loop {
-            let forces = self.forces();
+            let forces = self.compute_forces();
             let even = |place: usize| {
                 flight.acceleration_roundings[place]
-                    + DISTANCE_ROUNDING * self.push_size(place, &self.closed, &forces)
+                    + DISTANCE_ROUNDING * self.compute_push_size(place, &self.closed, &forces)
             };
             let rests = |place: &&usize| {
                 let impact = &self.at[**place];
@@ -306,7 +323,7 @@ impl Contacts {
                     .sum();
                 let acceleration = impact.acceleration + pushed;
                 !self.closed.contains(place)
-                    && flight.is_none(**place, (impact.rate, acceleration), even(**place))
+                    && flight.is_rest(**place, (impact.rate, acceleration), even(**place))
                     && !self.is_blocked_by(&self.closed, **place)
             };
             let Some(next) = touching.iter().find(rests) else {

@@ -8,12 +8,12 @@ use crate::corners::TouchingContact;
 
 impl Contacts {
     /// Returns the contacts at which bodies touch at rest.
-    pub fn touching_contacts(
+    pub fn find_touching_contacts(
         &mut self,
         own: &mut Evaluator,
         point: Point<'_>,
     ) -> Vec<TouchingContact> {
-        let resting = self.resting();
+        let resting = self.list_resting();
         if resting.is_empty() {
             return Vec::new();
         }
@@ -31,13 +31,13 @@ impl Contacts {
     /// Determines the modes of contacts at rest after a jump. Contacts that the jump separates open; the others take
     /// the directions of their new slips.
     pub fn decide_after_jump(&mut self, own: &mut Evaluator, point: Point<'_>) {
-        let touching = self.resting();
+        let touching = self.list_resting();
         if touching.is_empty() {
             return;
         }
         self.note_closed_until(point.t);
         own.impacts(point, &mut self.at);
-        let small = self.rate_roundings(own, point.state);
+        let small = self.compute_rate_roundings(own, point.state);
         let is_still = |place: &usize| self.at[*place].rate.abs() <= small[*place];
         let still: Vec<usize> = touching.iter().copied().filter(is_still).collect();
         self.closed.clear();
@@ -47,9 +47,9 @@ impl Contacts {
     }
 
     /// Returns the largest rate of each distance that counts as zero.
-    pub(super) fn rate_roundings(&self, own: &Evaluator, state: &[f64]) -> Vec<f64> {
-        let rates = self.rate_magnitudes(own, state);
-        let sizes = (0..self.at.len()).map(|place| self.rate_size(place, &rates));
+    pub(super) fn compute_rate_roundings(&self, own: &Evaluator, state: &[f64]) -> Vec<f64> {
+        let rates = self.compute_rate_magnitudes(own, state);
+        let sizes = (0..self.at.len()).map(|place| self.compute_rate_size(place, &rates));
         sizes.map(|size| ROUNDING * size).collect()
     }
 

@@ -35,7 +35,9 @@ use crate::motion::FrictionChoice;
 pub(crate) use complementarity::{solve_complementarity, solve_rows};
 use drift::Drift;
 pub(crate) use drift::HeldDirection;
-pub(crate) use friction::{contact_problem, free_accelerations, rates_and_slips};
+pub(crate) use friction::{
+    build_contact_problem, collect_rates_and_slips, compute_free_accelerations,
+};
 pub(crate) use start::Start;
 use tangents::{ContactForces, Tangent};
 
@@ -89,7 +91,7 @@ pub(crate) struct Contacts {
     /// Work of contacts in the last impact, J.
     impact_work: f64,
     /// Impact at which the motion ended, and the reason.
-    overlap: Option<(usize, Overlap)>,
+    failure: Option<(usize, ContactFailure)>,
     /// Tangential motion of the contacts with friction.
     tangents: Vec<Tangent>,
     /// Times at which friction admits several motions.
@@ -100,7 +102,7 @@ pub(crate) struct Contacts {
 
 /// Reason why the motion ended at a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Overlap {
+enum ContactFailure {
     /// A step ended with a distance below zero.
     Penetrated,
     /// No impulses keep all touching bodies apart.
@@ -137,7 +139,7 @@ impl Contacts {
             recent: VecDeque::with_capacity(MAX_CONSECUTIVE_IMPACTS),
             has_restitution: true,
             impact_work: 0.0,
-            overlap: None,
+            failure: None,
             tangents: Vec::new(),
             choices: Vec::new(),
             has_no_forces: false,
@@ -213,7 +215,7 @@ impl Contacts {
         for (place, slot) in out[..self.names.len()].iter_mut().enumerate() {
             *slot += self.offset(place, point.t);
         }
-        let forces = self.forces();
+        let forces = self.compute_forces();
         for (place, force) in self.closed.iter().zip(&forces.normal) {
             out[*place] = force + self.allowances[*place];
         }
@@ -254,19 +256,19 @@ impl Contacts {
             return;
         }
         own.impacts(point, &mut self.at);
-        let forces = self.forces();
+        let forces = self.compute_forces();
         let degrees = own.program().degrees_of_freedom();
         self.add_forces(&self.closed, &forces, &mut rates[degrees..]);
     }
 
     /// Adds the rounding errors of the accelerations due to the forces of closed contacts.
     pub fn add_rate_roundings(&self, accelerations: &mut [f64]) {
-        let forces = self.forces();
+        let forces = self.compute_forces();
         let normal = self.closed.iter().zip(&forces.normal);
         let normal = normal.map(|(place, force)| (&self.at[*place].column, force));
         let tangential = self.closed.iter().zip(&forces.tangential);
         let tangential = tangential.filter_map(|(place, force)| {
-            let friction = self.friction_at(*place)?;
+            let friction = self.friction_values(*place)?;
             Some((&friction.column, force))
         });
         for (column, force) in normal.chain(tangential) {
@@ -277,25 +279,25 @@ impl Contacts {
     }
 
     /// Returns cause and remedy if the motion stopped because bodies overlap at an impact.
-    pub fn overlap(&self) -> Option<String> {
-        let (place, cause) = self.overlap?;
+    pub fn failure_message(&self) -> Option<String> {
+        let (place, cause) = self.failure?;
         let name = &self.names[place];
         Some(match cause {
-            Overlap::Penetrated => format!(
+            ContactFailure::Penetrated => format!(
                 "bodies overlap at the impact `{name}`: they are forced into each other, or impacts \
                  follow each other without end. Check constraints and prescribed motions at this \
                  contact, or use a stiff spring instead of the impact"
             ),
-            Overlap::NoImpulse => format!(
+            ContactFailure::NoImpulse => format!(
                 "no impulses separate the bodies at the impact `{name}`: other impacts, constraints or \
                  prescribed motions press them together. Use a stiff spring instead of one of them"
             ),
-            Overlap::NoModes => format!(
+            ContactFailure::NoModes => format!(
                 "no rest or sliding was found that satisfies both the contact friction at the impact `{name}` and the \
                  dry friction written with sign. Write one of them as a smooth law, such as tanh(v/v_0) with a small speed \
                  v_0"
             ),
-            Overlap::NoForces => format!(
+            ContactFailure::NoForces => format!(
                 "no contact forces satisfy the law of friction at the impact `{name}`: friction presses the \
                  sliding bodies together faster than the contact can part them (Painlevé's paradox). Lower the \
                  friction, or use a stiff spring and a friction force instead of the impact"
@@ -312,7 +314,7 @@ impl Contacts {
         (point, located): (Point<'_>, Point<'_>),
     ) {
         let accelerations: Vec<f64> = touching.iter().map(|i| self.at[*i].acceleration).collect();
-        let forces = solve_complementarity(&self.delassus(touching), &accelerations);
+        let forces = solve_complementarity(&self.compute_delassus(touching), &accelerations);
         let pushing = touching
             .iter()
             .zip(forces)
@@ -338,7 +340,8 @@ impl Contacts {
     fn offset_by_rounding(&mut self, touching: &[usize], at: (f64, &[f64])) {
         self.offset_distances(touching);
         for place in touching {
-            self.offsets[*place] = self.offsets[*place].max(self.distance_rounding(*place, at));
+            self.offsets[*place] =
+                self.offsets[*place].max(self.compute_distance_rounding(*place, at));
         }
     }
 
@@ -346,7 +349,7 @@ impl Contacts {
     /// state by rounding.
     pub fn offset_for_projection(&mut self, at: (f64, &[f64])) {
         for place in 0..self.names.len() {
-            let rounding = self.distance_rounding(place, at);
+            let rounding = self.compute_distance_rounding(place, at);
             let touches =
                 (0.0..rounding).contains(&(self.at[place].distance + self.offsets[place]));
             if touches && !self.closed.contains(&place) {
@@ -356,7 +359,7 @@ impl Contacts {
     }
 
     /// Returns the magnitude of the terms of a distance at the given coordinates.
-    fn distance_size(&self, place: usize, coordinates: &[f64]) -> f64 {
+    fn compute_distance_size(&self, place: usize, coordinates: &[f64]) -> f64 {
         let sizes = coordinates.iter().zip(&self.unmoved_sizes);
         let sizes = sizes.map(|(coordinate, unmoved)| coordinate.abs().max(*unmoved));
         let row = self.at[place].row.iter();
@@ -364,36 +367,36 @@ impl Contacts {
     }
 
     /// Returns the magnitude of the terms of the rate of a distance.
-    fn rate_size(&self, place: usize, rates: &[f64]) -> f64 {
+    fn compute_rate_size(&self, place: usize, rates: &[f64]) -> f64 {
         let terms = self.at[place].row.iter().zip(rates);
         terms.map(|(entry, rate)| (entry * rate).abs()).sum()
     }
 
     /// Returns the rounding error of a distance due to rounding of state and time.
-    fn distance_rounding(&self, place: usize, (t, state): (f64, &[f64])) -> f64 {
+    fn compute_distance_rounding(&self, place: usize, (t, state): (f64, &[f64])) -> f64 {
         let degrees = self.at[place].row.len();
         let rates = &state[degrees..2 * degrees];
-        self.position_rounding(place, state)
-            + DISTANCE_ROUNDING * t.abs() * self.rate_size(place, rates)
+        self.compute_position_rounding(place, state)
+            + DISTANCE_ROUNDING * t.abs() * self.compute_rate_size(place, rates)
     }
 
     /// Returns the rounding error of a distance due to rounding of the coordinates.
-    fn position_rounding(&self, place: usize, state: &[f64]) -> f64 {
+    fn compute_position_rounding(&self, place: usize, state: &[f64]) -> f64 {
         let degrees = self.at[place].row.len();
-        f64::MIN_POSITIVE + DISTANCE_ROUNDING * self.distance_size(place, &state[..degrees])
+        f64::MIN_POSITIVE + DISTANCE_ROUNDING * self.compute_distance_size(place, &state[..degrees])
     }
 
     /// Notes the magnitudes of the terms of the distances at a state.
     fn note_sizes(&mut self, state: &[f64]) {
         for place in 0..self.sizes.len() {
             let degrees = self.at[place].row.len();
-            let size = self.distance_size(place, &state[..degrees]);
+            let size = self.compute_distance_size(place, &state[..degrees]);
             self.sizes[place] = self.sizes[place].max(size);
         }
     }
 
     /// Returns the magnitudes of the rates of a state, at least the typical sizes of rates that have not moved.
-    fn rate_magnitudes(&self, own: &Evaluator, state: &[f64]) -> Vec<f64> {
+    fn compute_rate_magnitudes(&self, own: &Evaluator, state: &[f64]) -> Vec<f64> {
         let degrees = own.program().degrees_of_freedom();
         let rates = state[degrees..2 * degrees].iter().zip(&self.unmoved_rates);
         rates
@@ -407,7 +410,7 @@ impl Contacts {
         self.open_since.fill(point.t);
         own.impacts(point, &mut self.at);
         self.note_sizes(point.state);
-        let small = self.rate_roundings(own, point.state);
+        let small = self.compute_rate_roundings(own, point.state);
         let touches = |place: &usize| self.at[*place].distance <= ROUNDING * self.sizes[*place];
         let touching: Vec<usize> = (0..self.at.len())
             .filter(|place| touches(place) || self.closed.contains(place))
@@ -422,9 +425,9 @@ impl Contacts {
     }
 
     /// Records that the motion ends if there are no contact forces.
-    fn note_forces(&mut self, found: Result<(), (usize, Overlap)>) {
+    fn note_forces(&mut self, found: Result<(), (usize, ContactFailure)>) {
         if let Err(cause) = found {
-            self.overlap = Some(cause);
+            self.failure = Some(cause);
             self.has_no_forces = true;
         }
     }
@@ -444,9 +447,9 @@ impl Contacts {
     }
 
     /// Ends the motion because the modes of contacts contradict those of dry friction.
-    pub fn refuse_modes(&mut self) {
+    pub fn stop_at_contradiction(&mut self) {
         let first = self.closed.first().copied().unwrap_or(0);
-        self.note_forces(Err((first, Overlap::NoModes)));
+        self.note_forces(Err((first, ContactFailure::NoModes)));
     }
 
     /// Opens closed contacts that no longer push, and changes the modes of friction. The rounding errors at `located`
@@ -459,7 +462,7 @@ impl Contacts {
         own: &mut Evaluator,
         point: Point<'_>,
         located: Point<'_>,
-    ) -> Result<(), (usize, Overlap)> {
+    ) -> Result<(), (usize, ContactFailure)> {
         if self.closed.is_empty() {
             return Ok(());
         }
@@ -469,8 +472,13 @@ impl Contacts {
             return self.change_friction_modes(own, point, located);
         }
         let pulls = |(place, force): (&usize, &f64)| force + self.allowances[*place] < 0.0;
-        if self.closed.iter().zip(&self.forces().normal).any(pulls) {
-            let resting = self.resting();
+        if self
+            .closed
+            .iter()
+            .zip(&self.compute_forces().normal)
+            .any(pulls)
+        {
+            let resting = self.list_resting();
             self.close(own, &resting, (point, located));
         }
         Ok(())
@@ -478,7 +486,7 @@ impl Contacts {
 
     /// Records that the contacts at rest touch until the time `t` (s).
     fn note_closed_until(&mut self, t: f64) {
-        for place in self.resting() {
+        for place in self.list_resting() {
             self.open_since[place] = t;
         }
     }
@@ -501,9 +509,9 @@ impl Contacts {
     }
 
     /// Returns the forces of the closed contacts for which their distances do not accelerate.
-    fn forces(&self) -> ContactForces {
+    fn compute_forces(&self) -> ContactForces {
         match self.has_friction() {
-            true => self.friction_forces(),
+            true => self.compute_friction_forces(),
             false => ContactForces {
                 normal: self.solve_balance(&self.closed, |impact| impact.acceleration),
                 tangential: Vec::new(),
@@ -512,9 +520,9 @@ impl Contacts {
     }
 
     /// Returns the impulses that stop the closed contacts.
-    fn stopping(&self) -> ContactForces {
+    fn solve_normal_stopping_impulses(&self) -> ContactForces {
         match self.has_friction() {
-            true => self.stopping_impulses(),
+            true => self.compute_stopping_impulses(),
             false => ContactForces {
                 normal: self.solve_balance(&self.closed, |impact| impact.rate),
                 tangential: Vec::new(),
@@ -540,7 +548,7 @@ impl Contacts {
             .map(|place| quantity(&self.at[*place]))
             .collect();
         let rows: Vec<usize> = (0..places.len()).collect();
-        solve_rows(&self.delassus(places), &quantities, &rows)
+        solve_rows(&self.compute_delassus(places), &quantities, &rows)
     }
 
     /// Adds the effects of impulses at `places` to the rates.
@@ -553,7 +561,7 @@ impl Contacts {
     }
 
     /// Returns the magnitude of the terms with which impulses at other contacts change the rate of a distance.
-    fn push_size(&self, place: usize, others: &[usize], impulses: &ContactForces) -> f64 {
+    fn compute_push_size(&self, place: usize, others: &[usize], impulses: &ContactForces) -> f64 {
         let pushes = others.iter().zip(&impulses.normal);
         let pushes = pushes.map(|(other, impulse)| (&self.at[*other].column, impulse));
         let along = others.iter().zip(&impulses.tangential);
@@ -562,12 +570,12 @@ impl Contacts {
             Some((&friction.column, impulse))
         });
         let all = pushes.chain(along);
-        all.map(|(column, impulse)| impulse.abs() * self.rate_size(place, column))
+        all.map(|(column, impulse)| impulse.abs() * self.compute_rate_size(place, column))
             .sum()
     }
 
     /// Returns the Delassus matrix of some contacts.
-    fn delassus(&self, places: &[usize]) -> Vec<Vec<f64>> {
+    fn compute_delassus(&self, places: &[usize]) -> Vec<Vec<f64>> {
         let row = |place: &usize| {
             let entries = &self.at[*place].delassus;
             places.iter().map(|other| entries[*other]).collect()

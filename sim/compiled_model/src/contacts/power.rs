@@ -11,7 +11,7 @@ use super::tangents::ContactForces;
 impl Contacts {
     /// Returns the power (W) of the forces of the closed contacts.
     pub fn power(&mut self, own: &mut Evaluator, point: Point<'_>) -> f64 {
-        let terms = self.power_terms(own, point);
+        let terms = self.list_power_terms(own, point);
         terms
             .map(|(force, [rate, workless])| force * (rate - workless))
             .sum()
@@ -20,7 +20,7 @@ impl Contacts {
     /// Returns the rounding error (W) of the power of the closed contacts. A contact that moves at its workless rate
     /// has the rounding errors of both rates.
     pub fn power_rounding(&mut self, own: &mut Evaluator, point: Point<'_>) -> f64 {
-        let terms = self.power_terms(own, point);
+        let terms = self.list_power_terms(own, point);
         let roundings = terms.map(|(force, rates)| {
             ROUNDING_FACTOR * f64::EPSILON * (force * rates[0].abs().max(rates[1].abs())).abs()
         });
@@ -28,7 +28,7 @@ impl Contacts {
     }
 
     /// Returns each force of the closed contacts, with the rate of its distance or slip and its workless rate.
-    fn power_terms(
+    fn list_power_terms(
         &mut self,
         own: &mut Evaluator,
         point: Point<'_>,
@@ -37,7 +37,7 @@ impl Contacts {
             true => ContactForces::default(),
             false => {
                 own.impacts(point, &mut self.at);
-                self.forces()
+                self.compute_forces()
             }
         };
         let places = self.closed.iter();
@@ -60,15 +60,15 @@ impl Contacts {
     }
 
     /// Returns the work (J) of impulses at some contacts at the last point, without losses.
-    pub(super) fn work_of(&self, places: &[usize], impulses: &ContactForces) -> f64 {
+    pub(super) fn compute_work(&self, places: &[usize], impulses: &ContactForces) -> f64 {
         let normal = places.iter().zip(&impulses.normal);
         let normal = normal.map(|(place, impulse)| -impulse * self.at[*place].workless_rate);
         let slips = places.iter().zip(&impulses.tangential);
-        let slips = slips.map(|(place, impulse)| -impulse * self.workless_slip(*place));
+        let slips = slips.map(|(place, impulse)| -impulse * self.compute_workless_slip(*place));
         normal.chain(slips).sum()
     }
 
-    fn workless_slip(&self, place: usize) -> f64 {
+    fn compute_workless_slip(&self, place: usize) -> f64 {
         let friction = self.at[place].friction.as_ref();
         friction.map_or(0.0, |one| one.workless_slip)
     }

@@ -9,7 +9,7 @@ use super::{Contacts, ROUNDING, solve_rows};
 
 impl Contacts {
     /// Returns the closed contacts, then the redundant ones.
-    pub(super) fn resting(&self) -> Vec<usize> {
+    pub(super) fn list_resting(&self) -> Vec<usize> {
         [&self.closed[..], &self.redundant].concat()
     }
 
@@ -42,7 +42,9 @@ impl Contacts {
             &rates[degrees..2 * degrees],
         );
         let acceleration_sizes: Vec<f64> = (0..self.names.len())
-            .map(|place| self.rate_size(place, accelerations) + self.at[place].acceleration.abs())
+            .map(|place| {
+                self.compute_rate_size(place, accelerations) + self.at[place].acceleration.abs()
+            })
             .collect();
         let moves_along = |place: &usize| {
             let follows = |quantity: &dyn Fn(usize) -> f64, size: &dyn Fn(usize) -> f64| {
@@ -50,7 +52,7 @@ impl Contacts {
                 rest.abs() <= ROUNDING * all
             };
             follows(&|place| self.at[place].rate, &|place| {
-                self.rate_size(place, speeds)
+                self.compute_rate_size(place, speeds)
             }) && follows(&|place| self.at[place].acceleration, &|place| {
                 acceleration_sizes[place]
             })
@@ -73,14 +75,14 @@ impl Contacts {
         for place in resting {
             if self.closed.contains(place)
                 || self.at[*place].friction.is_some()
-                || self.parts_of(&self.closed, *place).is_some()
+                || self.find_coefficients(&self.closed, *place).is_some()
             {
                 continue;
             }
             let last = self.closed.len();
             self.closed.push(*place);
             let confines = |other: &usize| {
-                let parts = self.parts_of(&self.closed, *other);
+                let parts = self.find_coefficients(&self.closed, *other);
                 !self.closed.contains(other) && parts.is_some_and(|parts| parts[last] < 0.0)
             };
             if !resting.iter().any(confines) {
@@ -97,7 +99,9 @@ impl Contacts {
         quantity: &dyn Fn(usize) -> f64,
         size: &dyn Fn(usize) -> f64,
     ) -> (f64, f64) {
-        let parts = self.parts_of(&self.closed, place).unwrap_or_default();
+        let parts = self
+            .find_coefficients(&self.closed, place)
+            .unwrap_or_default();
         let start = (quantity(place), size(place));
         let closed = self.closed.iter().zip(&parts);
         closed.fold(start, |(rest, all), (other, part)| {
@@ -111,7 +115,7 @@ impl Contacts {
     /// Returns true if the distance of a contact depends on those of the closed contacts and falls when one of them
     /// grows.
     pub(super) fn is_blocked_by(&self, closed: &[usize], place: usize) -> bool {
-        let parts = self.parts_of(closed, place);
+        let parts = self.find_coefficients(closed, place);
         parts.is_some_and(|parts| parts.iter().any(|part| *part < 0.0))
     }
 
@@ -129,11 +133,11 @@ impl Contacts {
     /// Returns the redundant contacts whose distances depend on those of the closed contacts and are zero to rounding.
     fn find_redundant(&self, state: &[f64]) -> Vec<usize> {
         let degrees = self.at.first().map_or(0, |impact| impact.row.len());
-        let size = |place: usize| self.distance_size(place, &state[..degrees]);
+        let size = |place: usize| self.compute_distance_size(place, &state[..degrees]);
         let is_redundant = |place: &usize| {
             let distance = |place: usize| self.at[place].distance;
             let (rest, all) = self.compare_with_closed(*place, &distance, &size);
-            self.parts_of(&self.closed, *place).is_some() && rest.abs() <= ROUNDING * all
+            self.find_coefficients(&self.closed, *place).is_some() && rest.abs() <= ROUNDING * all
         };
         let known = self.redundant.iter().copied();
         known.filter(is_redundant).collect()
@@ -141,11 +145,11 @@ impl Contacts {
 
     /// Returns the coefficients of a contact's row in terms of the rows of closed contacts; `None` if it is
     /// independent.
-    fn parts_of(&self, closed: &[usize], place: usize) -> Option<Vec<f64>> {
+    fn find_coefficients(&self, closed: &[usize], place: usize) -> Option<Vec<f64>> {
         let column = closed.iter().map(|other| -self.at[*other].delassus[place]);
         let column: Vec<f64> = column.collect();
         let rows: Vec<usize> = (0..closed.len()).collect();
-        let mut parts = solve_rows(&self.delassus(closed), &column, &rows);
+        let mut parts = solve_rows(&self.compute_delassus(closed), &column, &rows);
         let terms = parts.iter().zip(&column);
         let follows: f64 = terms.map(|(part, entry)| -part * entry).sum();
         let whole = self.at[place].delassus[place];

@@ -22,7 +22,7 @@ impl Contacts {
         point: Point<'_>,
         places: &[usize],
     ) -> Vec<f64> {
-        let roundings = self.slip_roundings(own, point);
+        let roundings = self.compute_slip_roundings(own, point);
         for place in places {
             self.closed.push(*place);
             self.allowances[*place] = 0.0;
@@ -48,7 +48,7 @@ impl Contacts {
         places: &[usize],
     ) -> Vec<usize> {
         own.impacts(point, &mut self.at);
-        let forces = self.forces().normal;
+        let forces = self.compute_forces().normal;
         let pushing = self.closed.iter().zip(forces);
         let pushing = pushing.filter(|(place, force)| *force > 0.0 && places.contains(place));
         pushing.map(|(place, _)| *place).collect()

@@ -7,14 +7,14 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::impulses::MAX_UNSOLVED_RATE_FRACTION;
 use super::tangents::ContactForces;
-use super::{Contacts, DISTANCE_ROUNDING, Overlap};
+use super::{ContactFailure, Contacts, DISTANCE_ROUNDING};
 
 /// Number of impacts at one instant after which the bodies move on together. Speeds that shrink by 1 % in two impacts
 /// are at rounding level after 6500 impacts.
 const MAX_IMPACTS_AT_ONE_INSTANT: usize = 10_000;
 
 impl Contacts {
-    /// Changes the rates of a state by the impulses of contacts that touch and were hit `ago` s before, and of the
+    /// Changes the rates of a state by the impulses of contacts that touch and were hit `time_since_hit` s before, and of the
     /// contacts that these impulses close. Returns all contacts that touched, and the rounding error of the rate of
     /// each distance.
     pub(super) fn apply_impulses(
@@ -23,25 +23,25 @@ impl Contacts {
         (t, inputs): (f64, &[f64]),
         state: &mut [f64],
         mut touching: Vec<usize>,
-        mut ago: f64,
-    ) -> Result<(Vec<usize>, Vec<f64>), Overlap> {
+        mut time_since_hit: f64,
+    ) -> Result<(Vec<usize>, Vec<f64>), ContactFailure> {
         let degrees = own.program().degrees_of_freedom();
         let mut roundings = vec![0.0_f64; self.names.len()];
         own.impacts(Point { t, state, inputs }, &mut self.at);
         for count in 0..=MAX_IMPACTS_AT_ONE_INSTANT {
             self.has_restitution &= count < MAX_IMPACTS_AT_ONE_INSTANT;
-            let (hit, impulses) = self.solve_hit_together(&touching, ago)?;
-            self.impact_work += self.work_of(&hit, &impulses);
+            let (hit, impulses) = self.solve_hit_together(&touching, time_since_hit)?;
+            self.impact_work += self.compute_work(&hit, &impulses);
             let (coordinates, rates) = state[..2 * degrees].split_at_mut(degrees);
             let pushes: Vec<f64> = (0..self.names.len())
-                .map(|place| self.push_size(place, &hit, &impulses))
+                .map(|place| self.compute_push_size(place, &hit, &impulses))
                 .collect();
             for (place, rounding) in roundings.iter_mut().enumerate() {
-                let most = self.rate_size(place, rates) + pushes[place];
+                let most = self.compute_rate_size(place, rates) + pushes[place];
                 *rounding = rounding.max(DISTANCE_ROUNDING * most);
             }
             self.add_forces(&hit, &impulses, rates);
-            self.add_forces(&hit, &impulses.scaled(ago), coordinates);
+            self.add_forces(&hit, &impulses.scaled(time_since_hit), coordinates);
             own.impacts(Point { t, state, inputs }, &mut self.at);
             // Distances are located to rounding; these rounding errors must not accumulate.
             let mut below = touching.clone();
@@ -65,7 +65,7 @@ impl Contacts {
                 break;
             }
             touching.extend(more);
-            ago = 0.0;
+            time_since_hit = 0.0;
         }
         Ok((touching, roundings))
     }
@@ -77,24 +77,25 @@ impl Contacts {
     fn solve_hit_together(
         &self,
         touching: &[usize],
-        ago: f64,
-    ) -> Result<(Vec<usize>, ContactForces), Overlap> {
+        time_since_hit: f64,
+    ) -> Result<(Vec<usize>, ContactForces), ContactFailure> {
         let mut together = touching.to_vec();
         loop {
             let impulses = match self.has_friction() {
-                true => self.solve_friction_impulses(&together, ago),
-                false => self.solve_impulses(&together, ago),
+                true => self.solve_friction_impulses(&together, time_since_hit),
+                false => self.solve_impulses(&together, time_since_hit),
             };
-            let impulses = impulses.ok_or(Overlap::NoImpulse)?;
+            let impulses = impulses.ok_or(ContactFailure::NoImpulse)?;
             let count = together.len();
             let mut normal = impulses.normal.iter();
             let all = together.clone();
             together.retain(|place| {
                 let is_pushed = normal.next().is_some_and(|impulse| *impulse > 0.0);
-                let push = MAX_UNSOLVED_RATE_FRACTION * self.push_size(*place, &all, &impulses);
+                let push =
+                    MAX_UNSOLVED_RATE_FRACTION * self.compute_push_size(*place, &all, &impulses);
                 let leaves = self.has_restitution
                     && !self.rests(*place)
-                    && self.hit_rate(*place, ago) > push;
+                    && self.compute_hit_rate(*place, time_since_hit) > push;
                 !(is_pushed && leaves)
             });
             if together.len() == count {

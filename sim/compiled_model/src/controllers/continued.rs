@@ -157,7 +157,7 @@ impl Plant for Simulation<'_> {
         Simulation::change_inputs(self, inputs, trajectory)
     }
 
-    fn go_on(
+    fn continue_until(
         &mut self,
         asked: (f64, &[f64]),
         trajectory: &mut Trajectory,

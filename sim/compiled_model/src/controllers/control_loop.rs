@@ -42,7 +42,7 @@ pub(crate) trait Plant {
     ///
     /// # Errors
     /// Times that are not finite, not ascending or before the current time.
-    fn go_on(
+    fn continue_until(
         &mut self,
         asked: (f64, &[f64]),
         trajectory: &mut Trajectory,
@@ -72,19 +72,19 @@ impl<'t> LoopRecord<'t> {
     }
 
     /// Returns the rows of a call that are not written yet.
-    fn rest<'r>(&self, rows: &'r [f64]) -> &'r [f64] {
+    fn remaining_rows<'r>(&self, rows: &'r [f64]) -> &'r [f64] {
         &rows[self.trajectory.times.len() - self.first..]
     }
 
     fn complete_states(&mut self, controllers: &[Box<dyn SampledController + '_>]) {
         let rows = self.trajectory.times.len() - self.first;
         if self.states.len() < rows {
-            self.states.resize(rows, states_of(controllers));
+            self.states.resize(rows, collect_states(controllers));
         }
     }
 }
 
-fn states_of(controllers: &[Box<dyn SampledController + '_>]) -> Vec<f64> {
+fn collect_states(controllers: &[Box<dyn SampledController + '_>]) -> Vec<f64> {
     let states = controllers.iter().map(|controller| controller.states());
     states.collect::<Vec<_>>().concat()
 }
@@ -155,10 +155,12 @@ impl<'c> ControlLoop<'c> {
         progress: &mut dyn FnMut(f64),
     ) -> Result<Option<EarlyStop>, Error> {
         self.clock.check_sample_count((plant.time(), until))?;
-        while let Some(next) = self.find_next(plant.time(), (until, record.rest(rows))) {
-            let rest = record.rest(rows);
+        while let Some(next) =
+            self.find_next_instant(plant.time(), (until, record.remaining_rows(rows)))
+        {
+            let rest = record.remaining_rows(rows);
             let before = &rest[..rest.partition_point(|row| *row < next)];
-            let stop = self.go_on(plant, (next, before), record, progress)?;
+            let stop = self.continue_until(plant, (next, before), record, progress)?;
             if let Some(stop) = stop {
                 return Ok(Some(stop));
             }
@@ -168,14 +170,14 @@ impl<'c> ControlLoop<'c> {
             self.push_rows_at(plant, (next, rows), record);
         }
         self.push_rows_at(plant, (plant.time(), rows), record);
-        let rest = record.rest(rows);
+        let rest = record.remaining_rows(rows);
         let before = &rest[..rest.partition_point(|row| *row <= until)];
-        self.go_on(plant, (until, before), record, progress)
+        self.continue_until(plant, (until, before), record, progress)
     }
 
     /// Returns the time (s) of the next sample, output action or input change from `now` to `until`. Samples and
     /// actions that differ from a row or the end only by rounding are moved to it.
-    fn find_next(&self, now: f64, (until, rows): (f64, &[f64])) -> Option<f64> {
+    fn find_next_instant(&self, now: f64, (until, rows): (f64, &[f64])) -> Option<f64> {
         let within = self.clock.tolerance(now.abs().max(until.abs()));
         let instant = self.clock.next_instant().map(|instant| {
             let place = rows.partition_point(|row| *row < instant - within);
@@ -188,14 +190,14 @@ impl<'c> ControlLoop<'c> {
         next.filter(|next| *next <= until).map(|next| next.max(now))
     }
 
-    fn go_on(
+    fn continue_until(
         &self,
         plant: &mut dyn Plant,
         asked: (f64, &[f64]),
         record: &mut LoopRecord<'_>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Option<EarlyStop>, Error> {
-        let stop = plant.go_on(asked, record.trajectory, progress)?;
+        let stop = plant.continue_until(asked, record.trajectory, progress)?;
         record.complete_states(&self.controllers);
         Ok(stop)
     }
@@ -207,7 +209,11 @@ impl<'c> ControlLoop<'c> {
         (t, rows): (f64, &[f64]),
         record: &mut LoopRecord<'_>,
     ) {
-        for row in record.rest(rows).iter().take_while(|row| **row <= t) {
+        for row in record
+            .remaining_rows(rows)
+            .iter()
+            .take_while(|row| **row <= t)
+        {
             record.trajectory.times.push(*row);
             record.trajectory.states.push(plant.state().to_vec());
         }
@@ -255,7 +261,7 @@ impl<'c> ControlLoop<'c> {
         record: &mut LoopRecord<'_>,
     ) -> Result<Option<EarlyStop>, Error> {
         let before = self.held.clone();
-        self.hold_given(instant);
+        self.hold_external_inputs(instant);
         for action in self.clock.take_actions(instant) {
             let driven = self.controllers[action.controller].driven_inputs();
             for (place, value) in driven.iter().zip(action.values) {
@@ -280,7 +286,7 @@ impl<'c> ControlLoop<'c> {
     }
 
     /// Sets the external inputs to their values at a time (s), except inputs on which a controller output acts.
-    fn hold_given(&mut self, t: f64) {
+    fn hold_external_inputs(&mut self, t: f64) {
         let given = self.given.last_sample(t);
         for ((held, value), has_acted) in self.held.iter_mut().zip(given).zip(&self.has_acted) {
             if !has_acted {
@@ -291,10 +297,10 @@ impl<'c> ControlLoop<'c> {
 
     /// Changes the external inputs at the current time. Returns the inputs of the motion from then on. Driven inputs
     /// keep the values of the controller outputs.
-    pub fn give(&mut self, t: f64, inputs: HeldInputs) -> HeldInputs {
+    pub fn change_external_inputs(&mut self, t: f64, inputs: HeldInputs) -> HeldInputs {
         let before = self.current.evaluate(t).into_owned();
         self.given = inputs;
-        self.hold_given(t);
+        self.hold_external_inputs(t);
         self.current = self.given.with_held_step(t, &before, &self.held);
         self.current.clone()
     }
@@ -346,7 +352,7 @@ impl<'c> ControlLoop<'c> {
 
     /// Returns the states of all controllers.
     pub fn states(&self) -> Vec<f64> {
-        states_of(&self.controllers)
+        collect_states(&self.controllers)
     }
 
     /// Returns the names of the states of all controllers.

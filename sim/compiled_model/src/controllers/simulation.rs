@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::instance::Instance;
 use crate::motion::{ControllerStates, Motion};
 use crate::observers::Results;
-use crate::simulation::{Observed, Request, with_early_stop};
+use crate::simulation::{ObservedRequest, Request, with_early_stop};
 use crate::solver_options::SolverOptions;
 
 /// Controllers in the order of their states and inputs.
@@ -27,16 +27,16 @@ impl Instance<'_> {
         controllers: &mut Controllers<'_>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
-        self.simulate_with_controllers(Observed::new(request), controllers, progress)
+        self.simulate_with_controllers(ObservedRequest::new(request), controllers, progress)
     }
 
     /// Simulates like [`Instance::simulate_controlled`] and evaluates meters.
     pub(crate) fn simulate_with_controllers(
         &self,
-        Observed {
+        ObservedRequest {
             request,
             measurements,
-        }: Observed<'_>,
+        }: ObservedRequest<'_>,
         controllers: &mut Controllers<'_>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {

@@ -11,16 +11,22 @@ const ENERGY_ROUNDING: f64 = 1e-13;
 
 /// Applies the corner conditions at the surface `place`, with the contacts that push. Returns `None` if the momenta do
 /// not determine the rates beyond the surface, or if every choice of contacts is contradictory.
-pub(super) fn pass(point: &mut SidedPoint<'_>, place: usize, side: f64) -> Option<Passage> {
-    let jump = apply_with_contacts(point, |point| cross(point, place, side))?;
+pub(super) fn apply_corner_conditions(
+    point: &mut SidedPoint<'_>,
+    place: usize,
+    side: f64,
+) -> Option<Passage> {
+    let jump = apply_with_contacts(point, |point| {
+        cross_with_active_contacts(point, place, side)
+    })?;
     Some(jump.passage)
 }
 
 /// Changes the rates for given momenta, with the contacts that push.
 pub(super) fn keep_momenta(point: &mut SidedPoint<'_>, momenta: &DVector<f64>) -> Option<()> {
     apply_with_contacts(point, |point| {
-        let balance = point.balance()?;
-        let (rates, impulses) = balance.rates_at(momenta)?;
+        let balance = point.build_balance()?;
+        let (rates, impulses) = balance.solve_rates(momenta)?;
         point.set_rates(&rates);
         Some(balance.jump(Passage::Transmitted, impulses))
     })?;
@@ -34,10 +40,10 @@ pub(super) fn keep_momenta(point: &mut SidedPoint<'_>, momenta: &DVector<f64>) -
 /// Notation: v0 are the rates at unchanged momenta, D = dv/dlambda, a = dg/dq D, r is the rate of g at v0, and c is the
 /// change of the Hamiltonian at v0. The energy balance is c + r lambda + a lambda^2/2 = 0. The rate of g at the
 /// solutions is +-sqrt(r^2 - 2 a c); for transmission it keeps its sign.
-fn cross(point: &mut SidedPoint<'_>, place: usize, side: f64) -> Option<Jump> {
+fn cross_with_active_contacts(point: &mut SidedPoint<'_>, place: usize, side: f64) -> Option<Jump> {
     let first_side = point.inputs.len() - sides(point.evaluator);
     let direction = if side > 0.0 { 1.0 } else { -1.0 };
-    let near = point.balance()?;
+    let near = point.build_balance()?;
     let (arrival, row) = &near.values.surfaces[place];
     let row = DVector::from_column_slice(row);
     if direction * arrival <= 0.0 {
@@ -47,9 +53,9 @@ fn cross(point: &mut SidedPoint<'_>, place: usize, side: f64) -> Option<Jump> {
     let rates = point.rates();
     let own_rate = arrival - row.dot(&rates);
     let old_side = std::mem::replace(&mut point.inputs[first_side + place], side);
-    let far = point.balance()?;
+    let far = point.build_balance()?;
     let momenta = DVector::from_column_slice(&near.values.momenta);
-    let (free, impulses) = far.rates_at(&momenta)?;
+    let (free, impulses) = far.solve_rates(&momenta)?;
     let work = impulses.dot(&far.drift);
     let (column, reactions) = far.column(&row)?;
     let yielding = row.dot(&column);

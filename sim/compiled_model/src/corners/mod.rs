@@ -10,7 +10,7 @@ mod law;
 mod sided_point;
 
 use eomgen_codegen::program::evaluator::{CornerValues, Evaluator, Point};
-use law::{keep_momenta, pass, sides};
+use law::{apply_corner_conditions, keep_momenta, sides};
 use nalgebra::DVector;
 use sided_point::SidedPoint;
 pub(crate) use sided_point::TouchingContact;
@@ -47,14 +47,14 @@ pub(crate) struct CornerEnergy {
 }
 
 /// Surfaces that a motion crosses at one instant, and the sides of all surfaces before and after.
-struct Crossed {
+struct CrossedSurfaces {
     from: Vec<f64>,
     to: Vec<f64>,
     crossed: Vec<usize>,
 }
 
 /// Rates and sides after the motion has crossed surfaces at one instant.
-struct Outcome {
+struct CornerOutcome {
     state: Vec<f64>,
     sides: Vec<f64>,
 }
@@ -83,7 +83,7 @@ impl Corners {
     /// Updates the side of each surface. A state on a surface keeps the last side; without one it has the side of
     /// `above(0) = 0`.
     pub fn update(&mut self, (t, state): (f64, &[f64]), inputs: &[f64]) {
-        let values = self.functions((t, state), inputs);
+        let values = self.evaluate_functions((t, state), inputs);
         for (side, value) in self.sides.iter_mut().zip(values) {
             *side = side_of(value).or(*side).or(Some(0.0));
         }
@@ -91,8 +91,8 @@ impl Corners {
 
     /// Returns the energy (J) of a state, evaluated on the last sides of the motion.
     pub fn energy(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Option<f64> {
-        let functions = self.functions(at, inputs);
-        let sides = self.last_sides(&functions);
+        let functions = self.evaluate_functions(at, inputs);
+        let sides = self.determine_last_sides(&functions);
         Some(self.point(at, inputs, &sides).values()?.energy)
     }
 
@@ -106,15 +106,20 @@ impl Corners {
         contacts: &[TouchingContact],
     ) -> Option<CornerEnergy> {
         self.failure = None;
-        let Crossed { from, to, crossed } =
+        let CrossedSurfaces { from, to, crossed } =
             self.find_crossed((t_before, before), (t, state), [inputs_before, inputs]);
         if crossed.is_empty() {
             return None;
         }
         match self.find_outcome((t, state), inputs, (&from, &to, &crossed), contacts) {
             Ok(outcome) => {
-                let energy =
-                    self.energies((t, state), inputs, (&from, &crossed), &outcome, contacts);
+                let energy = self.compute_energies(
+                    (t, state),
+                    inputs,
+                    (&from, &crossed),
+                    &outcome,
+                    contacts,
+                );
                 state.copy_from_slice(&outcome.state);
                 let sides = &outcome.sides;
                 self.return_to_sides((t, state), inputs, (sides, &crossed), contacts);
@@ -143,7 +148,7 @@ impl Corners {
     }
 
     /// Returns the last sides of the motion; sides that are unknown follow from the signs of `functions`.
-    fn last_sides(&self, functions: &[f64]) -> Vec<f64> {
+    fn determine_last_sides(&self, functions: &[f64]) -> Vec<f64> {
         let known = self.sides.iter().zip(functions);
         known
             .map(|(side, function)| side.or(side_of(*function)).unwrap_or(0.0))
@@ -155,13 +160,13 @@ impl Corners {
         before: (f64, &[f64]),
         at: (f64, &[f64]),
         [inputs_before, inputs]: [&[f64]; 2],
-    ) -> Crossed {
-        let near = self.functions(before, inputs_before);
-        let beyond = self.functions(at, inputs);
-        let from = self.last_sides(&near);
-        let to = sides_at(&beyond, &from);
+    ) -> CrossedSurfaces {
+        let near = self.evaluate_functions(before, inputs_before);
+        let beyond = self.evaluate_functions(at, inputs);
+        let from = self.determine_last_sides(&near);
+        let to = determine_sides(&beyond, &from);
         let crossed = (0..to.len()).filter(|place| to[*place] != from[*place]);
-        Crossed {
+        CrossedSurfaces {
             crossed: crossed.collect(),
             from,
             to,
@@ -178,14 +183,14 @@ impl Corners {
         if inputs_before == inputs {
             return None;
         }
-        let values = self.functions((t, state), inputs);
-        let known = self.last_sides(&values);
-        let to = sides_at(&values, &known);
+        let values = self.evaluate_functions((t, state), inputs);
+        let known = self.determine_last_sides(&values);
+        let to = determine_sides(&values, &known);
         let mut near = self.point((t, state), inputs_before, &known);
-        let before = near.balance()?.values;
+        let before = near.build_balance()?.values;
         let mut far = self.point((t, state), inputs, &to);
-        let Some(balance) = far.balance() else {
-            self.failure = Some(singular(t));
+        let Some(balance) = far.build_balance() else {
+            self.failure = Some(singular_corner_message(t));
             state.fill(f64::NAN);
             return None;
         };
@@ -197,7 +202,7 @@ impl Corners {
         }
         let mut far = far.with_contacts(contacts);
         if keep_momenta(&mut far, &momenta).is_none() {
-            self.failure = Some(singular(t));
+            self.failure = Some(singular_corner_message(t));
             state.fill(f64::NAN);
             return None;
         }
@@ -216,22 +221,23 @@ impl Corners {
         inputs: &[f64],
         (from, to, crossed): (&[f64], &[f64], &[usize]),
         contacts: &[TouchingContact],
-    ) -> Result<Outcome, String> {
+    ) -> Result<CornerOutcome, String> {
         if crossed.len() > MAX_COINCIDENT {
             return Err(format!(
                 "{} surfaces at which the energies jump meet",
                 crossed.len()
             ));
         }
-        let mut found: Option<Outcome> = None;
-        for order in permutations(crossed) {
+        let mut found: Option<CornerOutcome> = None;
+        for order in list_permutations(crossed) {
             let point = self.point((t, state), inputs, from);
             let mut point = point.with_contacts(contacts);
             for place in order {
-                pass(&mut point, place, to[place]).ok_or_else(|| singular(t))?;
+                apply_corner_conditions(&mut point, place, to[place])
+                    .ok_or_else(|| singular_corner_message(t))?;
             }
             let first_side = point.inputs.len() - from.len();
-            let outcome = Outcome {
+            let outcome = CornerOutcome {
                 sides: point.inputs[first_side..].to_vec(),
                 state: point.state,
             };
@@ -243,17 +249,17 @@ impl Corners {
                 None => found = Some(outcome),
             }
         }
-        found.ok_or_else(|| singular(t))
+        found.ok_or_else(|| singular_corner_message(t))
     }
 
     /// Returns the energies at a corner. The work follows from the corner conditions: the change of T + V minus the
     /// change of the Hamiltonian, plus the change of the Hamiltonian at moving surfaces.
-    fn energies(
+    fn compute_energies(
         &mut self,
         at: (f64, &[f64]),
         inputs: &[f64],
         (from, crossed): (&[f64], &[usize]),
-        outcome: &Outcome,
+        outcome: &CornerOutcome,
         contacts: &[TouchingContact],
     ) -> Option<CornerEnergy> {
         let near = self.point(at, inputs, from).values()?;
@@ -294,12 +300,12 @@ impl Corners {
         let degrees = self.evaluator.program().degrees_of_freedom();
         for place in crossed {
             let direction = 2.0 * sides[*place] - 1.0;
-            let value = self.functions((t, state), inputs)[*place];
+            let value = self.evaluate_functions((t, state), inputs)[*place];
             if direction * value > 0.0 {
                 continue;
             }
             let point = self.point((t, state), inputs, sides);
-            let Some(balance) = point.with_contacts(contacts).balance() else {
+            let Some(balance) = point.with_contacts(contacts).build_balance() else {
                 return;
             };
             let row = DVector::from_column_slice(&balance.values.surfaces[*place].1);
@@ -321,7 +327,7 @@ impl Corners {
                 {
                     *entry = start + column * moved;
                 }
-                if direction * self.functions((t, state), inputs)[*place] > 0.0 {
+                if direction * self.evaluate_functions((t, state), inputs)[*place] > 0.0 {
                     break;
                 }
                 distance *= 2.0;
@@ -346,7 +352,7 @@ impl Corners {
     }
 
     /// Returns the values of the switching functions of the surfaces.
-    fn functions(&mut self, (t, state): (f64, &[f64]), inputs: &[f64]) -> Vec<f64> {
+    fn evaluate_functions(&mut self, (t, state): (f64, &[f64]), inputs: &[f64]) -> Vec<f64> {
         let inputs = [inputs, &vec![0.0; self.sides.len()]].concat();
         let inputs = &inputs[..];
         self.evaluator
@@ -381,7 +387,7 @@ impl Corners {
     }
 }
 
-impl Outcome {
+impl CornerOutcome {
     fn agrees(&self, other: &Self) -> bool {
         let size = self
             .state
@@ -394,7 +400,7 @@ impl Outcome {
 }
 
 /// Returns the sides at the given function values; on a surface the side in `otherwise`.
-fn sides_at(functions: &[f64], otherwise: &[f64]) -> Vec<f64> {
+fn determine_sides(functions: &[f64], otherwise: &[f64]) -> Vec<f64> {
     let sides = functions.iter().zip(otherwise);
     sides
         .map(|(function, side)| side_of(*function).unwrap_or(*side))
@@ -415,7 +421,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-fn singular(t: f64) -> String {
+fn singular_corner_message(t: f64) -> String {
     format!(
         "at t = {t:?} s the energies jump, and beyond a coordinate has no inertia, or constraints and closed contacts do \
          not determine the rates: give every coordinate inertia on both sides, and remove contacts that others replace"
@@ -423,7 +429,7 @@ fn singular(t: f64) -> String {
 }
 
 /// Returns all permutations of `places`.
-fn permutations(places: &[usize]) -> Vec<Vec<usize>> {
+fn list_permutations(places: &[usize]) -> Vec<Vec<usize>> {
     if places.len() <= 1 {
         return vec![places.to_vec()];
     }
@@ -432,7 +438,7 @@ fn permutations(places: &[usize]) -> Vec<Vec<usize>> {
         let mut rest = places.to_vec();
         rest.remove(index);
         all.extend(
-            permutations(&rest)
+            list_permutations(&rest)
                 .into_iter()
                 .map(|order| [vec![*first], order].concat()),
         );

@@ -59,7 +59,7 @@ impl SidedPoint<'_> {
     }
 
     /// Returns the equations for the rates with the present sides. `None` if the mass matrix is not positive definite.
-    pub(super) fn balance(&mut self) -> Option<Balance> {
+    pub(super) fn build_balance(&mut self) -> Option<Balance> {
         let degrees = self.degrees();
         let values = self.values()?;
         let mut mass = vec![0.0; degrees * degrees];
@@ -78,7 +78,7 @@ impl SidedPoint<'_> {
         let acting = acting.filter(|(_, (_, acts))| **acts);
         let acting =
             acting.map(|(place, (contact, _))| (Some(place), contact.drift, contact.row.clone()));
-        let rows = independent_rows(constraints.chain(acting).collect(), &mass);
+        let rows = select_independent_rows(constraints.chain(acting).collect(), &mass);
         let count = rows.len();
         let constraints = DMatrix::from_fn(count, degrees, |row, column| rows[row].2[column]);
         let mut matrix = DMatrix::zeros(degrees + count, degrees + count);
@@ -102,7 +102,7 @@ impl SidedPoint<'_> {
 type Row = (Option<usize>, f64, DVector<f64>);
 
 /// Returns the linearly independent rows.
-fn independent_rows(rows: Vec<Row>, mass: &DMatrix<f64>) -> Vec<Row> {
+fn select_independent_rows(rows: Vec<Row>, mass: &DMatrix<f64>) -> Vec<Row> {
     let inertia = mass.diagonal();
     let scaled = rows.iter().map(|(_, _, row)| {
         let entries = row.iter().zip(inertia.iter());
@@ -133,7 +133,10 @@ pub(super) struct Balance {
 
 impl Balance {
     /// Returns the rates at given momenta, and the impulses of the rows.
-    pub(super) fn rates_at(&self, momenta: &DVector<f64>) -> Option<(DVector<f64>, DVector<f64>)> {
+    pub(super) fn solve_rates(
+        &self,
+        momenta: &DVector<f64>,
+    ) -> Option<(DVector<f64>, DVector<f64>)> {
         self.solve(&(momenta - &self.constant_momenta), &-&self.drift)
     }
 

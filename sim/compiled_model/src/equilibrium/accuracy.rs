@@ -47,7 +47,7 @@ impl<'e> Accuracy<'e> {
         Self {
             equations,
             system,
-            kept: system.kept_directions(least),
+            kept: system.find_kept_directions(least),
             residuals: &system.rows * &equations.accelerations,
         }
     }
@@ -73,7 +73,7 @@ impl<'e> Accuracy<'e> {
         let limit = |row: usize| BALANCE_FACTOR * (allowed[row] + rounding) + floor[row];
         let exceeds = |row: &usize| remaining[*row].is_nan() || remaining[*row] > limit(*row);
         let row = (0..count).find(exceeds)?;
-        let row = self.system.main_acceleration(row, self.equations);
+        let row = self.system.find_main_acceleration(row, self.equations);
         Some(Inaccuracy::Unbalanced(row))
     }
 

@@ -78,7 +78,7 @@ impl HolonomicConstraints {
         evaluator: &mut Evaluator,
     ) -> Option<LinearisedConstraints> {
         let degrees = self.rows.degrees_of_freedom();
-        let derivatives = self.derivatives(at);
+        let derivatives = self.compute_derivatives(at);
         let mut scaled = derivatives.clone();
         for (mut column, size) in scaled.column_iter_mut().zip(&self.sizes) {
             column *= *size;
@@ -97,7 +97,7 @@ impl HolonomicConstraints {
             column *= observables[*multiplier];
         }
         Some(LinearisedConstraints {
-            by_unknowns: self.by_unknowns(&derivatives),
+            by_unknowns: self.differentiate_by_unknowns(&derivatives),
             largest_accelerations: DVector::from_iterator(
                 degrees,
                 accelerations.row_iter().map(|row| row.amax()),
@@ -108,7 +108,7 @@ impl HolonomicConstraints {
     }
 
     /// Returns the derivatives of the constraints with respect to the coordinates and modes at a point, SI.
-    fn derivatives(&mut self, at: &OperatingPoint) -> DMatrix<f64> {
+    fn compute_derivatives(&mut self, at: &OperatingPoint) -> DMatrix<f64> {
         let all = self.rows.derivatives(at.point());
         let degrees = self.rows.degrees_of_freedom();
         DMatrix::from_fn(self.places.len(), degrees, |row, column| {
@@ -116,7 +116,7 @@ impl HolonomicConstraints {
         })
     }
 
-    fn by_unknowns(&self, derivatives: &DMatrix<f64>) -> DMatrix<f64> {
+    fn differentiate_by_unknowns(&self, derivatives: &DMatrix<f64>) -> DMatrix<f64> {
         DMatrix::from_fn(self.places.len(), self.columns.len(), |row, column| {
             self.columns[column].map_or(0.0, |place| derivatives[(row, place)])
         })
@@ -127,8 +127,8 @@ impl HolonomicConstraints {
     pub fn project(&mut self, at: &mut OperatingPoint) -> bool {
         for _ in 0..MAX_CORRECTIONS {
             let residuals = self.rows.residuals(at.point());
-            let derivatives = self.derivatives(at);
-            let mut matrix = self.by_unknowns(&derivatives);
+            let derivatives = self.compute_derivatives(at);
+            let mut matrix = self.differentiate_by_unknowns(&derivatives);
             let mut wanted = DVector::zeros(self.places.len());
             for (row, place) in self.places.iter().enumerate() {
                 for (column, place) in self.columns.iter().enumerate() {

@@ -60,7 +60,7 @@ impl LinearisedEquations {
                 slope_size: 0.0,
             });
         };
-        let basis = constraints.allowed_changes(&units)?;
+        let basis = constraints.compute_allowed_changes(&units)?;
         let rows = constraints.rows(&sizes) * relative;
         let changes = units * basis;
         Some(ScaledSystem {
@@ -110,7 +110,7 @@ impl LinearisedEquations {
 
     /// Returns true if the slope of the accelerations along `way` is nearly the same in `there`, the equations at
     /// another point.
-    pub fn is_straight_to(&self, there: &Self, way: &DVector<f64>) -> bool {
+    pub fn has_equal_slope_at(&self, there: &Self, way: &DVector<f64>) -> bool {
         let rows = self.sizes.map(nonzero_or_one);
         let slope = |linear: &Self| (&linear.matrix * way).component_div(&rows);
         let (here, there) = (slope(self), slope(there));
@@ -119,7 +119,7 @@ impl LinearisedEquations {
 
     /// Returns the squared norm of accelerations, relative to the sizes of these equations. With constraints the norm
     /// is that of the kinetic energy, which does not depend on the choice of coordinates.
-    pub fn squared_norm(&self, accelerations: &DVector<f64>) -> f64 {
+    pub fn compute_squared_norm(&self, accelerations: &DVector<f64>) -> f64 {
         let relative = |row: usize| accelerations[row] / nonzero_or_one(self.sizes[row]);
         let squares = |rows: std::ops::Range<usize>| rows.map(relative).map(|own| own * own).sum();
         let Some(constraints) = &self.constraints else {
@@ -138,19 +138,19 @@ impl LinearisedEquations {
 
     /// Returns true if all accelerations are below the fraction `part` of their terms.
     pub fn is_below(&self, part: f64) -> bool {
-        self.rows_above(part).is_empty()
+        self.find_rows_above(part).is_empty()
     }
 
     /// Returns the rows of the accelerations that are at least the fraction `part` of their terms.
-    pub fn rows_above(&self, part: f64) -> Vec<usize> {
-        let rows = self.relative_accelerations().enumerate();
+    pub fn find_rows_above(&self, part: f64) -> Vec<usize> {
+        let rows = self.compute_relative_accelerations().enumerate();
         let above = rows.filter(|(_, own)| own.is_nan() || *own > part);
         above.map(|(row, _)| row).collect()
     }
 
     /// Returns the magnitude of an unknown that balances the largest acceleration of the search in one row; 0 if the
     /// unknown changes no acceleration.
-    pub fn balancing_size(&self, unknown: usize) -> f64 {
+    pub fn compute_balancing_size(&self, unknown: usize) -> f64 {
         let effects = self.matrix.column(unknown).into_iter();
         let rows = effects
             .zip(self.largest.iter())
@@ -161,16 +161,16 @@ impl LinearisedEquations {
     }
 
     /// Returns the row of the largest acceleration relative to its terms, and its value, SI.
-    pub fn largest_residual(&self) -> (usize, f64) {
+    pub fn find_largest_residual(&self) -> (usize, f64) {
         let worst = self
-            .relative_accelerations()
+            .compute_relative_accelerations()
             .enumerate()
             .max_by(|a, b| a.1.total_cmp(&b.1));
         worst.map_or((0, 0.0), |(row, _)| (row, self.accelerations[row]))
     }
 
     /// Returns the sign of the acceleration of a coordinate; 0 if the acceleration is rounding.
-    pub fn acceleration_sign(&self, coordinate: usize) -> f64 {
+    pub fn find_acceleration_sign(&self, coordinate: usize) -> f64 {
         let value = self.accelerations.get(coordinate).copied().unwrap_or(0.0);
         match self.terms.get(coordinate) {
             Some(size) if value.abs() > MAX_SIGNLESS_FRACTION * size => value.signum(),
@@ -178,7 +178,7 @@ impl LinearisedEquations {
         }
     }
 
-    fn relative_accelerations(&self) -> impl Iterator<Item = f64> {
+    fn compute_relative_accelerations(&self) -> impl Iterator<Item = f64> {
         let parts = self.accelerations.iter().zip(&self.terms);
         let scales = self.largest.iter().zip(&self.input_rows);
         parts
@@ -224,7 +224,7 @@ impl LinearisedConstraints {
 
     /// Returns an orthonormal basis of the changes of the unknowns, relative to `units`, that satisfy the linearised
     /// constraints; `None` if a number is not finite.
-    fn allowed_changes(&self, units: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    fn compute_allowed_changes(&self, units: &DMatrix<f64>) -> Option<DMatrix<f64>> {
         let held = &self.by_unknowns * units;
         let allowed = AllowedMotions::new(&row_by_row(&held), &vec![1.0; units.ncols()]).ok()?;
         Some(allowed.basis().clone())
@@ -274,7 +274,7 @@ pub(super) struct KeptDirections {
 
 impl ScaledSystem {
     /// Returns the directions with singular values above `least` times the largest.
-    pub fn kept_directions(&self, least: f64) -> KeptDirections {
+    pub fn find_kept_directions(&self, least: f64) -> KeptDirections {
         let (rows, columns) = self.matrix.shape();
         let mut kept = KeptDirections {
             left: DMatrix::zeros(rows, 0),
@@ -300,13 +300,13 @@ impl ScaledSystem {
     /// Returns a change of the unknowns in directions with singular values below `least` times the largest: the
     /// component of the unknowns' accelerations in these directions. `None` if changes of the unknowns remove the
     /// accelerations.
-    pub fn free_change(
+    pub fn find_free_change(
         &self,
         least: f64,
         equations: &LinearisedEquations,
         accelerations: &DVector<f64>,
     ) -> Option<DVector<f64>> {
-        let kept = self.kept_directions(least);
+        let kept = self.find_kept_directions(least);
         let residuals = &self.rows * &equations.accelerations;
         let left = &residuals - &kept.left * (kept.left.transpose() * &residuals);
         if left.amax() <= MAX_SIGNLESS_FRACTION * residuals.amax() {
@@ -319,7 +319,7 @@ impl ScaledSystem {
     }
 
     /// Returns the row of the acceleration with the largest coefficient in one of the equations.
-    pub fn main_acceleration(&self, row: usize, equations: &LinearisedEquations) -> usize {
+    pub fn find_main_acceleration(&self, row: usize, equations: &LinearisedEquations) -> usize {
         let factors = self.rows.row(row).into_iter();
         let parts = factors.zip(equations.accelerations.iter());
         let parts = parts.map(|(factor, acceleration)| (factor * acceleration).abs());

@@ -156,7 +156,7 @@ impl Instance<'_> {
         let depends_on_time =
             search.depends_on_time(&at) || !holding.find_moving_inputs(&at)?.is_empty();
         Ok(Equilibrium {
-            nonzero_rates: self.nonzero_rate_names(&at),
+            nonzero_rates: self.list_nonzero_rates(&at),
             residual,
             unknowns: search.names(),
             depends_on_time,
@@ -186,14 +186,17 @@ impl Instance<'_> {
             let directions = holding.find_cyclic_directions(at)?;
             let mut along = at.clone();
             self.project_rates(&mut along, &directions, &[]);
-            found.moving_rates = self.differing_rates(at, &along);
+            found.moving_rates = self.list_differing_rates(at, &along);
         }
         if holding.find_held_rates(at)?.is_some() {
             return Ok(found);
         }
         let mut search = Search::new(&holding, &[], self.find_unknowns(at, &[])?)?;
         let names = self.model().state_names();
-        for row in search.linearise(at)?.rows_above(MAX_ZERO_RATE_FRACTION) {
+        for row in search
+            .linearise(at)?
+            .find_rows_above(MAX_ZERO_RATE_FRACTION)
+        {
             let name = names[self.degrees() + row].clone();
             match row < self.degrees() {
                 true => found.accelerating_rates.push(name),
@@ -243,7 +246,7 @@ impl Instance<'_> {
         Ok(is_held.then(|| rates.split_off(self.degrees())))
     }
 
-    fn nonzero_rate_names(&self, at: &OperatingPoint) -> Vec<String> {
+    fn list_nonzero_rates(&self, at: &OperatingPoint) -> Vec<String> {
         let rates = self.degrees()..2 * self.degrees();
         let names = self.model().state_names();
         let moving = rates.filter(|place| at.state[*place] != 0.0);
@@ -367,7 +370,7 @@ impl Instance<'_> {
 
     /// Returns the names of the rates that differ between two states, relative to the largest rate
     /// of the same unit.
-    fn differing_rates(&self, one: &OperatingPoint, other: &OperatingPoint) -> Vec<String> {
+    fn list_differing_rates(&self, one: &OperatingPoint, other: &OperatingPoint) -> Vec<String> {
         let model = self.model();
         let (units, names) = (
             model.model().state_units(model.orders()),

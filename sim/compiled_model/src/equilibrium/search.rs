@@ -106,7 +106,7 @@ impl<'i, 'm> Search<'i, 'm> {
     ) -> Result<Self, Error> {
         let model = instance.model().model();
         let refused = |error| Error::from_model_error(model, error);
-        let scales = instance.natural_scales()?;
+        let scales = instance.compute_natural_scales()?;
         let coordinates = model.coordinate_ranges().map_err(refused)?;
         let inputs = model.input_ranges().map_err(refused)?;
         let range = |unknown: &Unknown| match unknown {
@@ -123,7 +123,7 @@ impl<'i, 'm> Search<'i, 'm> {
             (Some(scale), _) => scale,
             (None, Unknown::Setting(Setting::State(place))) => sizes[*place],
             (None, Unknown::Speed(direction)) => {
-                sizes[instance.degrees() + main_coordinate(&directions[*direction])]
+                sizes[instance.degrees() + find_main_coordinate(&directions[*direction])]
             }
             _ => 0.0,
         };
@@ -180,11 +180,11 @@ impl<'i, 'm> Search<'i, 'm> {
         &mut self,
         at: &mut OperatingPoint,
     ) -> Result<Option<LinearisedEquations>, Error> {
-        if !self.guards(at).contains(&0.0) {
+        if !self.evaluate_guards(at).contains(&0.0) {
             return Ok(None);
         }
         let here = self.linearise(at)?;
-        let Some((near, _)) = self.nudge(at, self.acceleration_signs(&here)) else {
+        let Some((near, _)) = self.displace_point(at, self.find_acceleration_signs(&here)) else {
             return Ok(None);
         };
         *at = near;
@@ -210,7 +210,7 @@ impl<'i, 'm> Search<'i, 'm> {
     /// Rejects an equilibrium on a switching surface at which a derivative has no finite limit, such as that of
     /// `sign(p)*sqrt(abs(p))` at 0. Within the error of the search beside the surface, its derivatives are rounding.
     fn check_surfaces(&mut self, at: &OperatingPoint) -> Result<(), Error> {
-        let guards = self.guards(at);
+        let guards = self.evaluate_guards(at);
         for place in 0..self.unknowns.len() {
             let size = self.typical[place];
             let mut change = DVector::zeros(self.unknowns.len());
@@ -219,7 +219,7 @@ impl<'i, 'm> Search<'i, 'm> {
                 search.move_unknowns(at, &change).0
             };
             let beside = displaced(self, SURFACE_FRACTION * size);
-            let beside = self.guards(&beside);
+            let beside = self.evaluate_guards(&beside);
             for (guard, (here, there)) in guards.iter().zip(beside).enumerate() {
                 let mut distance = -SURFACE_FRACTION * size * here / (there - here);
                 if *here == 0.0 || distance.is_nan() || distance.abs() > SURFACE_FRACTION * size {
@@ -227,7 +227,7 @@ impl<'i, 'm> Search<'i, 'm> {
                 }
                 for _ in 0..MAX_SURFACE_STEPS {
                     let on = displaced(self, distance);
-                    let value = self.guards(&on)[guard];
+                    let value = self.evaluate_guards(&on)[guard];
                     if value == 0.0 {
                         if self.try_linearised(&on).is_none() {
                             return Err(self.instance.no_linearisation_error(on.point()));
@@ -242,7 +242,7 @@ impl<'i, 'm> Search<'i, 'm> {
     }
 
     /// Evaluates the switching functions at a point.
-    fn guards(&mut self, at: &OperatingPoint) -> Vec<f64> {
+    fn evaluate_guards(&mut self, at: &OperatingPoint) -> Vec<f64> {
         let mut guards = vec![0.0; self.evaluator.guard_count()];
         self.evaluator.guards(at.point(), &mut guards);
         guards
@@ -270,11 +270,11 @@ impl<'i, 'm> Search<'i, 'm> {
                     let flat = flat.filter(|_| flat_nudges < MAX_FLAT_NUDGES);
                     if let Some(direction) = flat {
                         flat_nudges += 1;
-                        self.nudge(at, direction * 2.0_f64.powi(flat_nudges - 1))
+                        self.displace_point(at, direction * 2.0_f64.powi(flat_nudges - 1))
                     } else if nudges < MAX_NUDGES {
                         nudges += 1;
-                        let direction = self.acceleration_signs(&here);
-                        self.nudge(at, direction)
+                        let direction = self.find_acceleration_signs(&here);
+                        self.displace_point(at, direction)
                     } else {
                         None
                     }
@@ -304,7 +304,9 @@ impl<'i, 'm> Search<'i, 'm> {
                 Unknown::Setting(Setting::State(state)) => at.state[state].abs(),
                 Unknown::Setting(Setting::Input(input)) => {
                     // An input has no typical size; an input that balances nothing is rounding.
-                    at.inputs[input].abs().max(here.balancing_size(place))
+                    at.inputs[input]
+                        .abs()
+                        .max(here.compute_balancing_size(place))
                 }
                 _ => 0.0,
             };
@@ -345,8 +347,8 @@ impl<'i, 'm> Search<'i, 'm> {
             true => MAX_FINAL_HALVINGS,
             false => MAX_HALVINGS,
         };
-        let longest = self.step_fraction(step);
-        let before = here.squared_norm(&here.accelerations);
+        let longest = self.limit_step(step);
+        let before = here.compute_squared_norm(&here.accelerations);
         let mut bent = None;
         for halving in 0..halvings {
             if halving >= MAX_STRAIGHT_HALVINGS && bent.is_some() {
@@ -359,10 +361,10 @@ impl<'i, 'm> Search<'i, 'm> {
             let Some(there) = self.try_linearised(&trial) else {
                 continue;
             };
-            if here.squared_norm(&there.accelerations) >= before {
+            if here.compute_squared_norm(&there.accelerations) >= before {
                 continue;
             }
-            if here.is_straight_to(&there, &way) {
+            if here.has_equal_slope_at(&there, &way) {
                 return Some((trial, there));
             }
             bent.get_or_insert((trial, there));
@@ -371,7 +373,7 @@ impl<'i, 'm> Search<'i, 'm> {
     }
 
     /// Returns the largest fraction of a step that keeps every unknown within [`MAX_STEP_FRACTION`].
-    fn step_fraction(&self, step: &DVector<f64>) -> f64 {
+    fn limit_step(&self, step: &DVector<f64>) -> f64 {
         let parts = step.iter().zip(&self.scales);
         let part = |(change, scale): (&f64, &Option<f64>)| match scale {
             Some(scale) if *change != 0.0 => MAX_STEP_FRACTION * scale / change.abs(),
@@ -386,7 +388,7 @@ impl<'i, 'm> Search<'i, 'm> {
         if self.constraints.is_some() {
             return None;
         }
-        let signs = self.acceleration_signs(here);
+        let signs = self.find_acceleration_signs(here);
         let columns = here.matrix.column_iter().zip(signs.iter());
         if columns
             .into_iter()
@@ -395,13 +397,13 @@ impl<'i, 'm> Search<'i, 'm> {
             return Some(signs);
         }
         let accelerations = DVector::from_fn(self.unknowns.len(), |place, _| {
-            let coordinate = self.accelerated_coordinate(&self.unknowns[place]);
+            let coordinate = self.find_accelerated_coordinate(&self.unknowns[place]);
             let value = coordinate.and_then(|place| here.accelerations.get(place).copied());
             value.unwrap_or(0.0)
         });
         let change = here
             .scale(&self.scales)?
-            .free_change(least, here, &accelerations)?;
+            .find_free_change(least, here, &accelerations)?;
         let relative = DVector::from_fn(change.len(), |place, _| match self.typical[place] {
             0.0 => 0.0,
             size => change[place] / size,
@@ -411,28 +413,28 @@ impl<'i, 'm> Search<'i, 'm> {
     }
 
     /// Returns the coordinate whose acceleration moves an unknown.
-    fn accelerated_coordinate(&self, unknown: &Unknown) -> Option<usize> {
+    fn find_accelerated_coordinate(&self, unknown: &Unknown) -> Option<usize> {
         match unknown {
             Unknown::Setting(Setting::State(state)) => {
                 Some(*state).filter(|state| *state < self.instance.degrees())
             }
-            Unknown::Speed(direction) => Some(main_coordinate(&self.directions[*direction])),
+            Unknown::Speed(direction) => Some(find_main_coordinate(&self.directions[*direction])),
             Unknown::Setting(_) => None,
         }
     }
 
     /// Returns the signs of the accelerations of the unknowns; 0 for rounding, for first-order states and for inputs.
-    fn acceleration_signs(&self, here: &LinearisedEquations) -> DVector<f64> {
+    fn find_acceleration_signs(&self, here: &LinearisedEquations) -> DVector<f64> {
         let signs = self.unknowns.iter().map(|unknown| {
-            let coordinate = self.accelerated_coordinate(unknown);
-            coordinate.map_or(0.0, |place| here.acceleration_sign(place))
+            let coordinate = self.find_accelerated_coordinate(unknown);
+            coordinate.map_or(0.0, |place| here.find_acceleration_sign(place))
         });
         DVector::from_iterator(self.unknowns.len(), signs)
     }
 
     /// Returns a point displaced in a direction relative to the typical sizes. The search uses it if no step helps,
     /// because forces may have an extremum or be constant.
-    fn nudge(
+    fn displace_point(
         &mut self,
         at: &OperatingPoint,
         direction: DVector<f64>,
@@ -640,7 +642,7 @@ impl<'i, 'm> Search<'i, 'm> {
     }
 
     /// Returns the name and value of the coordinate or first-order state that belongs to a row of the equations.
-    fn row_quantity(&self, at: &OperatingPoint, row: usize) -> (String, f64) {
+    fn describe_row(&self, at: &OperatingPoint, row: usize) -> (String, f64) {
         let degrees = self.instance.model().program().degrees_of_freedom();
         let place = if row < degrees { row } else { row + degrees };
         let names = self.instance.model().state_names();
@@ -650,7 +652,7 @@ impl<'i, 'm> Search<'i, 'm> {
 
     fn not_found_error(&self, at: &OperatingPoint, here: &LinearisedEquations) -> Error {
         let states = self.instance.model().state_names();
-        let (row, left) = here.largest_residual();
+        let (row, left) = here.find_largest_residual();
         let at_the_end = self
             .unknowns
             .iter()
@@ -667,7 +669,7 @@ impl<'i, 'm> Search<'i, 'm> {
             }
             _ => String::new(),
         };
-        let (name, value) = self.row_quantity(at, row);
+        let (name, value) = self.describe_row(at, row);
         let reason = format!(
             "no equilibrium was found near the initial state: the search ended at {name} = {value:e}{range}, \
              with the acceleration or rate {left:e} (SI) of {name}; start nearer to an equilibrium ({}), or fix \
@@ -687,7 +689,7 @@ impl<'i, 'm> Search<'i, 'm> {
     ) -> Error {
         let reason = match found {
             Inaccuracy::Unbalanced(row) => {
-                let (name, value) = self.row_quantity(at, row);
+                let (name, value) = self.describe_row(at, row);
                 let left = here.accelerations[row];
                 format!(
                     "no equilibrium was found near the initial state: the search ended at {name} = {value:e}, with the \
@@ -695,7 +697,7 @@ impl<'i, 'm> Search<'i, 'm> {
                 )
             }
             Inaccuracy::Uncertain(unknown, error) => {
-                let (name, value) = self.unknown_quantity(at, self.unknowns[unknown]);
+                let (name, value) = self.describe_unknown(at, self.unknowns[unknown]);
                 format!(
                     "the equilibrium near {name} = {value:e} cannot be computed to its digits: rounding of the largest \
                      forces changes {name} by up to {error:.1e} (SI)"
@@ -711,7 +713,7 @@ impl<'i, 'm> Search<'i, 'm> {
     }
 
     /// Returns the name and value of an unknown.
-    fn unknown_quantity(&self, at: &OperatingPoint, unknown: Unknown) -> (String, f64) {
+    fn describe_unknown(&self, at: &OperatingPoint, unknown: Unknown) -> (String, f64) {
         let model = self.instance.model();
         let degrees = model.program().degrees_of_freedom();
         let state = |place: usize| (model.state_names()[place].clone(), at.state[place]);
@@ -722,14 +724,14 @@ impl<'i, 'm> Search<'i, 'm> {
                 (model.model().inputs[place].name.clone(), at.inputs[place])
             }
             Unknown::Speed(direction) => {
-                state(degrees + main_coordinate(&self.directions[direction]))
+                state(degrees + find_main_coordinate(&self.directions[direction]))
             }
         }
     }
 }
 
 /// Returns the coordinate that defines the speed along a cyclic direction.
-fn main_coordinate(direction: &[f64]) -> usize {
+fn find_main_coordinate(direction: &[f64]) -> usize {
     let place = direction.iter().position(|speed| *speed == 1.0);
     place.unwrap_or(0)
 }

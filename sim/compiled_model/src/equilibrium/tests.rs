@@ -24,21 +24,21 @@ weight = "-m*g*l*cos(theta)"
 motor = { on = "theta", value = "u" }
 "#;
 
-fn fixed(run: &Instance<'_>, fixed: &[(&str, f64)]) -> Result<Equilibrium, Error> {
+fn find_with_fixed_values(run: &Instance<'_>, fixed: &[(&str, f64)]) -> Result<Equilibrium, Error> {
     run.find_equilibrium(EquilibriumRequest {
         start_values: &[],
         fixed_values: fixed,
     })
 }
 
-fn from(run: &Instance<'_>, start: &[(&str, f64)]) -> Result<Equilibrium, Error> {
+fn find_from(run: &Instance<'_>, start: &[(&str, f64)]) -> Result<Equilibrium, Error> {
     run.find_equilibrium(EquilibriumRequest {
         start_values: start,
         fixed_values: &[],
     })
 }
 
-fn compiled(text: &str) -> CompiledModel {
+fn compile(text: &str) -> CompiledModel {
     CompiledModel::from_text("model.toml", text, Orders::Declared).expect("a model")
 }
 
@@ -50,19 +50,19 @@ fn model() -> CompiledModel {
 fn pendulum_equilibria_match_closed_forms() {
     let model = model();
     let run = model.with_declared_parameters().expect("an instance");
-    let found = fixed(&run, &[]).expect("an equilibrium");
+    let found = find_with_fixed_values(&run, &[]).expect("an equilibrium");
     assert!(
         (found.point.state[0] - std::f64::consts::PI).abs() < 1e-12,
         "{found:?}"
     );
     assert_eq!(found.point.inputs, [0.0]);
-    let held = fixed(&run, &[("theta", 0.3)]).expect("a torque");
+    let held = find_with_fixed_values(&run, &[("theta", 0.3)]).expect("a torque");
     let right = 2.0 * 9.81 * 0.5 * 0.3_f64.sin();
     assert!(
         (held.point.inputs[0] - right).abs() < 1e-12 * right,
         "{held:?}"
     );
-    let loaded = fixed(&run, &[("u", 5.0)]).expect("an angle");
+    let loaded = find_with_fixed_values(&run, &[("u", 5.0)]).expect("an angle");
     assert!(
         (loaded.point.state[0].sin() * 9.81 - 5.0).abs() < 1e-11,
         "{loaded:?}"
@@ -74,14 +74,14 @@ fn impossible_equilibria_and_invalid_requests_are_rejected() {
     let model = model();
     let run = model.with_declared_parameters().expect("an instance");
     for given in [&[("u", 20.0)][..], &[("theta", 0.3), ("u", 0.0)]] {
-        let found = fixed(&run, given);
+        let found = find_with_fixed_values(&run, given);
         assert!(
             matches!(found, Err(Error::Stopped { .. })),
             "{given:?}: {found:?}"
         );
     }
     for given in [("theta_dot", 1.0), ("thta", 0.0), ("u", f64::NAN)] {
-        let refused = fixed(&run, &[given]);
+        let refused = find_with_fixed_values(&run, &[given]);
         assert!(
             matches!(refused, Err(Error::Request(_))),
             "{given:?}: {refused:?}"
@@ -102,42 +102,42 @@ fn search_finds_nearer_equilibrium_of_pendulum() {
         (4.5, PI),
         (4.8, 2.0 * PI),
     ] {
-        let found = from(&run, &[("theta", start)]).expect("an equilibrium");
+        let found = find_from(&run, &[("theta", start)]).expect("an equilibrium");
         assert!(
             (found.point.state[0] - right).abs() < 1e-9,
             "{start}: {found:?}"
         );
     }
-    let found = from(&run, &[("theta", FRAC_PI_2)])
+    let found = find_from(&run, &[("theta", FRAC_PI_2)])
         .expect("an equilibrium")
         .point
         .state[0];
     assert!(found.abs() < 1e-9 || (found - PI).abs() < 1e-9, "{found}");
     // If the angle is measured from the horizontal, the slope of the force is exactly 0 at 0.
     let level = PENDULUM.replace("-m*g*l*cos(theta)", "m*g*l*sin(theta)");
-    let model = compiled(&level.replace("2.8", "0"));
+    let model = compile(&level.replace("2.8", "0"));
     let run = model.with_declared_parameters().expect("an instance");
-    let found = from(&run, &[]).expect("an equilibrium").point.state[0];
+    let found = find_from(&run, &[]).expect("an equilibrium").point.state[0];
     assert!((found + FRAC_PI_2).abs() < 1e-9, "it falls: {found}");
 }
 
 #[test]
 fn search_stays_within_declared_range() {
     let within = PENDULUM.replace("initial = 2.8", "range = [0.4, 4], initial = 1.2");
-    let model = compiled(&within);
+    let model = compile(&within);
     let run = model.with_declared_parameters().expect("an instance");
-    let found = from(&run, &[]);
+    let found = find_from(&run, &[]);
     assert!(
         matches!(found, Err(Error::Stopped { .. })),
         "0 is outside: {found:?}"
     );
-    let found = from(&run, &[("theta", 2.0)])
+    let found = find_from(&run, &[("theta", 2.0)])
         .expect("an equilibrium")
         .point
         .state[0];
     assert!((found - std::f64::consts::PI).abs() < 1e-9, "{found}");
     assert!(matches!(
-        from(&run, &[("theta", 5.0)]),
+        find_from(&run, &[("theta", 5.0)]),
         Err(Error::Request(_))
     ));
 }
@@ -154,9 +154,9 @@ fn search_crosses_kink_of_bilinear_spring() {
             "c = { value = 2, unit = \"N m\" }\np = { value = 3, unit = \"N m\" }\n[coordinates]",
         )
         .replace("2.8", "-1");
-    let model = compiled(&text);
+    let model = compile(&text);
     let run = model.with_declared_parameters().expect("an instance");
-    let found = from(&run, &[]).expect("an equilibrium").point.state[0];
+    let found = find_from(&run, &[]).expect("an equilibrium").point.state[0];
     assert!((found - 0.015).abs() < 1e-12, "{found}");
 }
 
@@ -188,11 +188,11 @@ motor = { on = "phi", value = "T + u" }
 
 #[test]
 fn governor_at_steady_speed_is_equilibrium() {
-    let model = compiled(GOVERNOR);
+    let model = compile(GOVERNOR);
     let run = model.with_declared_parameters().expect("an instance");
     // The torque at 8 rad/s is c omega; the angle of the bob satisfies cos(theta) = g/(l omega^2).
     let right = (9.81 / (0.4 * 64.0_f64)).acos();
-    let found = from(&run, &[("theta", 1.0)]).expect("steady running");
+    let found = find_from(&run, &[("theta", 1.0)]).expect("steady running");
     assert!((found.point.state[2] - 8.0).abs() < 1e-8, "{found:?}");
     assert!((found.point.state[1] - right).abs() < 1e-8, "{found:?}");
     assert!(found.unknowns.contains(&"phi_dot".to_owned()), "{found:?}");
@@ -262,9 +262,9 @@ fn equilibria_on_a_constraint_are_those_of_an_independent_coordinate() {
                         &format!("value = {stiffness}, unit = \"N/m\""),
                     )
                     .replace("value = 90", &format!("value = {start}"));
-                let model = compiled(&text);
+                let model = compile(&text);
                 let run = model.with_declared_parameters().expect("an instance");
-                from(&run, &[]).expect("an equilibrium").point.state
+                find_from(&run, &[]).expect("an equilibrium").point.state
             });
             let found = rod[0].atan2(-rod[1]);
             let difference = (found - angle[0]).rem_euclid(std::f64::consts::TAU);
@@ -278,8 +278,8 @@ fn equilibria_on_a_constraint_are_those_of_an_independent_coordinate() {
 }
 
 #[test]
-fn fixed_values_off_the_constraints_are_refused() {
-    let model = compiled(ROD);
+fn fixed_values_off_the_constraints_are_rejected() {
+    let model = compile(ROD);
     let run = model.with_declared_parameters().expect("an instance");
     let found = run.find_equilibrium(EquilibriumRequest {
         start_values: &[],
@@ -322,9 +322,11 @@ motor = { on = "theta", value = "T" }
 
 #[test]
 fn input_behind_an_actuator_lag_holds_a_fixed_coordinate() {
-    let model = compiled(&SLIDE.replace("value = 0, unit = \"N/m\"", "value = 40, unit = \"N/m\""));
+    let model = compile(&SLIDE.replace("value = 0, unit = \"N/m\"", "value = 40, unit = \"N/m\""));
     let run = model.with_declared_parameters().expect("an instance");
-    let found = fixed(&run, &[("x", 0.1)]).expect("an equilibrium").point;
+    let found = find_with_fixed_values(&run, &[("x", 0.1)])
+        .expect("an equilibrium")
+        .point;
     assert!((found.inputs[0] - 4.0).abs() < 1e-9, "{found:?}");
     assert!((found.state[4] - 4.0).abs() < 1e-9, "{found:?}");
 }
@@ -335,7 +337,7 @@ fn machine_that_friction_holds_is_at_an_equilibrium() {
         "theta = { unit = \"rad\", initial = 0.3 }",
         "theta = { unit = \"rad\" }",
     );
-    let model = compiled(&text);
+    let model = compile(&text);
     let run = model.with_declared_parameters().expect("an instance");
     for (force, is_held) in [(2.0, true), (3.5, false)] {
         let start = run
@@ -346,7 +348,7 @@ fn machine_that_friction_holds_is_at_an_equilibrium() {
             is_held,
             "{force} N"
         );
-        let found = from(&run, &[("u", force), ("z", force)]);
+        let found = find_from(&run, &[("u", force), ("z", force)]);
         assert_eq!(found.is_ok(), is_held, "{force} N: {found:?}");
         if let Ok(found) = found {
             assert_eq!(found.point.state[..1], [0.05]);
@@ -361,10 +363,10 @@ fn search_from_far_away_ends_at_the_equilibrium() {
                 a = { value = 2, unit = \"N/m\" }\nb = { value = 2e6, unit = \"N/m^3\" }\n\
                 [coordinates]\nx = { unit = \"m\" }\n[kinetic]\nT = \"1/2*m*dot(x)^2\"\n\
                 [potential]\nV = \"-1/2*a*x^2 + 1/4*b*x^4\"\n";
-    let model = compiled(text);
+    let model = compile(text);
     let run = model.with_declared_parameters().expect("an instance");
     for start in [2e-3, 1.0, 1e2, 1e4, 1e6, 1e8] {
-        let found = from(&run, &[("x", start)]).expect("an equilibrium");
+        let found = find_from(&run, &[("x", start)]).expect("an equilibrium");
         let x = found.point.state[0];
         assert!((x / 1e-3 - 1.0).abs() < 1e-12, "{start:e}: {x:e}");
     }
@@ -382,10 +384,10 @@ fn search_leaves_a_play() {
         ("1, unit = \"um\"", 1e-6),
         ("3, unit = \"m\"", 3.0),
     ] {
-        let model = compiled(&text.replace("50, unit = \"mm\"", play));
+        let model = compile(&text.replace("50, unit = \"mm\"", play));
         let run = model.with_declared_parameters().expect("an instance");
         for start in [0.0, 0.9, -0.9] {
-            let found = from(&run, &[("x", start * half_width)]).expect("an equilibrium");
+            let found = find_from(&run, &[("x", start * half_width)]).expect("an equilibrium");
             let right = -half_width - 2.0 * 9.81 / 300.0;
             let x = found.point.state[0];
             assert!((x / right - 1.0).abs() < 1e-12, "{play}, {start}: {x}");
@@ -419,20 +421,24 @@ drive = { on = "motor", value = "T" }
 
 #[test]
 fn fixed_rate_of_a_steady_motion_determines_the_others() {
-    let model = compiled(GEAR);
+    let model = compile(GEAR);
     let run = model.with_declared_parameters().expect("an instance");
     for values in [
         &[("load_dot", 30.0)][..],
         &[("motor_dot", 150.0)],
         &[("load_dot", 30.0), ("motor_dot", 150.0)],
     ] {
-        let found = fixed(&run, values).expect("a steady motion").point;
+        let found = find_with_fixed_values(&run, values)
+            .expect("a steady motion")
+            .point;
         assert_eq!(found.state[2..], [150.0, 30.0], "{values:?}");
         assert!((found.inputs[0] - 3.0).abs() < 1e-9, "{found:?}");
     }
-    let stopped = fixed(&run, &[("load_dot", 0.0)]).expect("rest").point;
+    let stopped = find_with_fixed_values(&run, &[("load_dot", 0.0)])
+        .expect("rest")
+        .point;
     assert_eq!(stopped.state[2..], [0.0, 0.0]);
-    let refused = fixed(&run, &[("load_dot", 30.0), ("motor_dot", 140.0)]);
+    let refused = find_with_fixed_values(&run, &[("load_dot", 30.0), ("motor_dot", 140.0)]);
     let message = refused.expect_err("no steady motion").to_string();
     assert!(
         message.contains("no steady motion has this rate"),
@@ -471,9 +477,9 @@ fn state_of_hysteresis_keeps_its_value_at_equilibrium() {
         let text = BRISTLE
             .replace("n = { value = 1 }", &format!("n = {{ value = {size:e} }}"))
             .replace("initial = 1,", &format!("initial = {:e},", 1.0 / size));
-        let model = compiled(&text);
+        let model = compile(&text);
         let run = model.with_declared_parameters().expect("an instance");
-        let found = from(&run, &[("u", 5.0)]).expect("an equilibrium");
+        let found = find_from(&run, &[("u", 5.0)]).expect("an equilibrium");
         assert!(
             (size * found.point.state[2] - 1.0).abs() < 1e-14,
             "{size}: {found:?}"
@@ -488,9 +494,9 @@ fn state_of_hysteresis_keeps_its_value_at_equilibrium() {
 
 #[test]
 fn state_of_hysteresis_balances_the_load_of_a_free_mass() {
-    let model = compiled(&BRISTLE.replace("1/2*k*x^2", "0*k*x^2"));
+    let model = compile(&BRISTLE.replace("1/2*k*x^2", "0*k*x^2"));
     let run = model.with_declared_parameters().expect("an instance");
-    let found = from(&run, &[("u", 2.5)]).expect("an equilibrium");
+    let found = find_from(&run, &[("u", 2.5)]).expect("an equilibrium");
     assert!((found.point.state[2] - 2.5).abs() < 1e-12, "{found:?}");
     assert_eq!(found.unknowns, ["x", "z"]);
 }
@@ -498,7 +504,7 @@ fn state_of_hysteresis_balances_the_load_of_a_free_mass() {
 /// The tyres of the car just touch the ground at the start; on this surface the slope of their force is one-sided.
 #[test]
 fn car_settles_on_tyres_that_touch_at_the_start() {
-    let model = compiled(
+    let model = compile(
         r#"
 [model]
 name = "car"
@@ -529,7 +535,7 @@ tyres = "1/2*k_t*(min(z_f, 0)^2 + min(z_r, 0)^2)"
 "#,
     );
     let run = model.with_declared_parameters().expect("an instance");
-    let found = fixed(&run, &[]).expect("an equilibrium");
+    let found = find_with_fixed_values(&run, &[]).expect("an equilibrium");
     let weight = 320.0 * 9.81;
     let wheel = 35.0 * 9.81;
     for (wheel_place, share) in [(2, 1.3 / 2.4), (3, 1.1 / 2.4)] {

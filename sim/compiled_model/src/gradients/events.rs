@@ -17,7 +17,7 @@ const MAX_JUMP_DIFFERENCE_FRACTION: f64 = 1e-6;
 
 impl BackwardPass<'_, '_> {
     /// Propagates the adjoint backwards over an event, by the transposed saltation matrix.
-    pub fn follow_event(&mut self, place: usize) -> Result<(), Error> {
+    pub fn propagate_over_event(&mut self, place: usize) -> Result<(), Error> {
         let recorded = self.recorded;
         let part = self.part(place);
         let after = recorded.recording.modes_after(place);
@@ -49,7 +49,7 @@ impl BackwardPass<'_, '_> {
         let mut by_delay = -scalar_product(&self.adjoint, &to);
         let row = recorded.inputs().last_sample_index(near.0);
         if let Some(impact) = impact {
-            let degrees = self.rate_places();
+            let degrees = self.rate_indices();
             let weights = self.adjoint[degrees.clone()].to_vec();
             let (jump, by_time) = self
                 .evaluator
@@ -71,7 +71,7 @@ impl BackwardPass<'_, '_> {
     }
 
     /// Returns the indices of the rates of the degrees of freedom in the state.
-    pub fn rate_places(&self) -> Range<usize> {
+    pub fn rate_indices(&self) -> Range<usize> {
         let degrees = self
             .recorded
             .instance
@@ -83,9 +83,9 @@ impl BackwardPass<'_, '_> {
 
     /// Returns the index of the impact whose jump equals the jump of the rates.
     fn find_impact(&mut self, part: &Part, given: &[f64]) -> Result<usize, Error> {
-        let degrees = self.rate_places();
+        let degrees = self.rate_indices();
         let at = (part.start.0, &part.start.1[..]);
-        let jumps = self.evaluator.impact_jumps(at, given)?;
+        let jumps = self.evaluator.compute_impact_jumps(at, given)?;
         let pairs = part.end.1[degrees.clone()]
             .iter()
             .zip(&part.start.1[degrees]);

@@ -119,7 +119,7 @@ impl<'m> Instance<'m> {
             Ok(()) => motion,
             Err(error) => {
                 let reached = (span.0, &motion.trajectory.final_state[..]);
-                let stop = run.early_stop(self, &error, reached);
+                let stop = run.describe_early_stop(self, &error, reached);
                 with_early_stop(motion, stop)?
             }
         };

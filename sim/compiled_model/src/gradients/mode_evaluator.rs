@@ -207,7 +207,7 @@ impl ModeEvaluator {
             }
             let rates = self.held.iter().map(|row| -self.sliding[*row].rate);
             let rates = DVector::from_iterator(self.held.len(), rates);
-            let change = self.held_matrix().lu().solve(&rates);
+            let change = self.differentiate_held_rates().lu().solve(&rates);
             let change = change.ok_or_else(|| {
                 Error::Request(format!(
                     "no gradient of the trajectory: at t = {t:?} s, surfaces that hold the motion depend on each other"
@@ -224,7 +224,7 @@ impl ModeEvaluator {
     }
 
     /// Returns the derivatives of the rates of the held functions (rows) with respect to the sides of their surfaces.
-    fn held_matrix(&self) -> DMatrix<f64> {
+    fn differentiate_held_rates(&self) -> DMatrix<f64> {
         DMatrix::from_fn(self.held.len(), self.held.len(), |row, column| {
             self.sliding[self.held[row]].by_sides[self.held[column]]
         })
@@ -296,7 +296,11 @@ impl ModeEvaluator {
         let first = self.model_inputs + self.first_sliding;
         let by_sides = self.held.iter().map(|row| sum.inputs[first + row]);
         let by_sides = DVector::from_iterator(self.held.len(), by_sides);
-        let multipliers = self.held_matrix().transpose().lu().solve(&by_sides);
+        let multipliers = self
+            .differentiate_held_rates()
+            .transpose()
+            .lu()
+            .solve(&by_sides);
         let multipliers = multipliers.unwrap_or_else(|| DVector::repeat(self.held.len(), f64::NAN));
         let inputs = &self.inputs;
         self.guard_rates_by
@@ -364,7 +368,7 @@ impl ModeEvaluator {
     }
 
     /// Returns, for each impact, the jump of the rates by this impact alone, one number per degree of freedom.
-    pub fn impact_jumps(
+    pub fn compute_impact_jumps(
         &mut self,
         (t, state): (f64, &[f64]),
         inputs: &[f64],

@@ -18,7 +18,7 @@ use crate::projection::LARGE_RATE_PER_S;
 impl BackwardPass<'_, '_> {
     /// Converts the derivatives with respect to the consistent initial state into derivatives with respect to the
     /// requested one.
-    pub fn follow_corrections(&mut self) -> Result<(), Error> {
+    pub fn propagate_over_corrections(&mut self) -> Result<(), Error> {
         let recorded = self.recorded;
         if recorded.motion.initial_changes.is_empty() {
             return Ok(());
@@ -35,7 +35,7 @@ impl BackwardPass<'_, '_> {
         let by_rate = rate.map(|place| self.parameters[place]);
         let mut corrections = Corrections::new(instance)?;
         for state in states.iter().rev() {
-            self.follow_correction((t, state), &mut corrections)?;
+            self.propagate_over_correction((t, state), &mut corrections)?;
         }
         // The corrections do not depend on the stabilisation rate.
         if let (Some(place), Some(by_rate)) = (rate, by_rate) {
@@ -52,7 +52,7 @@ impl BackwardPass<'_, '_> {
 
     /// Converts the derivatives with respect to the state after a correction into derivatives with respect to the state
     /// before it.
-    fn follow_correction(
+    fn propagate_over_correction(
         &mut self,
         at: (f64, &[f64]),
         corrections: &mut Corrections,
@@ -60,7 +60,7 @@ impl BackwardPass<'_, '_> {
         let inputs = self.recorded.inputs();
         let (given, row) = (inputs.evaluate(at.0), inputs.last_sample_index(at.0));
         let adjoint = self.adjoint.clone();
-        for (evaluator, weights) in corrections.weigh(&adjoint) {
+        for (evaluator, weights) in corrections.compute_weights(&adjoint) {
             let mut products = evaluator.zeros();
             evaluator.pull_back_rates(at, &given, &weights, &mut products)?;
             for (sums, parts) in [
@@ -106,7 +106,10 @@ impl Corrections {
     }
 
     /// Returns, for each evaluator, the weights of its rates in the product of `adjoint` with a correction.
-    fn weigh(&mut self, adjoint: &[f64]) -> impl Iterator<Item = (&mut ModeEvaluator, Vec<f64>)> {
+    fn compute_weights(
+        &mut self,
+        adjoint: &[f64],
+    ) -> impl Iterator<Item = (&mut ModeEvaluator, Vec<f64>)> {
         let (own, large, degrees) = (self.stabilisation_rate, LARGE_RATE_PER_S, self.degrees);
         let mut weights = [(); 3].map(|()| vec![0.0; adjoint.len()]);
         for row in 0..degrees {

@@ -20,8 +20,8 @@ pub(super) fn pull_back(
     for place in (0..recorded.recording.parts.len()).rev() {
         let part = &recorded.recording.parts[place];
         match part.kind {
-            PartKind::Step => pass.follow_step(place, weights)?,
-            PartKind::Crossing | PartKind::Jump => pass.follow_event(place)?,
+            PartKind::Step => pass.propagate_over_step(place, weights)?,
+            PartKind::Crossing | PartKind::Jump => pass.propagate_over_event(place)?,
         }
         let sums = pass.adjoint.iter().chain(&pass.parameters);
         if sums.into_iter().any(|number| !number.is_finite()) {
@@ -119,7 +119,7 @@ impl<'r, 'm> BackwardPass<'r, 'm> {
     }
 
     /// Propagates the adjoint backwards over a step, including the samples inside it.
-    fn follow_step(&mut self, place: usize, weights: &SampleWeights) -> Result<(), Error> {
+    fn propagate_over_step(&mut self, place: usize, weights: &SampleWeights) -> Result<(), Error> {
         let part = self.part(place);
         self.evaluator.set_modes(&part.modes);
         let times = &self.recorded.motion.trajectory.times;
@@ -130,13 +130,13 @@ impl<'r, 'm> BackwardPass<'r, 'm> {
             self.samples = sample;
             let t = times[sample];
             if t >= end {
-                let by_state = self.follow_sample(sample, part, &part.end.1, weights)?;
+                let by_state = self.propagate_over_sample(sample, part, &part.end.1, weights)?;
                 add(&mut self.adjoint, &by_state);
                 continue;
             }
             self.repeat(part, t - start)?;
             let state = self.step.end().to_vec();
-            let mut inside = self.follow_sample(sample, part, &state, weights)?;
+            let mut inside = self.propagate_over_sample(sample, part, &state, weights)?;
             if inside.iter().any(|number| *number != 0.0) {
                 self.pull_back_step(part, &mut inside)?;
                 add(&mut at_start, &inside);
@@ -185,7 +185,7 @@ impl<'r, 'm> BackwardPass<'r, 'm> {
 
     /// Adds the derivatives of a sample with respect to parameters and inputs, and returns those with respect to its
     /// state.
-    fn follow_sample(
+    fn propagate_over_sample(
         &mut self,
         sample: usize,
         part: &Part,
@@ -221,11 +221,11 @@ impl<'r, 'm> BackwardPass<'r, 'm> {
             recorded.recording.parts.first(),
         ) {
             self.samples = sample;
-            let by_state = self.follow_sample(sample, first, &recorded.initial, weights)?;
+            let by_state = self.propagate_over_sample(sample, first, &recorded.initial, weights)?;
             add(&mut self.adjoint, &by_state);
         }
-        self.follow_start()?;
-        self.follow_corrections()?;
+        self.propagate_to_requested_start()?;
+        self.propagate_over_corrections()?;
         let first = recorded.recording.parts.first();
         let is_held = first.is_some_and(|first| first.modes.contains(&SurfaceMode::Held));
         for row in &mut self.inputs {

@@ -23,7 +23,7 @@ impl BackwardPass<'_, '_> {
     /// Converts the derivatives with respect to the consistent initial state into derivatives with respect to the given
     /// one. A simulation starts at the nearest consistent state in the norm of the kinetic energy. The correction is
     /// along M^-1 A^T, for coordinates and for rates.
-    pub fn follow_start(&mut self) -> Result<(), Error> {
+    pub fn propagate_to_requested_start(&mut self) -> Result<(), Error> {
         let recorded = self.recorded;
         let first = recorded.recording.parts.first();
         let Some(first) =
@@ -38,7 +38,7 @@ impl BackwardPass<'_, '_> {
         let mass = Cholesky::new(self.evaluator.mass_matrix(at));
         let mass =
             mass.ok_or_else(|| no_gradient(at.0, "the mass matrix is not positive definite"))?;
-        let degrees = self.rate_places().start;
+        let degrees = self.rate_indices().start;
         let mut directions = DMatrix::zeros(at.1.len(), conditions.len());
         let mut rows = DMatrix::zeros(conditions.len(), at.1.len());
         for (place, condition) in conditions.iter().enumerate() {
@@ -77,7 +77,7 @@ impl BackwardPass<'_, '_> {
         at: (f64, &[f64]),
         given: &[f64],
     ) -> Result<Vec<Condition>, Error> {
-        let degrees = self.rate_places().start;
+        let degrees = self.rate_indices().start;
         let constraints = &self.recorded.instance.model().model().constraints;
         let [residuals, rates] = self.evaluator.differentiate_constraints(at, given)?;
         let mut conditions = Vec::new();

@@ -336,7 +336,7 @@ impl Meter {
                 {
                     return;
                 }
-                let place = polynomial.maximum_near(bounds.largest_place);
+                let place = polynomial.find_maximum_near(bounds.largest_place);
                 if self
                     .greatest
                     .is_none_or(|greatest| polynomial.value(place) > greatest)

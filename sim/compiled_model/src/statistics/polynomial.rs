@@ -186,7 +186,7 @@ impl Polynomial {
     }
 
     /// Returns the position of the maximum next to a grid point.
-    pub fn maximum_near(&self, part: f64) -> f64 {
+    pub fn find_maximum_near(&self, part: f64) -> f64 {
         let points = (GRID_POINTS_PER_DEGREE * self.degree()) as f64;
         let angle = (1.0 - 2.0 * part).clamp(-1.0, 1.0).acos();
         let place = |angle: f64| 0.5 * (1.0 - angle.cos());
@@ -270,7 +270,7 @@ mod tests {
                 largest_place,
                 ..
             } = polynomial.bounds();
-            let found = polynomial.value(polynomial.maximum_near(largest_place));
+            let found = polynomial.value(polynomial.find_maximum_near(largest_place));
             let grid = (0..=100_000).map(|k| polynomial.value(1e-5 * f64::from(k)));
             let expected = grid.fold(f64::NEG_INFINITY, f64::max);
             assert!(

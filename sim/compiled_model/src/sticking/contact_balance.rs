@@ -6,7 +6,7 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::contact_friction::ContactMode;
 
 use super::sided_model::{SidedModel, TimeAndState};
-use crate::contacts::{contact_problem, free_accelerations, rates_and_slips};
+use crate::contacts::{build_contact_problem, collect_rates_and_slips, compute_free_accelerations};
 
 /// With closed contacts, a surface force whose effect on its own function falls below this fraction has no effect. A
 /// rate of the function below it is rounding too.
@@ -51,8 +51,8 @@ impl SidedModel {
             slip.map(f64::signum)
         };
         let resting: Vec<usize> = (0..impacts.len()).filter(rests).collect();
-        let accelerations = free_accelerations(impacts, &resting);
-        let problem = contact_problem(impacts, &resting, direction, &accelerations);
+        let accelerations = compute_free_accelerations(impacts, &resting);
+        let problem = build_contact_problem(impacts, &resting, direction, &accelerations);
         let modes = problem.decide(None, &[]).map(|decision| decision.modes);
         let closed = resting.into_iter().zip(modes.unwrap_or_default());
         self.closed_contacts
@@ -97,7 +97,7 @@ impl SidedModel {
         self.evaluator.impacts(point, &mut self.impacts);
         let (closed, modes): (Vec<usize>, Vec<ContactMode>) =
             self.closed_contacts.iter().copied().unzip();
-        let accelerations = free_accelerations(&self.impacts, &closed);
+        let accelerations = compute_free_accelerations(&self.impacts, &closed);
         let degrees = self.degrees_of_freedom();
         let normal = closed.iter().map(|place| &self.impacts[*place].column);
         let normal = normal.map(|column| Some(column.clone()));
@@ -108,7 +108,7 @@ impl SidedModel {
         let columns: Vec<Option<Vec<f64>>> = normal.chain(tangential).collect();
         let impacts = self.impacts.clone();
         let forces_at = |rates: &[f64]| {
-            let problem = contact_problem(&impacts, &closed, |_| None, rates);
+            let problem = build_contact_problem(&impacts, &closed, |_| None, rates);
             problem.impulses(&modes)
         };
         let forces = forces_at(&accelerations);
@@ -161,7 +161,10 @@ impl SidedModel {
         self.evaluator.guards(point, &mut self.guards);
         let sliding = &self.evaluator.program().outputs.sliding;
         let functions = sliding.iter().map(|surface| self.guards[surface.guard]);
-        (rates_and_slips(&self.impacts, closed), functions.collect())
+        (
+            collect_rates_and_slips(&self.impacts, closed),
+            functions.collect(),
+        )
     }
 }
 

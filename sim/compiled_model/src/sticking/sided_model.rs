@@ -307,7 +307,11 @@ impl SidedModel {
             .iter()
             .map(|row| self.sign(*row, self.inputs[first + row]));
         let mut signs: Vec<f64> = signs.collect();
-        reduce_largest(&self.matrix_by_signs(held), &mut signs, &self.groups(held));
+        reduce_largest(
+            &self.compute_matrix_by_signs(held),
+            &mut signs,
+            &self.groups(held),
+        );
         for (row, sign) in held.iter().zip(signs) {
             self.inputs[first + row] = self.side_of_sign(*row, sign);
         }
@@ -382,7 +386,7 @@ impl SidedModel {
                 self.inputs[self.first_side + row] = self.side_of_sign(*row, *s);
             }
             self.evaluate(at);
-            let w = self.matrix_by_signs(&rows);
+            let w = self.compute_matrix_by_signs(&rows);
             let rates = Rates {
                 c: self.surface_values(&rows, |surface| surface.rate) - &w * &s,
                 w,
@@ -480,7 +484,7 @@ impl SidedModel {
     }
 
     /// Returns the effects of the signs of surfaces (-1 to 1) and of the components of discs.
-    fn matrix_by_signs(&self, rows: &[usize]) -> DMatrix<f64> {
+    fn compute_matrix_by_signs(&self, rows: &[usize]) -> DMatrix<f64> {
         let mut matrix = self.matrix(rows);
         for (mut column, row) in matrix.column_iter_mut().zip(rows) {
             column *= self.side_of_sign(*row, 1.0) - self.side_of_sign(*row, 0.0);

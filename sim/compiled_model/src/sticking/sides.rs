@@ -12,7 +12,7 @@ use super::surface_states::{
 impl SurfaceStates {
     /// Returns the sides of all surfaces at a point: 0.5 for surfaces and 0 for disc components that hold the motion.
     /// Functions are evaluated only if needed.
-    pub(super) fn current_sides(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<f64> {
+    pub(super) fn find_current_sides(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<f64> {
         let kept = self.kept.clone().unwrap_or_default();
         let mut functions = Vec::new();
         let mut sides = Vec::with_capacity(self.places.len());
@@ -63,7 +63,7 @@ impl SurfaceStates {
     }
 
     /// Returns the surfaces that hold the motion, followed by the rows of the discs that do.
-    pub(super) fn holding_rows(&self) -> Vec<usize> {
+    pub(super) fn list_holding_rows(&self) -> Vec<usize> {
         let holds = |surface: &usize| matches!(self.places[*surface], SurfaceState::Holding { .. });
         let discs = self.discs.iter().filter(|disc| disc.is_holding());
         let surfaces = (0..self.places.len()).filter(holds);
@@ -73,9 +73,9 @@ impl SurfaceStates {
     }
 
     /// Returns the directions in which surfaces hold the motion, from the last evaluation.
-    pub fn held_directions(&self) -> Vec<HeldDirection> {
+    pub fn list_held_directions(&self) -> Vec<HeldDirection> {
         let degrees = self.sided.degrees_of_freedom();
-        let rows = self.holding_rows().into_iter();
+        let rows = self.list_holding_rows().into_iter();
         let direction = |row: usize| {
             let by_force = self.sided.own_force_rate(row);
             let values = self.sided.at.get(row).filter(|_| by_force > 0.0)?;
@@ -116,7 +116,10 @@ impl SurfaceStates {
             KnownSides::At(known, at) if *known == t && at == state => return,
             KnownSides::At(..) | KnownSides::Nothing => {}
         }
-        let (sides, held) = (self.current_sides((t, state), inputs), self.holding_rows());
+        let (sides, held) = (
+            self.find_current_sides((t, state), inputs),
+            self.list_holding_rows(),
+        );
         self.sided
             .find_holding_sides((t, state), inputs, &sides, &held);
         if self.are_sides_fixed() {
@@ -149,7 +152,7 @@ impl SurfaceStates {
         inputs: &[f64],
         always: bool,
     ) -> u64 {
-        let held = self.holding_rows();
+        let held = self.list_holding_rows();
         if held.is_empty() {
             return 0;
         }

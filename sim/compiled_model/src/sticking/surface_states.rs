@@ -181,7 +181,7 @@ impl SurfaceStates {
 
     /// Adds the rounding errors of the rates by the forces that hold the motion.
     pub fn add_rate_roundings(&self, out: &mut [f64]) {
-        for row in self.holding_rows() {
+        for row in self.list_holding_rows() {
             self.sided.add_rate_rounding(row, out);
         }
     }
@@ -258,7 +258,10 @@ impl SurfaceStates {
         (inputs, typical_sizes): (&[f64], &[f64]),
         out: &mut [f64],
     ) {
-        let (sides, held) = (self.current_sides((t, state), inputs), self.holding_rows());
+        let (sides, held) = (
+            self.find_current_sides((t, state), inputs),
+            self.list_holding_rows(),
+        );
         self.known = KnownSides::Nothing;
         let count = state.len();
         let mut rates = |state: &[f64], sides: &[f64], out: &mut [f64]| {

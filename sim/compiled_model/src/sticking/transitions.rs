@@ -27,7 +27,7 @@ const ARRIVAL_AT_REST: Arrival = Arrival {
 };
 
 /// Surfaces on which a motion is, their arrivals, and discs with their arrivals.
-type Reached<'r> = (&'r [usize], &'r [Arrival], &'r [(usize, DiscArrival)]);
+type ReachedSurfaces<'r> = (&'r [usize], &'r [Arrival], &'r [(usize, DiscArrival)]);
 
 impl SurfaceStates {
     /// Determines the effect of all surfaces on which the motion is, after a jump of rates or a change of contacts.
@@ -35,16 +35,16 @@ impl SurfaceStates {
         if !self.can_hold || self.begin.is_none() {
             return;
         }
-        self.release_moved(at, inputs);
-        let (functions, allowed) = self.functions_and_roundings(at, inputs);
+        self.release_left_surfaces(at, inputs);
+        let (functions, allowed) = self.evaluate_functions_and_roundings(at, inputs);
         let touches = |surface: &usize| functions[*surface].abs() <= allowed[*surface];
         let touching: Vec<usize> = (0..self.places.len()).filter(touches).collect();
-        let mut discs = self.held_discs(at, inputs);
-        discs.extend(self.stopped_discs(&functions, &allowed));
+        let mut discs = self.find_held_discs(at, inputs);
+        discs.extend(self.find_stopped_discs(&functions, &allowed));
         if touching.is_empty() && discs.is_empty() {
             return;
         }
-        let came_from = self.arrival_sides(&functions);
+        let came_from = self.determine_arrival_sides(&functions);
         let arrivals = vec![ARRIVAL_AT_REST; touching.len()];
         self.decide_states(at, inputs, (&touching, &arrivals, &discs), &came_from);
     }
@@ -80,7 +80,7 @@ impl SurfaceStates {
         let mut touching = Vec::new();
         let mut arrivals = Vec::new();
         let overcome = self.find_overcome((t, state), inputs);
-        let came_from = self.arrival_sides(&near);
+        let came_from = self.determine_arrival_sides(&near);
         let (left, has_new_force) = self.free_left(t, &beyond);
         is_new |= has_new_force;
         let places = self.places.iter().enumerate();
@@ -105,7 +105,7 @@ impl SurfaceStates {
                 }));
             }
         }
-        let discs = self.disc_arrivals((t, state), inputs, (&near, &beyond));
+        let discs = self.find_disc_arrivals((t, state), inputs, (&near, &beyond));
         is_new |= discs
             .iter()
             .any(|(disc, arrival)| arrival.exceeds_limit || !self.discs[*disc].is_holding());
@@ -141,8 +141,8 @@ impl SurfaceStates {
     }
 
     /// Releases the motion from surfaces that it has left by a jump of the rates.
-    pub fn release_moved(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
-        let (functions, allowed) = self.functions_and_roundings(at, inputs);
+    pub fn release_left_surfaces(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
+        let (functions, allowed) = self.evaluate_functions_and_roundings(at, inputs);
         for (surface, place) in self.places.iter_mut().enumerate() {
             if functions[surface].abs() > allowed[surface] {
                 *place = SurfaceState::Free;
@@ -159,7 +159,7 @@ impl SurfaceStates {
     }
 
     /// Returns the switching functions, and the largest magnitude of each that counts as zero.
-    fn functions_and_roundings(
+    fn evaluate_functions_and_roundings(
         &mut self,
         at: (f64, &[f64]),
         inputs: &[f64],
@@ -187,13 +187,13 @@ impl SurfaceStates {
 
     /// Returns the discs that hold the motion, and discs whose velocity reached zero between two values of the
     /// functions. A velocity that passed zero at a distance has only turned; it gets a new reference.
-    fn disc_arrivals(
+    fn find_disc_arrivals(
         &mut self,
         (t, state): (f64, &[f64]),
         inputs: &[f64],
         (near, beyond): (&[f64], &[f64]),
     ) -> Vec<(usize, DiscArrival)> {
-        let mut found = self.held_discs((t, state), inputs);
+        let mut found = self.find_held_discs((t, state), inputs);
         let roundings = self.sided.function_roundings((t, state), inputs);
         for (index, disc) in self.discs.iter_mut().enumerate() {
             if disc.is_holding() {
@@ -221,7 +221,7 @@ impl SurfaceStates {
     }
 
     /// Returns the discs that do not hold the motion although their velocity is within `allowed`.
-    fn stopped_discs(&self, functions: &[f64], allowed: &[f64]) -> Vec<(usize, DiscArrival)> {
+    fn find_stopped_discs(&self, functions: &[f64], allowed: &[f64]) -> Vec<(usize, DiscArrival)> {
         let stopped = self.discs.iter().enumerate().filter(|(_, disc)| {
             !disc.is_holding() && norm(disc.velocity(functions)) <= norm(disc.velocity(allowed))
         });
@@ -230,7 +230,7 @@ impl SurfaceStates {
     }
 
     /// Returns the discs that hold the motion, with forces that may exceed their limits.
-    fn held_discs(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<(usize, DiscArrival)> {
+    fn find_held_discs(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<(usize, DiscArrival)> {
         if !self.discs.iter().any(Disc::is_holding) {
             return Vec::new();
         }
@@ -252,7 +252,7 @@ impl SurfaceStates {
 
     /// Returns the sides, -1 or 1, from which the motion came, from the values of the functions. If a function is
     /// exactly zero, its fixed side is used.
-    fn arrival_sides(&self, near: &[f64]) -> Vec<f64> {
+    fn determine_arrival_sides(&self, near: &[f64]) -> Vec<f64> {
         let kept = |surface: usize| self.kept.as_ref().map(|kept| kept[surface]);
         let side = |(surface, value): (usize, &f64)| {
             let moved = self.places[surface].displacement();
@@ -312,7 +312,7 @@ impl SurfaceStates {
             self.release_powerless(at, inputs);
             for _ in 0..=self.places.len() {
                 let overcome = self.find_overcome(at, inputs);
-                let discs = self.held_discs(at, inputs);
+                let discs = self.find_held_discs(at, inputs);
                 let exceeds = discs.iter().any(|(_, arrival)| arrival.exceeds_limit);
                 if !exceeds && overcome.iter().all(Option::is_none) {
                     break;
@@ -423,12 +423,12 @@ impl SurfaceStates {
         &mut self,
         at: (f64, &[f64]),
         inputs: &[f64],
-        (touching, arrivals, discs): Reached<'_>,
+        (touching, arrivals, discs): ReachedSurfaces<'_>,
         came_from: &[f64],
     ) {
         self.known = KnownSides::Nothing;
         self.has_decided = true;
-        let mut sides = self.current_sides(at, inputs);
+        let mut sides = self.find_current_sides(at, inputs);
         let jumps = self.sided.has_jumps(at, inputs, touching, &sides);
         let (touching, arrivals) = self.free_without_jump((touching, arrivals), &jumps);
         let functions = self.sided.evaluate_functions(at, inputs);

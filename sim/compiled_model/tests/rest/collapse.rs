@@ -2,7 +2,7 @@
 
 use eomgen_compiled_model::Solver;
 
-use super::{GENERAL, of_text, simulated};
+use super::{GENERAL, compile_text, simulated};
 
 /// Returns two balls along an axis at the angle `a`; the heavy one presses the light one to a floor. The position of
 /// the light ball is `scale` times a coordinate.
@@ -46,8 +46,8 @@ h_1 = "h_1"
 }
 
 /// Returns the time of the last impact (s) and the last heights of both balls.
-fn settle(scale: f64, angle: f64, solver: Solver) -> (f64, [f64; 2]) {
-    let model = of_text(&pile(scale));
+fn simulate_settling(scale: f64, angle: f64, solver: Solver) -> (f64, [f64; 2]) {
+    let model = compile_text(&pile(scale));
     let motion = simulated(&model, &[("a", angle)], &[0.0, 2.0], solver);
     let state = &motion.trajectory.final_state;
     let (s, c) = angle.sin_cos();
@@ -61,12 +61,12 @@ fn settle(scale: f64, angle: f64, solver: Solver) -> (f64, [f64; 2]) {
 
 #[test]
 fn pile_settles_at_the_same_time_in_any_unit_and_at_any_angle() {
-    let (end, _) = settle(1.0, 0.0, Solver::Rk);
+    let (end, _) = simulate_settling(1.0, 0.0, Solver::Rk);
     let scales = [0.01, 0.1, 1.0, 3.0, 7.0, 10.0, 100.0, 1e4].map(|scale| (scale, 0.0));
     let angles = [0.2, 0.5, 0.8, 1.1, 2.0, 4.0].map(|angle| (1.0, angle));
     for (scale, angle) in scales.into_iter().chain(angles) {
         for solver in GENERAL {
-            let (found, heights) = settle(scale, angle, solver);
+            let (found, heights) = simulate_settling(scale, angle, solver);
             let case = format!("scale {scale}, angle {angle}, {solver}");
             assert!(
                 (found - end).abs() < 1e-9,
@@ -131,7 +131,7 @@ fn find_end_of_impacts(mass_ratio: f64, [wall, balls]: [f64; 2]) -> Option<f64> 
 
 #[test]
 fn heavy_ball_stops_at_the_limit_of_the_impacts_of_a_light_one() {
-    let model = of_text(LIGHT_BALL);
+    let model = compile_text(LIGHT_BALL);
     let machines = [
         (0.126, 11.298, 0.6, 0.5),
         (1.0, 50.0, 0.5, 0.5),
@@ -190,7 +190,7 @@ third = { when = "x_3 - x_2 - d", restitution = 0.6 }
 
 #[test]
 fn balls_that_touch_to_rounding_are_hit_together() {
-    let model = of_text(TOUCHING_BALLS);
+    let model = compile_text(TOUCHING_BALLS);
     for diameter in [0.1, 0.11, 0.13, 0.3] {
         for origin in [0.0, 0.3, 1.0, -7.7] {
             let settings = [("d", diameter), ("o", origin)];

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use eomgen_compiled_model::Solver;
 
 use super::rows::Numbers;
-use super::{GENERAL, grid, of_text, simulated};
+use super::{GENERAL, compile_text, grid, simulated};
 
 /// Bead on a straight wire with dry friction.
 const BEAD_ON_WIRE: &str = r#"
@@ -141,7 +141,7 @@ fn bead_on_wire_sticks_and_slides_as_block_at_any_size() {
     for size in [1.0, 1e-9, 1e6] {
         let scaled = |text: &str| {
             let text = text.replace("value = 2,", &format!("value = {:e},", 2.0 * size));
-            of_text(&text.replace("value = 4.5,", &format!("value = {:e},", 4.5 * size)))
+            compile_text(&text.replace("value = 4.5,", &format!("value = {:e},", 4.5 * size)))
         };
         let (bead, block) = (scaled(BEAD_ON_WIRE), scaled(BLOCK));
         for solver in GENERAL {
@@ -171,7 +171,7 @@ fn bead_on_wire_sticks_and_slides_as_block_at_any_size() {
 #[test]
 fn bead_on_ring_starts_from_rest_and_stops_as_in_its_angle() {
     let times = grid(4.0, 40);
-    let (ring, angle) = (of_text(BEAD_ON_RING), of_text(RING_ANGLE));
+    let (ring, angle) = (compile_text(BEAD_ON_RING), compile_text(RING_ANGLE));
     for force in [0.5, 1.0, 5.0] {
         let settings = [("F", force)];
         let found = simulated(&ring, &settings, &times, Solver::Rk).trajectory;
@@ -192,8 +192,8 @@ fn bead_on_ring_starts_from_rest_and_stops_as_in_its_angle() {
 fn pendulum_on_rod_comes_to_rest_as_in_its_angle() {
     let times = grid(4.0, 40);
     for solver in GENERAL {
-        let angle = simulated(&of_text(PENDULUM), &[], &times, solver);
-        let cartesian = simulated(&of_text(PENDULUM_ON_ROD), &[], &times, solver);
+        let angle = simulated(&compile_text(PENDULUM), &[], &times, solver);
+        let cartesian = simulated(&compile_text(PENDULUM_ON_ROD), &[], &times, solver);
         let pairs = cartesian
             .trajectory
             .states
@@ -256,8 +256,8 @@ fn friction_with_closed_contact_matches_constraint() {
     let constraint = "[constraints]\nfloor = { zero = \"distance\" }\n";
     let mut held = 0;
     for seed in 1..=12 {
-        let pressed = of_text(&pressed_machine(seed, contact));
-        let guided = of_text(&pressed_machine(seed, constraint));
+        let pressed = compile_text(&pressed_machine(seed, contact));
+        let guided = compile_text(&pressed_machine(seed, constraint));
         for solver in GENERAL {
             let found = simulated(&pressed, &[], &times, solver).trajectory;
             let expected = simulated(&guided, &[], &times, solver).trajectory;
@@ -300,7 +300,7 @@ wall = { when = "d - x", restitution = 0 }
 [observables]
 friction = "-F*sign(dot(x))"
 "#;
-    let model = of_text(sled);
+    let model = compile_text(sled);
     // The wall holds the mass while the drive pushes, and friction holds it until the drive pulls with F.
     let pi = std::f64::consts::PI;
     let (parts, leaves) = (pi / 5.0, (pi + 0.25_f64.asin()) / 5.0);
@@ -364,7 +364,7 @@ ground = { on = "b", value = "-3*F*sign(dot(b))" }
 hit = { when = "b - a", restitution = "e" }
 rock = { when = "D - b", restitution = 0 }
 "#;
-    let model = of_text(hammer);
+    let model = compile_text(hammer);
     let times = grid(20.0, 200);
     let motions = GENERAL.map(|solver| simulated(&model, &[], &times, solver).trajectory);
     let [first, second] = &motions;

@@ -3,7 +3,7 @@
 
 use eomgen_compiled_model::{CompiledModel, Motion, Request, Solver};
 
-use crate::{GENERAL, grid, of_text, simulated};
+use crate::{GENERAL, compile_text, grid, simulated};
 
 /// A force that slowly exceeds the friction releases a stiff motion; `auto` may change to `radau` for it.
 const RELEASING: [Solver; 2] = [Solver::Auto, Solver::Radau];
@@ -15,7 +15,7 @@ const G: f64 = 9.81;
 fn puck(angle: f64, drive: &str, rate: [f64; 2]) -> CompiledModel {
     let (c, s) = (angle.cos(), angle.sin());
     let along = [c * rate[0] + s * rate[1], c * rate[1] - s * rate[0]];
-    of_text(&format!(
+    compile_text(&format!(
         r#"
 [model]
 name = "puck"
@@ -115,7 +115,7 @@ t = "1/2*m*(dot(x)^2 + dot(y)^2 + dot(z)^2)"
 [forces]
 f = { on = "[x, y, z]", value = "-R*[dot(x), dot(y), dot(z)]/norm([dot(x), dot(y), dot(z)])" }
 "#;
-    let model = of_text(text);
+    let model = compile_text(text);
     for solver in GENERAL {
         let motion = simulated(&model, &[], &grid(2.0, 20), solver);
         let (stop, distance) = (3.0 * 2.0 / 5.0, 9.0 * 2.0 / (2.0 * 5.0));
@@ -153,7 +153,7 @@ fn force_from_rest_moves_the_puck_above_the_limit_only() {
 
 #[test]
 fn driven_puck_on_a_line_matches_scalar_friction() {
-    let scalar = of_text(&format!(
+    let scalar = compile_text(&format!(
         r#"
 [model]
 name = "sled"
@@ -237,12 +237,12 @@ spring = "1/2*k*((x0 - x1)^2 + (y0 - y1)^2)"
 f0 = { on = "[x0, y0]", value = "-R0*v0/norm(v0)" }
 f1 = { on = "[x1, y1]", value = "-R1*v1/norm(v1)" }
 "#;
-        of_text(&text)
+        compile_text(&text)
     }
 
     /// Returns the positions after `steps` steps of set-valued time stepping. The friction impulse stays within its
     /// disc and brings the velocity as near to zero as possible.
-    fn stepped(&self, until: f64, steps: u32) -> Vec<f64> {
+    fn simulate_by_time_stepping(&self, until: f64, steps: u32) -> Vec<f64> {
         let h = until / f64::from(steps);
         let (mut q, mut v) = (self.start, self.rates);
         for _ in 0..steps {
@@ -290,7 +290,7 @@ fn coupled_pucks_match_set_valued_time_stepping() {
             "{solver}: {last:?}"
         );
         let off = |steps: u32| {
-            let found = pair.stepped(6.0, steps);
+            let found = pair.simulate_by_time_stepping(6.0, steps);
             let pairs = found.iter().zip([last[0], last[1], last[2], last[3]]);
             pairs.fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()))
         };
@@ -340,7 +340,7 @@ fn random_pairs_agree_between_solvers_and_come_to_rest() {
 /// resolves within the tolerance.
 #[test]
 fn puck_that_friction_barely_holds_stops_in_few_steps() {
-    let model = of_text(
+    let model = compile_text(
         r#"
 [model]
 name = "puck"

@@ -3,13 +3,13 @@
 
 use eomgen_compiled_model::{CompiledModel, Solver};
 
-use super::{GENERAL, of_text, simulated};
+use super::{GENERAL, compile_text, simulated};
 
 const STEPPING: [Solver; 3] = [Solver::Rk, Solver::Radau, Solver::Adams];
 
 /// Returns a mass on a spring, damped by an orifice with the flow law `law`.
 fn orifice(law: &str) -> CompiledModel {
-    of_text(&format!(
+    compile_text(&format!(
         r#"
 [model]
 name = "orifice"
@@ -65,7 +65,7 @@ const ORIFICE: [(f64, [[f64; 3]; 4]); 3] = [
     ),
 ];
 
-fn agrees_with_scipy(law: &str, solvers: &[Solver], starts: usize) {
+fn assert_agrees_with_scipy(law: &str, solvers: &[Solver], starts: usize) {
     let model = orifice(law);
     let run = model.with_declared_parameters().unwrap();
     for (pressure, right) in ORIFICE.into_iter().take(starts) {
@@ -88,9 +88,9 @@ fn agrees_with_scipy(law: &str, solvers: &[Solver], starts: usize) {
 
 #[test]
 fn orifice_flow_reversal_matches_scipy() {
-    agrees_with_scipy("sign(p)*sqrt(abs(p))", &STEPPING, 2);
-    agrees_with_scipy("sign(p)*sqrt(abs(p))", &GENERAL, 3);
-    agrees_with_scipy("sign(p)*abs(p)^0.5", &GENERAL, 3);
+    assert_agrees_with_scipy("sign(p)*sqrt(abs(p))", &STEPPING, 2);
+    assert_agrees_with_scipy("sign(p)*sqrt(abs(p))", &GENERAL, 3);
+    assert_agrees_with_scipy("sign(p)*abs(p)^0.5", &GENERAL, 3);
 }
 
 /// After a pulse of pressure, the flow reverses at each end of the swing. Pressure and speed vanish together there.
@@ -118,15 +118,15 @@ fn many_flow_reversals_match_scipy() {
 
 #[test]
 fn laws_undefined_beyond_their_sign_change_match_scipy() {
-    agrees_with_scipy("sign(p)*sqrt(p*sign(p))", &GENERAL, 2);
-    agrees_with_scipy("(sqrt(max(p, 0)) - sqrt(max(-p, 0)))", &GENERAL, 3);
+    assert_agrees_with_scipy("sign(p)*sqrt(p*sign(p))", &GENERAL, 2);
+    assert_agrees_with_scipy("(sqrt(max(p, 0)) - sqrt(max(-p, 0)))", &GENERAL, 3);
 }
 
 /// A mass at rest with cubic damping is pushed from the time a = 3 s on: v = sqrt(F/c) tanh(sqrt(F c)(t - a)). The test
 /// uses several units of the deflection. Steps are long before the push.
 #[test]
 fn overflowing_steps_after_a_push_are_shortened() {
-    let model = of_text(
+    let model = compile_text(
         r#"
 [model]
 name = "step"
@@ -168,7 +168,7 @@ damper = { on = "x", value = "-c*dot(x)*abs(dot(x))" }
 /// from 1, the slope is infinite at the start.
 #[test]
 fn states_starting_at_edge_of_domain_match_closed_forms() {
-    let model = of_text(
+    let model = compile_text(
         r#"
 [model]
 name = "edges"
@@ -211,7 +211,7 @@ m = "1/2*m*dot(x)^2"
 /// sqrt(0.5 - t) is undefined after 0.5 s; the message must name the state and the cause.
 #[test]
 fn leaving_the_domain_stops_with_state_and_cause() {
-    let model = of_text(
+    let model = compile_text(
         r#"
 [model]
 name = "out"
@@ -255,7 +255,7 @@ fn states_that_end_at_zero_of_root_stay_there() {
         ("h/sqrt(abs(h) + 1e-300*b)", "m^(1/2)", 0.5),
     ];
     for (law, unit, power) in laws {
-        let model = of_text(&format!(
+        let model = compile_text(&format!(
             r#"
 [model]
 name = "tank"
@@ -293,7 +293,7 @@ m = "1/2*m*dot(x)^2"
 /// The force -c sign(v) sqrt(|v|) stops a mass after the distance 2 v0^(3/2)/(3 c).
 #[test]
 fn root_drag_stops_mass() {
-    let model = of_text(
+    let model = compile_text(
         r#"
 [model]
 name = "drag"
@@ -329,7 +329,7 @@ drag = { on = "x", value = "-c*sign(dot(x))*sqrt(abs(dot(x)))" }
 /// time, so several surfaces are reached at once.
 #[test]
 fn chambers_joined_by_orifices_come_to_rest_together() {
-    let model = of_text(
+    let model = compile_text(
         r#"
 [model]
 name = "joined"

@@ -8,7 +8,7 @@ use eomgen_compiled_model::{CompiledModel, DrivenModel};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{ExternalMotion, SurfaceMode};
 
-use crate::of_text;
+use crate::compile_text;
 
 type Motion = ExternalMotion<DrivenModel<RefCell<Evaluator>, HeldInputs>>;
 
@@ -86,7 +86,7 @@ fn simulate(
 
 #[test]
 fn ball_bounces_and_rests_as_in_its_closed_form() {
-    let model = of_text(
+    let model = compile_text(
         "[model]\nname = \"ball\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
          g = { value = 10, unit = \"m/s^2\" }\n[coordinates]\ny = { unit = \"m\", initial = 0.2 }\n\
          [kinetic]\nt = \"1/2*m*dot(y)^2\"\n[potential]\nv = \"m*g*y\"\n\
@@ -106,7 +106,7 @@ fn ball_bounces_and_rests_as_in_its_closed_form() {
 #[test]
 fn contact_opens_when_friction_reverses_at_an_impact() {
     // Friction on a rod presses a sleeve of twice its mass against a wall until the rod rebounds.
-    let model = of_text(
+    let model = compile_text(
         "[model]\nname = \"sleeve\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
          F = { value = 3, unit = \"N\" }\n[coordinates]\n\
          a = { unit = \"m\", initial = 1, initial_rate = -4 }\nb = { unit = \"m\" }\n\
@@ -131,7 +131,7 @@ fn contact_opens_when_friction_reverses_at_an_impact() {
 
 #[test]
 fn friction_holds_until_an_input_releases_the_block() {
-    let model = of_text(
+    let model = compile_text(
         "[model]\nname = \"block\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
          k = { value = 40, unit = \"N/m\" }\nF = { value = 3, unit = \"N\" }\n\
          [coordinates]\nx = { unit = \"m\", initial = 0.5 }\n[inputs]\nu = { unit = \"N\" }\n\

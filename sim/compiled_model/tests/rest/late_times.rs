@@ -3,7 +3,7 @@
 use eomgen_compiled_model::{Request, Solver};
 use eomgen_sim::inputs::HeldInputs;
 
-use super::{GENERAL, of_text};
+use super::{GENERAL, compile_text};
 
 /// Start times, s. The last one is a Unix time, which is rounded to 2.4e-7 s.
 const STARTS: [f64; 4] = [0.0, 1e6, 1e8, 1.7e9];
@@ -45,7 +45,7 @@ floor = { when = "y", restitution = 0.8 }
 "#;
 
 /// Returns the height (m) of a ball `after` s after its release from rest at the height `h` (m), with restitution 0.8.
-fn bounced(h: f64, after: f64) -> f64 {
+fn bouncing_height(h: f64, after: f64) -> f64 {
     let g = 9.81;
     let mut speed = (2.0 * g * h).sqrt();
     let mut since = after - speed / g;
@@ -68,7 +68,7 @@ fn last_position(
     times: &[f64],
     solver: Solver,
 ) -> f64 {
-    let model = of_text(text);
+    let model = compile_text(text);
     let run = model.with_parameters(settings).expect("an instance");
     let request = Request {
         initial: run.initial_state(),
@@ -109,7 +109,7 @@ fn ball_bounces_as_long_from_a_late_start() {
                 let times = [start, start + after];
                 let none = HeldInputs::zero(1);
                 let y = last_position(BALL, (&[("h", 1.0)], &none), &times, solver);
-                let error = (y - bounced(1.0, after)).abs();
+                let error = (y - bouncing_height(1.0, after)).abs();
                 assert!(
                     error < allowed,
                     "{solver} from {start}, after {after}: {error}"
@@ -128,7 +128,7 @@ fn ball_that_rests_for_long_bounces_after_a_push() {
         let (a, g) = (20.0 - 9.81, 9.81);
         let (height, speed) = (0.5 * a * 0.125 * 0.125, a * 0.125);
         let top = height + speed * speed / (2.0 * g);
-        let expected = bounced(top, 1.375 - speed / g);
+        let expected = bouncing_height(top, 1.375 - speed / g);
         for solver in GENERAL {
             let times = [0.0, push + 1.5];
             let y = last_position(BALL, (&[], &inputs), &times, solver);

@@ -4,7 +4,7 @@
 use eomgen_compiled_model::EventKind;
 use eomgen_sim::inputs::HeldInputs;
 
-use crate::{GENERAL, grid, of_text};
+use crate::{GENERAL, compile_text, grid};
 
 /// Returns a mass of 1 kg with friction and a driving force of 1 N, and a body with a speed of 1 m/s.
 fn braked_mass(friction: &str) -> String {
@@ -45,7 +45,7 @@ fn brake_that_is_lifted_and_applied_again_stops_the_mass_in_time() {
     let of_vector = "brake = { on = \"[x, z]\", value = \"-F*u*v/norm(v)\" }";
     let inputs = HeldInputs::new(vec![0.0, 1.0, 3.0], vec![1.0, 0.0, 1.0], 1).expect("inputs");
     for friction in [by_input, by_body, by_time, of_vector] {
-        let model = of_text(&braked_mass(friction));
+        let model = compile_text(&braked_mass(friction));
         let run = model.with_declared_parameters().expect("values");
         for solver in GENERAL {
             let motion = run
@@ -73,7 +73,7 @@ fn brake_that_is_lifted_and_applied_again_stops_the_mass_in_time() {
 /// holds it.
 #[test]
 fn brake_that_is_lifted_at_a_reversal_holds_at_the_next_one() {
-    let model = of_text(
+    let model = compile_text(
         r#"
 [model]
 name = "braked_spring"

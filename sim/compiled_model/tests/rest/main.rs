@@ -21,7 +21,7 @@ use std::path::Path;
 use eomgen_compiled_model::{CompiledModel, Motion, Orders, Request, Solver};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::SurfaceMode;
-use time_stepping::{Machine, Rubbing};
+use time_stepping::{DryFriction, Machine};
 
 /// Solvers with time steps that support sticking.
 const GENERAL: [Solver; 2] = [Solver::Rk, Solver::Radau];
@@ -32,7 +32,7 @@ fn example(name: &str) -> CompiledModel {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn of_text(text: &str) -> CompiledModel {
+fn compile_text(text: &str) -> CompiledModel {
     CompiledModel::from_text("rest.toml", text, Orders::Declared)
         .unwrap_or_else(|error| panic!("{error}"))
 }
@@ -62,7 +62,7 @@ fn pendulum_sticks_off_the_vertical_with_friction_equal_to_weight() {
         inverse_mass: &|_| [[1.0 / (m * l * l)]],
         forces: &|_, [theta], _| [-m * g * l * f64::sin(theta)],
         rubbing: &|_, _| {
-            vec![Rubbing {
+            vec![DryFriction {
                 along: [1.0],
                 drift: 0.0,
                 level: t_c,
@@ -73,7 +73,7 @@ fn pendulum_sticks_off_the_vertical_with_friction_equal_to_weight() {
     for solver in GENERAL {
         let motion = simulated(&model, &[], &times, solver);
         let states = &motion.trajectory.states;
-        machine.comes_to(([1.0], [0.0]), 10.0, &states[100], 2e-4);
+        machine.assert_converges_to(([1.0], [0.0]), 10.0, &states[100], 2e-4);
         // During sticking nothing moves, not even by accumulated rounding.
         assert!(states[100][0].abs() > 1e-3, "{:?}", states[100]);
         assert!((states[100][0] - states[60][0]).abs() < 1e-13);
@@ -107,7 +107,7 @@ fn motor_releases_pendulum_until_it_sticks_again() {
             inverse_mass: &|_| [[1.0 / (m * l * l)]],
             forces: &|t, [theta], _| [torque * f64::sin(omega * t) - m * g * l * f64::sin(theta)],
             rubbing: &|_, _| {
-                vec![Rubbing {
+                vec![DryFriction {
                     along: [1.0],
                     drift: 0.0,
                     level: t_c,
@@ -117,7 +117,7 @@ fn motor_releases_pendulum_until_it_sticks_again() {
         let settings = [("T_0", torque), ("omega", omega)];
         for solver in GENERAL {
             let motion = simulated(&model, &settings, &[0.0, 6.0], solver);
-            machine.comes_to(([1.0], [0.0]), 6.0, &motion.trajectory.final_state, 5e-5);
+            machine.assert_converges_to(([1.0], [0.0]), 6.0, &motion.trajectory.final_state, 5e-5);
         }
     }
 }
@@ -157,7 +157,7 @@ fn turning_points_and_rest_of_pendulum_match_energy() {
         })
         .collect();
         let initial = format!("initial_rate = {speed}");
-        let model = of_text(&text.replace("initial = 1,", &format!("{initial},")));
+        let model = compile_text(&text.replace("initial = 1,", &format!("{initial},")));
         for solver in GENERAL {
             let motion = simulated(&model, &[("T_c", level)], &[0.0, 30.0], solver);
             let (last, switches) = (&motion.trajectory.final_state, &motion.trajectory.events);
@@ -178,7 +178,7 @@ fn turning_points_and_rest_of_pendulum_match_energy() {
             inverse_mass: &|_| [[1.0 / inertia]],
             forces: &|_, [theta], _| [-weight * f64::sin(theta)],
             rubbing: &|_, _| {
-                vec![Rubbing {
+                vec![DryFriction {
                     along: [1.0],
                     drift: 0.0,
                     level,
@@ -187,7 +187,7 @@ fn turning_points_and_rest_of_pendulum_match_energy() {
         };
         let stop = turns.last().copied().unwrap_or(0.0);
         for (steps, most) in [(30_000, 1e-4), (240_000, 2e-6)] {
-            let found = machine.stepped(([0.0], [speed]), 30.0, steps)[0];
+            let found = machine.simulate_by_time_stepping(([0.0], [speed]), 30.0, steps)[0];
             println!("{level} {speed}: {:.2e}", found - stop);
             assert!(
                 (found - stop).abs() < most,
@@ -205,7 +205,7 @@ fn belt_with_falling_friction_sticks_and_slips() {
         forces: &|_, [x], _| [-100.0 * x],
         rubbing: &|_, [v]| {
             let slip = (v - 0.1) / 0.05;
-            vec![Rubbing {
+            vec![DryFriction {
                 along: [1.0],
                 drift: 0.1,
                 level: 3.0 + 2.0 * f64::exp(-slip * slip),
@@ -214,7 +214,7 @@ fn belt_with_falling_friction_sticks_and_slips() {
     };
     for solver in GENERAL {
         let motion = simulated(&model, &[], &[0.0, 2.0], solver);
-        machine.comes_to(([0.0], [0.0]), 2.0, &motion.trajectory.final_state, 2e-5);
+        machine.assert_converges_to(([0.0], [0.0]), 2.0, &motion.trajectory.final_state, 2e-5);
     }
     let motion = simulated(&model, &[], &grid(20.0, 20), Solver::Auto);
     assert_eq!(motion.solver, Solver::Rk);
@@ -246,7 +246,7 @@ fn cart_and_pole_with_friction_match_time_stepping() {
                 ]
             },
             rubbing: &|_, _| {
-                let rub = |along, level| Rubbing {
+                let rub = |along, level| DryFriction {
                     along,
                     drift: 0.0,
                     level,
@@ -262,7 +262,7 @@ fn cart_and_pole_with_friction_match_time_stepping() {
         ];
         for solver in GENERAL {
             let motion = simulated(&model, &settings, &[0.0, 3.0], solver);
-            machine.comes_to(
+            machine.assert_converges_to(
                 ([0.0, 0.6], [0.0; 2]),
                 3.0,
                 &motion.trajectory.final_state,
@@ -296,7 +296,7 @@ fn drive_breaks_away_a_thousand_times_at_known_times() {
     let half = std::f64::consts::PI / omega;
     let away = |turn: usize| (f / a).asin() / omega + half * turn as f64;
     let until = 1000.0 * half;
-    let model = of_text(SLED);
+    let model = compile_text(SLED);
     for solver in [Solver::Rk, Solver::Radau, Solver::Exact] {
         let motion = simulated(&model, &[], &grid(until, 1000), solver);
         let switches = &motion.trajectory.events;
@@ -356,7 +356,7 @@ pull = { on = "x", value = "r*t" }
 both = { value = "-F*sign(dot(x)) - G*sign(3*dot(x))", unit = "N" }
 "#
     .replace("a = { value = 1, unit = \"N\" }\n", "");
-    let model = of_text(&text);
+    let model = compile_text(&text);
     let run = model.with_declared_parameters().unwrap();
     for solver in GENERAL {
         let motion = simulated(&model, &[], &grid(4.0, 40), solver);
@@ -397,7 +397,7 @@ block = "1/2*m*dot(x)^2"
 rub = { on = "x", value = "-F*sign(dot(x) - w)" }
 pull = { on = "x", value = "u" }
 "#;
-    let model = of_text(text);
+    let model = compile_text(text);
     let run = model.with_declared_parameters().unwrap();
     // The block sticks for 1 s, accelerates with 1 m/s^2 for 1 s, then decelerates with 2 m/s^2 to rest at 2.5 s. At 3
     // s the belt starts with 1 m/s; the block reaches this speed after 0.5 s.
@@ -447,7 +447,7 @@ swing = { on = "x", value = "K*sin(x*0.3/l)" }
         "[coordinates]",
         "l = { value = 1, unit = \"m\" }\n[coordinates]",
     );
-    let model = of_text(&text);
+    let model = compile_text(&text);
     for solver in GENERAL {
         let motion = simulated(&model, &[], &grid(4.0, 40), solver);
         let states = &motion.trajectory.states;
@@ -496,12 +496,12 @@ circle = { zero = "x^2 + y^2 - r^2" }
 [forces]
 rub = { on = "x", value = "-F*sign(dot(x))" }
 "#;
-    let model = of_text(text);
+    let model = compile_text(text);
     let machine = Machine {
         inverse_mass: &|_| [[1.0]],
         forces: &|_, [a], _| [-9.81 * f64::sin(a)],
         rubbing: &|[a], _| {
-            vec![Rubbing {
+            vec![DryFriction {
                 along: [f64::cos(a)],
                 drift: 0.0,
                 level: 2.0,
@@ -516,7 +516,7 @@ rub = { on = "x", value = "-F*sign(dot(x))" }
         ];
         let angle = x.atan2(-y);
         let start = 0.8_f64.atan2(0.6);
-        machine.comes_to(([start], [0.0]), 6.0, &[angle, 0.0], 1e-4);
+        machine.assert_converges_to(([start], [0.0]), 6.0, &[angle, 0.0], 1e-4);
         assert!(motion.trajectory.final_state[2].abs() < 1e-10);
     }
     // A disc with a brake on an elastic shaft; the modes of the shaft continue to vibrate during sticking.
@@ -529,7 +529,7 @@ rub = { on = "x", value = "-F*sign(dot(x))" }
             "T_b = { value = 3, unit = \"N m\" }\n[coordinates]",
         )
         .replace("motor = {", &format!("{brake}\nmotor = {{"));
-    let model = of_text(&text);
+    let model = compile_text(&text);
     let run = model.with_declared_parameters().unwrap();
     let inputs = HeldInputs::new(vec![0.0, 0.05, 0.1], vec![4.0, -2.0, 1.0], 1).unwrap();
     let samples = grid(0.2, 20);
@@ -555,7 +555,7 @@ rub = { on = "x", value = "-F*sign(dot(x))" }
 
 #[test]
 fn adams_stops_with_message_at_sticking() {
-    let model = of_text(SLED);
+    let model = compile_text(SLED);
     let run = model.with_declared_parameters().unwrap();
     let none = run.default_inputs();
     let error = run.simulate(run.initial_state(), &[0.0, 1.0], &none, Solver::Adams);

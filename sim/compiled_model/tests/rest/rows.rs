@@ -2,8 +2,8 @@
 
 use eomgen_compiled_model::Solver;
 
-use super::time_stepping::{Machine, Rubbing};
-use super::{GENERAL, grid, of_text, simulated};
+use super::time_stepping::{DryFriction, Machine};
+use super::{GENERAL, compile_text, grid, simulated};
 
 /// Generator of pseudorandom numbers between 0 and 1.
 pub(super) struct Numbers(pub(super) u64);
@@ -99,7 +99,7 @@ fn random_rows_match_exact_solver() {
     let (mut compared, mut held) = (0, 0);
     for seed in 1..=40 {
         let text = random_row(seed);
-        let model = of_text(&text);
+        let model = compile_text(&text);
         let run = model.with_declared_parameters().unwrap();
         let none = run.default_inputs();
         let Ok(exact) = run.simulate(run.initial_state(), &times, &none, Solver::Exact) else {
@@ -209,7 +209,7 @@ impl Row {
         specification(&sections)
     }
 
-    fn stepped(&self, until: f64, steps: u32) -> Vec<f64> {
+    fn simulate_by_time_stepping(&self, until: f64, steps: u32) -> Vec<f64> {
         let count = self.count;
         let inside = |i: usize| i < count;
         let machine = Machine {
@@ -237,7 +237,7 @@ impl Row {
                     let mut along = [0.0; 3];
                     along[i] = 1.0;
                     if self.at_ground[i] > 0.0 {
-                        rubbing.push(Rubbing {
+                        rubbing.push(DryFriction {
                             along,
                             drift: self.belts[i],
                             level: self.at_ground[i],
@@ -245,7 +245,7 @@ impl Row {
                     }
                     if self.between[i] > 0.0 {
                         along[i - 1] = -1.0;
-                        rubbing.push(Rubbing {
+                        rubbing.push(DryFriction {
                             along,
                             drift: 0.0,
                             level: self.between[i],
@@ -256,7 +256,8 @@ impl Row {
             },
         };
         let zero = |all: [f64; 3]| std::array::from_fn(|i| if inside(i) { all[i] } else { 0.0 });
-        let end = machine.stepped((zero(self.places), zero(self.speeds)), until, steps);
+        let end =
+            machine.simulate_by_time_stepping((zero(self.places), zero(self.speeds)), until, steps);
         [&end[..count], &end[3..3 + count]].concat()
     }
 }
@@ -267,7 +268,7 @@ fn rows_with_several_frictions_match_time_stepping() {
     let times = grid(until, 60);
     for seed in (1..=60).chain([65, 91, 103, 151, 152, 167]) {
         let row = Row::random(seed);
-        let model = of_text(&row.text());
+        let model = compile_text(&row.text());
         let motion = simulated(&model, &[], &times, Solver::Exact).trajectory;
         for solver in GENERAL {
             let other = simulated(&model, &[], &times, solver).trajectory;
@@ -277,7 +278,10 @@ fn rows_with_several_frictions_match_time_stepping() {
             }
         }
         if seed <= 24 {
-            let apart = difference(&row.stepped(until, 30_000), &motion.final_state);
+            let apart = difference(
+                &row.simulate_by_time_stepping(until, 30_000),
+                &motion.final_state,
+            );
             assert!(apart < 2e-3, "{seed}: {apart:e}");
         }
     }

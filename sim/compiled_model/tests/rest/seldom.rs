@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use eomgen_compiled_model::Solver;
 
-use super::{GENERAL, grid, of_text, simulated};
+use super::{GENERAL, compile_text, grid, simulated};
 
 const SHAKEN: &str = r#"
 [model]
@@ -27,7 +27,7 @@ fn force_slightly_above_friction_breaks_away_every_period() {
         "{SHAKEN}rubs = {{ on = \"x\", value = \"-F*sign(dot(x))\" }}\n\
          drive = {{ on = \"x\", value = \"A*sin(omega*t)\" }}\n"
     );
-    let model = of_text(&text);
+    let model = compile_text(&text);
     for (a, omega) in [(3.02_f64, 50.0), (3.003, 50.0), (3.4, 9.0)] {
         let turns = 40;
         let until = 2.0 * PI * f64::from(turns) / omega;
@@ -53,7 +53,7 @@ fn force_slightly_above_friction_breaks_away_every_period() {
 fn short_pulses_move_resting_mass() {
     let text =
         format!("{SHAKEN}drive = {{ on = \"x\", value = \"A*above(sin(omega*t) - 0.99)\" }}\n");
-    let model = of_text(&text);
+    let model = compile_text(&text);
     let (turns, omega) = (40, 50.0_f64);
     let until = 2.0 * PI * f64::from(turns) / omega;
     let each = 3.02 / 2.0 * 2.0 * 0.99_f64.acos() / omega;
@@ -66,7 +66,7 @@ fn short_pulses_move_resting_mass() {
 }
 
 #[test]
-fn relay_is_crossed_until_it_slides_and_decays() {
+fn relay_switches_until_sliding_mode_then_decays() {
     // For x'' = -F sign(x + tau x') the motion is parabolic between crossings until |x'| < tau F; then x' = -x/tau.
     let text = r#"
 [model]
@@ -89,7 +89,7 @@ relay = { on = "x", value = "-F*sign(x + tau*dot(x))" }
         (0.02, 0.3),
         (0.3, 0.01),
     ] {
-        let model = of_text(&text.replace("initial = 1", &format!("initial = {start}")));
+        let model = compile_text(&text.replace("initial = 1", &format!("initial = {start}")));
         let (mut t, mut x, mut v) = (0.0, start, 0.0_f64);
         let mut pieces = vec![(t, x, v, -1.0)];
         let slides_at = loop {

@@ -1,6 +1,6 @@
 //! Tests of motions with a fast state that start on a switching surface.
 
-use super::{GENERAL, grid, of_text, simulated};
+use super::{GENERAL, compile_text, grid, simulated};
 
 /// Motor whose switched voltage is on its surface at time 0; its current settles within 50 us.
 const MOTOR: &str = r#"
@@ -34,7 +34,7 @@ fn fast_state_follows_the_side_after_the_start() {
         ("-U*sign(t/tau)", 0.3),
         ("U*sign(t/tau - 1/10)", 0.3),
     ] {
-        let model = of_text(&MOTOR.replace("VOLTAGE", voltage));
+        let model = compile_text(&MOTOR.replace("VOLTAGE", voltage));
         let times = grid(until, 10);
         let [explicit, implicit] =
             GENERAL.map(|solver| simulated(&model, &[], &times, solver).trajectory.states);

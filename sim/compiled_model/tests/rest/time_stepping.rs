@@ -2,7 +2,7 @@
 //! stay within their bounds and bring the speeds as near to zero as possible.
 
 /// Dry friction with the sliding speed J v - b and a force up to its level.
-pub struct Rubbing<const N: usize> {
+pub struct DryFriction<const N: usize> {
     pub along: [f64; N],
     pub drift: f64,
     pub level: f64,
@@ -12,12 +12,17 @@ pub struct Rubbing<const N: usize> {
 pub struct Machine<'m, const N: usize> {
     pub inverse_mass: &'m dyn Fn([f64; N]) -> [[f64; N]; N],
     pub forces: &'m dyn Fn(f64, [f64; N], [f64; N]) -> [f64; N],
-    pub rubbing: &'m dyn Fn([f64; N], [f64; N]) -> Vec<Rubbing<N>>,
+    pub rubbing: &'m dyn Fn([f64; N], [f64; N]) -> Vec<DryFriction<N>>,
 }
 
 impl<const N: usize> Machine<'_, N> {
     /// Returns positions and speeds after a number of steps.
-    pub fn stepped(&self, start: ([f64; N], [f64; N]), until: f64, steps: u32) -> Vec<f64> {
+    pub fn simulate_by_time_stepping(
+        &self,
+        start: ([f64; N], [f64; N]),
+        until: f64,
+        steps: u32,
+    ) -> Vec<f64> {
         let h = until / f64::from(steps);
         let (mut q, mut v) = start;
         let mut impulses: Vec<f64> = Vec::new();
@@ -65,9 +70,15 @@ impl<const N: usize> Machine<'_, N> {
     }
 
     /// Asserts that the time stepping converges to the `wanted` state with order one.
-    pub fn comes_to(&self, start: ([f64; N], [f64; N]), until: f64, wanted: &[f64], step: f64) {
+    pub fn assert_converges_to(
+        &self,
+        start: ([f64; N], [f64; N]),
+        until: f64,
+        wanted: &[f64],
+        step: f64,
+    ) {
         let difference = |steps: u32| {
-            let found = self.stepped(start, until, steps);
+            let found = self.simulate_by_time_stepping(start, until, steps);
             let pairs = found.iter().zip(wanted);
             pairs.fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()))
         };

@@ -2,7 +2,7 @@
 
 use eomgen_compiled_model::Request;
 
-use super::{GENERAL, of_text};
+use super::{GENERAL, compile_text};
 
 /// Box on a slope whose lower edge sticks. Heights are measured from a floor at the height `f`.
 const BOX: &str = r#"
@@ -34,7 +34,7 @@ right = { when = "y - f - h*cos(phi) + b*sin(phi)", restitution = 0, friction = 
 
 #[test]
 fn box_tips_about_its_lower_edge_in_few_steps() {
-    let model = of_text(BOX);
+    let model = compile_text(BOX);
     let (b, h, t) = (0.1, 0.5, 1e-2_f64);
     let (s, c) = 0.3_f64.sin_cos();
     let acceleration = 9.81 * (h * s - b * c) / (4.0 / 3.0 * (b * b + h * h));

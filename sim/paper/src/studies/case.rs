@@ -168,7 +168,7 @@ pub fn measure(arm: &Arm, case: &Case, length: &RunLength) -> Result<Measurement
     let lengths = arm.lengths(case);
     let samples = length.samples(case, &lengths);
     let mut propagator = arm.propagator(case)?;
-    let waited = transient_periods(case, length, &lengths);
+    let waited = compute_transient_periods(case, length, &lengths);
     let mut run = Run::start(&mut propagator, case, waited, samples)?;
     let mut neighbours = TangentMotion::start(&run, &mut propagator, case, &lengths)?;
     let (recorded, followed) = match length.strong_growth_periods {
@@ -204,8 +204,8 @@ pub fn measure(arm: &Arm, case: &Case, length: &RunLength) -> Result<Measurement
         transmission: Amplitude::from_values(&record.transmission),
         dr: Amplitude::from_values(&record.dr),
         shares: tip_shares(&modal, &lengths.tip_amplitudes)?,
-        vibration: vibration(&record.modal, interval, segment, &lengths)?,
-        bands: bands(&record.dr, interval, segment, &lengths)?,
+        vibration: compute_vibration(&record.modal, interval, segment, &lengths)?,
+        bands: compute_bands(&record.dr, interval, segment, &lengths)?,
         trend: (Amplitude::from_values(halves.1).rms / Amplitude::from_values(halves.0).rms).ln(),
         transient: run.begin,
         switches: run.switches as f64 / (run.end() - run.begin),
@@ -225,7 +225,11 @@ fn grows_fast_at_once(
 }
 
 /// Returns the length of the transient in forcing periods.
-fn transient_periods(case: &Case, length: &RunLength, lengths: &ConversionFactors) -> usize {
+fn compute_transient_periods(
+    case: &Case,
+    length: &RunLength,
+    lengths: &ConversionFactors,
+) -> usize {
     let (least, most) = length.transient;
     let b_m = case.undisclosed.b_m;
     if b_m <= 0.0 {
@@ -249,7 +253,7 @@ fn line_share(x_sp: &[f64], interval: f64, samples: usize) -> Result<Option<f64>
 
 /// Computes the power above the band of the first mode. Frequencies above half the sampling rate are aliased and keep
 /// their power, except for a small part that is aliased below the band.
-fn vibration(
+fn compute_vibration(
     modal: &[Vec<f64>],
     interval: f64,
     segment: usize,
@@ -267,7 +271,7 @@ fn vibration(
     Ok(powers)
 }
 
-fn bands(
+fn compute_bands(
     dr: &[f64],
     interval: f64,
     segment: usize,

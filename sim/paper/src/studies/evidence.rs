@@ -22,7 +22,7 @@ pub(super) fn format_evidence(rule: Rule, keys: &[CaseKey], found: &[&Reading]) 
             parts.collect::<Vec<_>>().join(" ")
         }
         Rule::Route(_) | Rule::FrequencyMatters => {
-            each(&|key, reading| format!("{key}: {}", kind(reading)))
+            each(&|key, reading| format!("{key}: {}", format_kind(reading)))
         }
         Rule::ErrorGrows(_) => each(&|key, reading| {
             let printed = 1e3 * reading.f_la.largest;
@@ -33,8 +33,8 @@ pub(super) fn format_evidence(rule: Rule, keys: &[CaseKey], found: &[&Reading]) 
         Rule::DeflectionDominates(_)
         | Rule::TransmissionDominates(_)
         | Rule::ShareGrows(_)
-        | Rule::DeflectionSteady(_) => each(&components),
-        Rule::DominantMode(..) | Rule::ModeChanges(_) => each(&modes),
+        | Rule::DeflectionSteady(_) => each(&format_components),
+        Rule::DominantMode(..) | Rule::ModeChanges(_) => each(&format_modes),
         Rule::OrderSuffices => each(&|key, reading| {
             let (span, rms) = (1e3 * reading.dr.span, 1e3 * reading.dr.rms);
             format!(
@@ -45,12 +45,12 @@ pub(super) fn format_evidence(rule: Rule, keys: &[CaseKey], found: &[&Reading]) 
     }
 }
 
-fn kind(reading: &Reading) -> &str {
+fn format_kind(reading: &Reading) -> &str {
     // The verdict precedes the first colon.
     reading.sentence.split(':').next().unwrap_or_default()
 }
 
-fn components(key: &CaseKey, reading: &Reading) -> String {
+fn format_components(key: &CaseKey, reading: &Reading) -> String {
     let (t, d) = (&reading.transmission, &reading.dr);
     format!(
         "b = {}: l dtheta {:.3} mm peak to peak, rms {:.4}; dr {:.3} mm, rms {:.4}",
@@ -63,7 +63,7 @@ fn components(key: &CaseKey, reading: &Reading) -> String {
 }
 
 /// Formats the share of each mode in the vibration.
-fn modes(key: &CaseKey, reading: &Reading) -> String {
+fn format_modes(key: &CaseKey, reading: &Reading) -> String {
     let sum: f64 = reading.vibration.iter().sum();
     let shares: Vec<String> = reading
         .vibration

@@ -8,7 +8,7 @@ use eomgen_plot::{Axes, Frame, Panel, Plate, Reference, Series, plate};
 use super::display::SampledCase;
 use super::error::StudyError;
 use super::planes::{orbit, section};
-use super::report::{Figure, case_name};
+use super::report::{Figure, format_case_name};
 
 /// Smallest density drawn, relative to the greatest. Smaller values are rounding or leakage of the window; they are
 /// replaced by this level.
@@ -91,16 +91,16 @@ fn ids(row: &FigureRow<'_>) -> Vec<String> {
         FigureRow::TimeHistory(row) => row
             .cases
             .iter()
-            .map(|(_, of)| case_name(&of.case))
+            .map(|(_, of)| format_case_name(&of.case))
             .collect(),
-        FigureRow::Planes(_, display) => vec![case_name(&display.case)],
+        FigureRow::Planes(_, display) => vec![format_case_name(&display.case)],
     }
 }
 
 fn section_columns(row: &FigureRow<'_>) -> [Vec<f64>; 2] {
     match row {
         FigureRow::TimeHistory(_) => [Vec::new(), Vec::new()],
-        FigureRow::Planes(_, display) => [0, 2].map(|place| display.section_column(place)),
+        FigureRow::Planes(_, display) => [0, 2].map(|place| display.extract_section_column(place)),
     }
 }
 
@@ -158,14 +158,14 @@ fn history<'a>(row: &Row<'a>) -> Frame<'a> {
             quantity: row.quantity.name().to_owned(),
             unit: "m".to_owned(),
             series: curves.collect(),
-            references: flank_marks(row),
+            references: list_flank_marks(row),
         },
         ..Frame::default()
     }
 }
 
 /// Returns the positions of the flanks in a time history of the mesh.
-fn flank_marks(row: &Row<'_>) -> Vec<Reference> {
+fn list_flank_marks(row: &Row<'_>) -> Vec<Reference> {
     let backlash = row.cases.first().map_or(0.0, |(_, d)| d.case.backlash);
     if row.quantity != Quantity::MeshDeflection || backlash == 0.0 {
         return Vec::new();
@@ -187,18 +187,18 @@ fn spectrum<'a>(row: &Row<'a>, drawn: &'a [Vec<f64>]) -> Frame<'a> {
         ..Series::default()
     });
     Frame {
-        panel: density_panel(row.quantity.name(), curves.collect()),
+        panel: create_density_panel(row.quantity.name(), curves.collect()),
         axes: Axes::Frequency,
         marks: row
             .cases
             .last()
-            .map_or_else(Vec::new, |(_, d)| frequency_marks(d)),
+            .map_or_else(Vec::new, |(_, d)| list_frequency_marks(d)),
         ..Frame::default()
     }
 }
 
 /// Creates a panel of power spectral densities of a length.
-pub(super) fn density_panel<'a>(of: &str, series: Vec<Series<'a>>) -> Panel<'a> {
+pub(super) fn create_density_panel<'a>(of: &str, series: Vec<Series<'a>>) -> Panel<'a> {
     Panel {
         title: format!("power spectrum of {of}"),
         quantity: "G_q".to_owned(),
@@ -209,7 +209,7 @@ pub(super) fn density_panel<'a>(of: &str, series: Vec<Series<'a>>) -> Panel<'a> 
 }
 
 /// Returns marks at the forcing frequency and at the natural frequencies with both meshes in contact.
-pub(super) fn frequency_marks(display: &SampledCase) -> Vec<Reference> {
+pub(super) fn list_frequency_marks(display: &SampledCase) -> Vec<Reference> {
     let forcing = Reference {
         label: "ω/2π".to_owned(),
         value: display.case.omega / TAU,

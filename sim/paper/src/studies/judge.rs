@@ -50,12 +50,12 @@ impl Verdict {
         }
     }
 
-    fn of(holds: bool) -> Self {
+    fn from_condition(holds: bool) -> Self {
         if holds { Self::Holds } else { Self::Fails }
     }
 
     /// Combines verdicts: holds if all hold, fails if one fails.
-    fn all(parts: &[Self]) -> Self {
+    fn combine(parts: &[Self]) -> Self {
         if parts.contains(&Self::Fails) {
             Self::Fails
         } else if parts.contains(&Self::Undecided) {
@@ -78,19 +78,24 @@ pub fn judge(claim: &Claim, readings: &Readings) -> Judgement {
         };
     };
     let (holding, strict) = match claim.rule {
-        Rule::Regular(_) => (is(&found, Kind::Regular), is_quasi_periodic(&found)),
-        Rule::Chaotic(_) => twice(is(&found, Kind::Chaotic)),
+        Rule::Regular(_) => (
+            judge_kind(&found, Kind::Regular),
+            judge_quasi_periodic(&found),
+        ),
+        Rule::Chaotic(_) => repeat_for_both_readings(judge_kind(&found, Kind::Chaotic)),
         Rule::Route(_) => (judge_route(&found), judge_strict_route(&found)),
         Rule::ErrorGrows(_) => judge_error_growth(&found),
-        Rule::DeflectionDominates(_) => twice(judge_dominance(&found, 1.0)),
-        Rule::TransmissionDominates(_) => twice(judge_dominance(&found, -1.0)),
-        Rule::ShareGrows(_) => twice(grows(&sizes(&found, |r| r.transmission.span / r.dr.span))),
-        Rule::DominantMode(_, mode) => twice(mode_is(&found, mode)),
-        Rule::ModeChanges(_) => twice(mode_changes(&found)),
-        Rule::DeflectionSteady(_) => twice(is_steady(&found)),
-        Rule::FrequencyMatters => twice(judge_frequency(&found)),
-        Rule::FlexibilityMatters => twice(differ(&found)),
-        Rule::OrderSuffices => twice(agree(&found)),
+        Rule::DeflectionDominates(_) => repeat_for_both_readings(judge_dominance(&found, 1.0)),
+        Rule::TransmissionDominates(_) => repeat_for_both_readings(judge_dominance(&found, -1.0)),
+        Rule::ShareGrows(_) => repeat_for_both_readings(judge_growth(&list_sizes(&found, |r| {
+            r.transmission.span / r.dr.span
+        }))),
+        Rule::DominantMode(_, mode) => repeat_for_both_readings(judge_dominant_mode(&found, mode)),
+        Rule::ModeChanges(_) => repeat_for_both_readings(judge_mode_change(&found)),
+        Rule::DeflectionSteady(_) => repeat_for_both_readings(judge_steadiness(&found)),
+        Rule::FrequencyMatters => repeat_for_both_readings(judge_frequency(&found)),
+        Rule::FlexibilityMatters => repeat_for_both_readings(judge_difference(&found)),
+        Rule::OrderSuffices => repeat_for_both_readings(judge_agreement(&found)),
     };
     Judgement {
         holding,
@@ -99,21 +104,21 @@ pub fn judge(claim: &Claim, readings: &Readings) -> Judgement {
     }
 }
 
-fn twice(holding: Verdict) -> (Verdict, Verdict) {
+fn repeat_for_both_readings(holding: Verdict) -> (Verdict, Verdict) {
     (holding, holding)
 }
 
-fn is(found: &[&Reading], kind: Kind) -> Verdict {
+fn judge_kind(found: &[&Reading], kind: Kind) -> Verdict {
     match found {
-        [reading] if reading.kind != Kind::Unknown => Verdict::of(reading.kind == kind),
+        [reading] if reading.kind != Kind::Unknown => Verdict::from_condition(reading.kind == kind),
         _ => Verdict::Undecided,
     }
 }
 
-fn is_quasi_periodic(found: &[&Reading]) -> Verdict {
+fn judge_quasi_periodic(found: &[&Reading]) -> Verdict {
     match found {
         [reading] if reading.kind != Kind::Unknown => {
-            Verdict::of(reading.is_strictly_quasi_periodic)
+            Verdict::from_condition(reading.is_strictly_quasi_periodic)
         }
         _ => Verdict::Undecided,
     }
@@ -143,9 +148,9 @@ fn judge_route(found: &[&Reading]) -> Verdict {
     } else {
         Verdict::Holds
     };
-    Verdict::all(&[
-        is(&[first], Kind::Regular),
-        is(&[last], Kind::Chaotic),
+    Verdict::combine(&[
+        judge_kind(&[first], Kind::Regular),
+        judge_kind(&[last], Kind::Chaotic),
         back,
     ])
 }
@@ -154,22 +159,22 @@ fn judge_route(found: &[&Reading]) -> Verdict {
 fn judge_strict_route(found: &[&Reading]) -> Verdict {
     let first = found
         .first()
-        .map_or(Verdict::Undecided, |first| is_quasi_periodic(&[first]));
-    Verdict::all(&[judge_route(found), first])
+        .map_or(Verdict::Undecided, |first| judge_quasi_periodic(&[first]));
+    Verdict::combine(&[judge_route(found), first])
 }
 
-fn sizes(found: &[&Reading], size: impl Fn(&Reading) -> f64) -> Vec<f64> {
+fn list_sizes(found: &[&Reading], size: impl Fn(&Reading) -> f64) -> Vec<f64> {
     found.iter().map(|reading| size(reading)).collect()
 }
 
-fn grows(sizes: &[f64]) -> Verdict {
+fn judge_growth(sizes: &[f64]) -> Verdict {
     let steps = sizes.windows(2).all(|pair| match pair {
         [before, after] => *after >= before * (1.0 - MAX_RELATIVE_DECREASE),
         _ => true,
     });
     match (sizes.first(), sizes.last()) {
         (Some(first), Some(last)) if sizes.iter().all(|size| size.is_finite()) => {
-            Verdict::of(steps && *last >= first * (1.0 + MIN_TOTAL_GROWTH))
+            Verdict::from_condition(steps && *last >= first * (1.0 + MIN_TOTAL_GROWTH))
         }
         _ => Verdict::Undecided,
     }
@@ -177,8 +182,8 @@ fn grows(sizes: &[f64]) -> Verdict {
 
 /// Returns two verdicts: for the error with the correct sign or as printed, and for the error as printed.
 fn judge_error_growth(found: &[&Reading]) -> (Verdict, Verdict) {
-    let printed = grows(&sizes(found, |r| r.f_la.largest));
-    let signed = grows(&sizes(found, |r| r.f_la_signed.largest));
+    let printed = judge_growth(&list_sizes(found, |r| r.f_la.largest));
+    let signed = judge_growth(&list_sizes(found, |r| r.f_la_signed.largest));
     match (printed, signed) {
         (Verdict::Holds, _) | (_, Verdict::Holds) => (Verdict::Holds, printed),
         _ => (printed, printed),
@@ -202,20 +207,22 @@ fn judge_dominance(found: &[&Reading], sign: f64) -> Verdict {
     }
 }
 
-fn mode_is(found: &[&Reading], mode: usize) -> Verdict {
+fn judge_dominant_mode(found: &[&Reading], mode: usize) -> Verdict {
     match found {
         [reading] => match reading.dominant_mode() {
-            Some(found) => Verdict::of(found == mode),
+            Some(found) => Verdict::from_condition(found == mode),
             None => Verdict::Undecided,
         },
         _ => Verdict::Undecided,
     }
 }
 
-fn mode_changes(found: &[&Reading]) -> Verdict {
+fn judge_mode_change(found: &[&Reading]) -> Verdict {
     let modes: Option<Vec<usize>> = found.iter().map(|r| r.dominant_mode()).collect();
     match modes {
-        Some(modes) => Verdict::of(modes.iter().any(|mode| Some(mode) != modes.first())),
+        Some(modes) => {
+            Verdict::from_condition(modes.iter().any(|mode| Some(mode) != modes.first()))
+        }
         None => Verdict::Undecided,
     }
 }
@@ -226,14 +233,16 @@ fn size_ratio(sizes: &[f64]) -> f64 {
     sizes.iter().copied().fold(0.0, f64::max) / least
 }
 
-fn is_steady(found: &[&Reading]) -> Verdict {
-    let spans = size_ratio(&sizes(found, |r| r.dr.span));
-    let rms = size_ratio(&sizes(found, |r| r.dr.rms));
-    let transmission = size_ratio(&sizes(found, |r| r.transmission.span));
+fn judge_steadiness(found: &[&Reading]) -> Verdict {
+    let spans = size_ratio(&list_sizes(found, |r| r.dr.span));
+    let rms = size_ratio(&list_sizes(found, |r| r.dr.rms));
+    let transmission = size_ratio(&list_sizes(found, |r| r.transmission.span));
     if !(spans.is_finite() && rms.is_finite() && transmission.is_finite()) {
         return Verdict::Undecided;
     }
-    Verdict::of(spans < MAX_LITTLE_RATIO && rms < MAX_LITTLE_RATIO && spans < transmission)
+    Verdict::from_condition(
+        spans < MAX_LITTLE_RATIO && rms < MAX_LITTLE_RATIO && spans < transmission,
+    )
 }
 
 /// Judges whether the frequency matters. `found` has the readings of the first frequency, then those of the second.
@@ -242,7 +251,7 @@ fn judge_frequency(found: &[&Reading]) -> Verdict {
     let pairs: Vec<Verdict> = one
         .iter()
         .zip(other)
-        .map(|(a, b)| differ(&[a, b]))
+        .map(|(a, b)| judge_difference(&[a, b]))
         .collect();
     if pairs.contains(&Verdict::Holds) {
         Verdict::Holds
@@ -253,20 +262,22 @@ fn judge_frequency(found: &[&Reading]) -> Verdict {
     }
 }
 
-fn differ(found: &[&Reading]) -> Verdict {
+fn judge_difference(found: &[&Reading]) -> Verdict {
     match found {
         [a, b] if a.kind != Kind::Unknown && b.kind != Kind::Unknown => {
-            Verdict::of(a.kind != b.kind)
+            Verdict::from_condition(a.kind != b.kind)
         }
         _ => Verdict::Undecided,
     }
 }
 
-fn agree(found: &[&Reading]) -> Verdict {
-    let spans = size_ratio(&sizes(found, |r| r.dr.span));
-    let rms = size_ratio(&sizes(found, |r| r.dr.rms));
+fn judge_agreement(found: &[&Reading]) -> Verdict {
+    let spans = size_ratio(&list_sizes(found, |r| r.dr.span));
+    let rms = size_ratio(&list_sizes(found, |r| r.dr.rms));
     if spans.is_finite() && rms.is_finite() {
-        Verdict::of(spans < 1.0 + MAX_CONVERGED_DIFFERENCE && rms < 1.0 + MAX_CONVERGED_DIFFERENCE)
+        Verdict::from_condition(
+            spans < 1.0 + MAX_CONVERGED_DIFFERENCE && rms < 1.0 + MAX_CONVERGED_DIFFERENCE,
+        )
     } else {
         Verdict::Undecided
     }

@@ -57,7 +57,7 @@ fn weigh(
     known: &MotionProperties<'_>,
     periods: usize,
 ) -> Result<Classification, StudyError> {
-    let places = mesh_places(known.case);
+    let places = mesh_state_indices(known.case);
     let section: Vec<f64> = neighbours
         .states()
         .iter()
@@ -104,7 +104,7 @@ pub(super) fn is_strong_growth(exponent: &Exponent, case: &Case) -> bool {
 }
 
 /// Returns the indices of x_sp, x_pr and their rates in the state.
-fn mesh_places(case: &Case) -> [usize; 4] {
+fn mesh_state_indices(case: &Case) -> [usize; 4] {
     let rates = FIRST_MODE + case.order;
     [X_SP, X_PR, rates + X_SP, rates + X_PR]
 }

@@ -28,13 +28,13 @@ pub(super) fn draw_machine() -> Figure {
                    theta_p and theta_c, motor torque T_M, mesh deflections x_sp and x_pr, forces F_sp and F_pr on a planet, the deflection w of the arm and that of its end, \
                    tip (dr in the paper), the lag dtheta of the carrier, and the two positioning errors f_la and f_la_signed";
     let parts = [
-        gears(),
-        meshes(),
-        forces(),
-        arm(),
-        errors(),
+        draw_gears(),
+        draw_meshes(),
+        draw_forces(),
+        draw_arm(),
+        draw_errors(),
         draw_mesh_force(),
-        formulas(),
+        draw_formulas(),
     ];
     Figure {
         file: "machine.svg".to_owned(),
@@ -58,7 +58,7 @@ fn circle(centre: (f64, f64), radius: f64) -> Part {
 }
 
 /// Draws sun, planets, ring and carrier with their angles.
-fn gears() -> Vec<Part> {
+fn draw_gears() -> Vec<Part> {
     let mut parts = vec![
         circle(CENTRE, SUN),
         circle(CENTRE, RING),
@@ -93,7 +93,7 @@ fn gears() -> Vec<Part> {
 
 /// Draws the lines of action at both meshes of the upper planet. An arrow marks the side that leads if the deflection
 /// is positive.
-fn meshes() -> Vec<Part> {
+fn draw_meshes() -> Vec<Part> {
     let (sun, ring) = (
         point_on_circle(CENTRE, SUN, 90.0),
         point_on_circle(CENTRE, RING, 90.0),
@@ -115,7 +115,7 @@ fn meshes() -> Vec<Part> {
 }
 
 /// Draws the forces of both meshes on the right planet. The radial components push the planet out of the meshes.
-fn forces() -> Vec<Part> {
+fn draw_forces() -> Vec<Part> {
     let place = PLANETS[2];
     let planet = point_on_circle(CENTRE, SUN + PLANET, place);
     let contacts = [
@@ -136,7 +136,7 @@ fn forces() -> Vec<Part> {
 }
 
 /// Draws the arm at rest on its carrier, and the bent arm.
-fn arm() -> Vec<Part> {
+fn draw_arm() -> Vec<Part> {
     let bent = (0..=40).map(|step| {
         let s = f64::from(step) / 40.0;
         // Deflection by a load at the end, which is similar to the first mode shape.
@@ -173,7 +173,7 @@ fn arm() -> Vec<Part> {
 }
 
 /// Draws lead and lag at the end of the arm.
-fn errors() -> Vec<Part> {
+fn draw_errors() -> Vec<Part> {
     let end = point_on_circle(CENTRE, LENGTH, CARRIER);
     let ideal = point_on_circle(CENTRE, LENGTH + 36.0, CARRIER_WITHOUT_BACKLASH);
     let outside = LENGTH + 20.0;
@@ -257,7 +257,7 @@ fn draw_mesh_force() -> Vec<Part> {
     ]
 }
 
-fn formulas() -> Vec<Part> {
+fn draw_formulas() -> Vec<Part> {
     let mut parts = vec![Part::Heading((470.0, 352.0), "signs".to_owned())];
     let lines = [
         "theta_s, theta_c and the motor torque T_M: with the sun; theta_p: absolute, against it",

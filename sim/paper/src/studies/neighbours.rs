@@ -39,7 +39,7 @@ impl TangentMotion {
         lengths: &ConversionFactors,
     ) -> Result<Self, StudyError> {
         let first = run.states.first().cloned().unwrap_or_default();
-        let weights = weights(case, lengths);
+        let weights = compute_weights(case, lengths);
         let carried =
             propagator.start_with_tangent(&first, run.begin, &HeldInputs::zero(0), &weights)?;
         Ok(Self {
@@ -80,7 +80,7 @@ impl TangentMotion {
 
 /// Returns weights for which a free vibration of the arm with closed meshes has a constant norm, just as its energy is
 /// constant. Otherwise the phase of the vibration would appear as growth. Excluded components have the weight 0.
-fn weights(case: &Case, lengths: &ConversionFactors) -> Vec<f64> {
+fn compute_weights(case: &Case, lengths: &ConversionFactors) -> Vec<f64> {
     let rates = FIRST_MODE + case.order;
     let mut weights = vec![1.0; 2 * rates];
     let meshes = [X_SP, X_PR].map(|mesh| (mesh, 1.0 / lengths.mesh_deflection));

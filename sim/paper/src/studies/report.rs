@@ -76,7 +76,7 @@ impl Study {
 }
 
 /// Returns the name of a case in files: `b025_w10pi_s4`.
-pub(super) fn case_name(case: &Case) -> String {
+pub(super) fn format_case_name(case: &Case) -> String {
     let micrometres = (case.backlash * 1e6).round();
     let multiple = (case.omega / std::f64::consts::PI).round();
     format!("b{micrometres:03}_w{multiple:02}pi_s{}", case.order)
@@ -102,7 +102,7 @@ fn parameters(model: &Model) -> Value {
 
 /// Returns the tables of a sampled case: time series and spectra.
 pub(super) fn tables(display: &SampledCase) -> [Table; 2] {
-    let id = case_name(&display.case);
+    let id = format_case_name(&display.case);
     let history = &display.history;
     let column = |name: &str, values: &[f64]| (name.to_owned(), values.to_vec());
     let mut columns = vec![
@@ -138,7 +138,7 @@ pub(super) fn tables(display: &SampledCase) -> [Table; 2] {
 
 /// Returns a measured case as JSON, with the names of its files.
 pub(super) fn case_json(measured: &Measurement) -> Value {
-    let id = case_name(&measured.case);
+    let id = format_case_name(&measured.case);
     let evidence = &measured.evidence;
     json!({
         "case": id,

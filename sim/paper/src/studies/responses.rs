@@ -15,7 +15,7 @@ use super::display::SampledCase;
 use super::error::StudyError;
 use super::figures::{FigureRow, Heading, Quantity, Row, draw_rows};
 use super::machine::draw_machine;
-use super::report::{Figure, Study, Table, case_json, case_name, tables};
+use super::report::{Figure, Study, Table, case_json, format_case_name, tables};
 
 /// Truncation order of the paper.
 const PAPER_ORDER: usize = 4;
@@ -47,13 +47,13 @@ pub fn flexibility(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
     let arm = Arm::new(&[0, PAPER_ORDER])?;
     let pairs = HALF_BACKLASHES_UM.into_iter().filter(|b| *b > 0);
     let cases: Vec<Case> = pairs
-        .flat_map(|b| [0, PAPER_ORDER].map(|order| paper_case(order, b, 10.0 * PI)))
+        .flat_map(|b| [0, PAPER_ORDER].map(|order| create_paper_case(order, b, 10.0 * PI)))
         .collect();
     let (displays, mut study) = run(&arm, &cases, progress)?;
     for (place, pair) in displays.chunks(2).enumerate() {
         let [rigid, flexible] = pair else { continue };
         let row = |title: &str, display| Row {
-            title: format!("{title}, {}", short_title(&rigid.case)),
+            title: format!("{title}, {}", format_short_title(&rigid.case)),
             quantity: Quantity::MeshDeflection,
             cases: vec![(String::new(), display)],
         };
@@ -90,7 +90,7 @@ fn add_bifurcations(study: &mut Study, found: &[Bifurcation]) -> Result<(), Stud
 }
 
 /// Returns a case of the paper with the assumed values.
-pub(super) fn paper_case(order: usize, micrometres: u32, omega: f64) -> Case {
+pub(super) fn create_paper_case(order: usize, micrometres: u32, omega: f64) -> Case {
     Case {
         order,
         backlash: f64::from(micrometres) * 1e-6,
@@ -105,7 +105,7 @@ fn responses(
     progress: Progress<'_>,
 ) -> Result<(Study, Arm), StudyError> {
     let arm = Arm::new(&[PAPER_ORDER])?;
-    let cases = HALF_BACKLASHES_UM.map(|b| paper_case(PAPER_ORDER, b, omega));
+    let cases = HALF_BACKLASHES_UM.map(|b| create_paper_case(PAPER_ORDER, b, omega));
     let (displays, mut study) = run(&arm, &cases, progress)?;
     for (place, display) in displays.iter().enumerate() {
         study
@@ -125,7 +125,7 @@ fn responses(
 
 fn draw_response(number: usize, display: &SampledCase) -> Result<Figure, StudyError> {
     let row = |title: &str, quantity| Row {
-        title: format!("{title}, {}", short_title(&display.case)),
+        title: format!("{title}, {}", format_short_title(&display.case)),
         quantity,
         cases: vec![(String::new(), display)],
     };
@@ -158,7 +158,7 @@ fn draw_deflections(
     let mut drawn = Vec::with_capacity(displays.len());
     for (display, letter) in displays.iter().zip(letters) {
         drawn.push(FigureRow::TimeHistory(Row {
-            title: format!("{letter} {}", short_title(&display.case)),
+            title: format!("{letter} {}", format_short_title(&display.case)),
             quantity: Quantity::ArmDeflection,
             cases: vec![(String::new(), display)],
         }));
@@ -177,7 +177,7 @@ fn draw_deflections(
 }
 
 /// Returns a short description of a case for the title of a panel.
-fn short_title(case: &Case) -> String {
+fn format_short_title(case: &Case) -> String {
     let (micrometres, multiple) = (case.backlash * 1e6, case.omega / PI);
     format!("b = {micrometres:.0} µm, ω = {multiple:.0}π rad/s")
 }
@@ -216,7 +216,7 @@ pub(super) fn run(
     let (displays, cases): (Vec<SampledCase>, Vec<Value>) = found.into_iter().unzip();
     let study = Study {
         figures: Vec::new(),
-        tables: displays.iter().flat_map(all_tables).collect(),
+        tables: displays.iter().flat_map(list_tables).collect(),
         cases,
         further_entries: vec![("notes", json!(NOTES))],
     };
@@ -232,15 +232,16 @@ fn measure_case(arm: &Arm, each: &Case) -> Result<(f64, Vec<f64>, Value), StudyE
 }
 
 fn section_table(each: &Case) -> String {
-    format!("{}_section.parquet", case_name(each))
+    format!("{}_section.parquet", format_case_name(each))
 }
 
 /// Returns all tables of a case: time series, spectra and section.
-fn all_tables(display: &SampledCase) -> Vec<Table> {
+fn list_tables(display: &SampledCase) -> Vec<Table> {
     let names = ["x_sp", "x_pr", "x_sp_dot", "x_pr_dot"]
         .into_iter()
         .enumerate();
-    let columns = names.map(|(place, name)| (name.to_owned(), display.section_column(place)));
+    let columns =
+        names.map(|(place, name)| (name.to_owned(), display.extract_section_column(place)));
     let section = Table {
         file: section_table(&display.case),
         columns: columns.collect(),

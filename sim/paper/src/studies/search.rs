@@ -15,7 +15,7 @@ use super::claims::{CLAIMS, cases};
 use super::error::StudyError;
 use super::judge::{Judgement, Readings, Verdict, judge};
 use super::reading::Reading;
-use super::sets::{neighbouring_set, parameter_set};
+use super::sets::{create_neighbouring_set, create_parameter_set};
 
 /// Version of the rules; results of other versions are rejected.
 const RULES_VERSION: u32 = 3;
@@ -174,7 +174,7 @@ pub fn search(
 ) -> Result<SearchResult, StudyError> {
     let store = Store::open(folder, request, arm.shapes())?;
     let sets: Vec<(usize, UndisclosedParameters)> = (0..request.sets)
-        .map(|index| (index, parameter_set(index, request.seed)))
+        .map(|index| (index, create_parameter_set(index, request.seed)))
         .collect();
     let mut run =
         |stage: &str, sets: &[(usize, UndisclosedParameters)], length: &RunLength, done: usize| {
@@ -199,7 +199,7 @@ pub fn search(
                 .map(|index| {
                     (
                         index,
-                        neighbouring_set(&best.undisclosed, index, request.seed),
+                        create_neighbouring_set(&best.undisclosed, index, request.seed),
                     )
                 })
                 .collect()
@@ -234,7 +234,7 @@ impl Store {
         let store = Self {
             folder: folder.to_owned(),
         };
-        fs::create_dir_all(folder).map_err(|error| refused("make", folder, &error))?;
+        fs::create_dir_all(folder).map_err(|error| file_error("make", folder, &error))?;
         let description = folder.join("request.txt");
         let claims: Vec<&str> = CLAIMS.iter().map(|claim| claim.id).collect();
         let claims = claims.join(" ");
@@ -283,7 +283,7 @@ impl Store {
         let unfinished = path.with_extension("unfinished");
         fs::write(&unfinished, text)
             .and_then(|()| fs::rename(&unfinished, path))
-            .map_err(|error| refused("write", path, &error))
+            .map_err(|error| file_error("write", path, &error))
     }
 }
 
@@ -294,6 +294,6 @@ fn read(path: &Path, length: usize) -> Option<Vec<JudgedSet>> {
     judged.filter(|judged| judged.len() == length)
 }
 
-fn refused(action: &str, path: &Path, error: &std::io::Error) -> StudyError {
+fn file_error(action: &str, path: &Path, error: &std::io::Error) -> StudyError {
     StudyError::File(format!("cannot {action} {}: {error}", path.display()))
 }

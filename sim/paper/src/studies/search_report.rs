@@ -6,7 +6,7 @@ use super::claims::CLAIMS;
 use super::judge::Judgement;
 use super::search::{JudgedSet, SearchRequest, SearchResult, rank};
 use super::sets::RANGES;
-use super::tally::{exclusive_pairs, histogram, share_with, shares, undecided};
+use super::tally::{find_exclusive_pairs, histogram, share_with, shares, undecided};
 
 /// Number of sets listed in the document.
 const LISTED_SETS: usize = 20;
@@ -82,7 +82,7 @@ pub fn document(request: &SearchRequest, assumed: &[Judgement], found: &SearchRe
             "to": range.bounds.1, "reason": range.reason,
         })
     });
-    let pairs = exclusive_pairs(&found.screened);
+    let pairs = find_exclusive_pairs(&found.screened);
     json!({
         "schema": 2,
         "sets": request.sets,
@@ -176,6 +176,6 @@ fn format_best_set(best: &JudgedSet, found: &SearchResult) -> String {
         within(0),
         within(1),
         within(2),
-        exclusive_pairs(&found.screened).len(),
+        find_exclusive_pairs(&found.screened).len(),
     )
 }

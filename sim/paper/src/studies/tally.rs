@@ -53,7 +53,7 @@ pub fn histogram(judged: &[JudgedSet]) -> Vec<usize> {
 }
 
 /// Returns pairs of claims that each hold in some set but never hold together.
-pub fn exclusive_pairs(judged: &[JudgedSet]) -> Vec<(usize, usize)> {
+pub fn find_exclusive_pairs(judged: &[JudgedSet]) -> Vec<(usize, usize)> {
     let holds = |set: &JudgedSet, claim: usize| set.verdicts.get(claim) == Some(&'H');
     let somewhere: Vec<usize> = (0..CLAIMS.len())
         .filter(|claim| judged.iter().any(|set| holds(set, *claim)))

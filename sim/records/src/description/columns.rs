@@ -68,7 +68,7 @@ impl Column {
                 .with_span(written.span, PERIOD_FORMS)
                 .with_optional_help(help)
         })?;
-        self.wrap = Some(Wrap::Period(positive_period(Number {
+        self.wrap = Some(Wrap::Period(require_positive_period(Number {
             value,
             span: written.span,
         })?));
@@ -171,7 +171,7 @@ fn read_column(record: &Record<'_>, found: &mut Diagnostics) -> Option<Column> {
         Some((_, Ok(written))) if written.text == "none" => (Some(Wrap::Never), None),
         Some((_, Ok(written))) => (None, Some(written)),
         Some((entry, Err(_))) => {
-            let period = entry.number().and_then(positive_period);
+            let period = entry.number().and_then(require_positive_period);
             (found.push_error(period).map(Wrap::Period), None)
         }
     };
@@ -183,7 +183,7 @@ fn read_column(record: &Record<'_>, found: &mut Diagnostics) -> Option<Column> {
     })
 }
 
-fn positive_period(period: Number) -> Result<Number, Diagnostic> {
+fn require_positive_period(period: Number) -> Result<Number, Diagnostic> {
     match period.value > 0.0 {
         true => Ok(period),
         false => Err(Diagnostic::error(format!(

@@ -92,7 +92,7 @@ fn read_values(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InitialStat
 }
 
 /// Reads the length of a window that is given as text.
-fn length_in_words(written: &StringValue) -> Result<Option<Number>, Diagnostic> {
+fn read_length_text(written: &StringValue) -> Result<Option<Number>, Diagnostic> {
     const RECORD: &str = "record";
     if written.text == RECORD {
         return Ok(None);
@@ -117,7 +117,7 @@ pub(super) fn read_windows(entry: &Entry<'_>, found: &mut Diagnostics) -> Option
     let smoothed = record.optional("start", start, found);
     let length = record.require("length", found)?;
     let length = match length.written() {
-        Ok(written) => found.push_error(length_in_words(&written)),
+        Ok(written) => found.push_error(read_length_text(&written)),
         Err(_) => found.push_error(length.number()).map(Some),
     };
     let length = length?;

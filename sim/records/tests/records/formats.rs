@@ -65,7 +65,7 @@ fn read(folder: &TempDir) -> Result<Dataset, Refusal> {
     read_dataset(&folder.path().join("dataset.toml"), &pendulum())
 }
 
-fn refused(folder: &TempDir) -> String {
+fn rejection_message(folder: &TempDir) -> String {
     match read(folder) {
         Ok(_) => panic!("it is taken"),
         Err(Refusal::Description(found)) => found.render(false),
@@ -73,12 +73,12 @@ fn refused(folder: &TempDir) -> String {
     }
 }
 
-fn plain(t: f64, angle: f64) -> String {
+fn format_sample_line(t: f64, angle: f64) -> String {
     format!("{t:.2},{angle:.6}\n")
 }
 
 /// Asserts that a dataset contains the written numbers.
-fn holds(dataset: &Dataset) {
+fn assert_has_written_numbers(dataset: &Dataset) {
     for (record, turn) in [(&dataset.train[0], 0.0), (&dataset.test[0], 1.0)] {
         assert_eq!(record.times.len(), SAMPLES);
         for sample in 0..SAMPLES {
@@ -100,7 +100,11 @@ fn every_format_is_read_exactly() {
         .replace("column = \"angle\"", "column = 3");
     let with = |format: &str| format!("{DESCRIPTION}\n[format]\n{format}\n");
     let cases: [(String, &str, Line); 9] = [
-        (DESCRIPTION.to_owned(), "t,angle\n", Box::new(plain)),
+        (
+            DESCRIPTION.to_owned(),
+            "t,angle\n",
+            Box::new(format_sample_line),
+        ),
         (
             with("separator = \";\"\ndecimal = \",\""),
             "\u{feff}t;angle\n",
@@ -139,13 +143,13 @@ fn every_format_is_read_exactly() {
         (
             with("").replace("\"angle\"", "\"angle (mrad)\""),
             "t,angle (mrad)\n",
-            Box::new(plain),
+            Box::new(format_sample_line),
         ),
     ];
     for (description, head, line) in cases {
         let folder = folder(&description, head, line);
         let dataset = read(&folder).unwrap_or_else(|refusal| panic!("{head}: {refusal}"));
-        holds(&dataset);
+        assert_has_written_numbers(&dataset);
     }
 }
 
@@ -216,12 +220,12 @@ fn wrong_formats_are_rejected_with_cure() {
     ];
     for (description, text, part) in cases {
         let folder = folder(&description, text, |_, _| String::new());
-        let message = refused(&folder);
+        let message = rejection_message(&folder);
         assert!(message.contains(part), "{part}: {message}");
     }
-    let folder = folder(DESCRIPTION, "t,angle\n", plain);
+    let folder = folder(DESCRIPTION, "t,angle\n", format_sample_line);
     std::fs::write(folder.path().join("train.csv"), b"\xff\xfet\0,\0").expect("a file");
-    assert!(refused(&folder).contains("is UTF-16; expected UTF-8"));
+    assert!(rejection_message(&folder).contains("is UTF-16; expected UTF-8"));
 }
 
 #[test]
@@ -253,7 +257,7 @@ fn file_is_split_by_times() {
         ("to = 2500", "to = 100", "has 10 samples; expected 50"),
     ] {
         write(folder.path(), "dataset.toml", &parted.replacen(from, to, 1));
-        let message = refused(&folder);
+        let message = rejection_message(&folder);
         assert!(message.contains(part), "{part}: {message}");
     }
 }
@@ -275,14 +279,14 @@ fn decimation_works_with_and_without_low_pass() {
     assert!(furthest(&dataset) < 5e-5, "{}", furthest(&dataset));
     // The noise decreases with the bandwidth.
     assert!((dataset.channels[0].noise / 1e-4 - 0.4).abs() < 0.03);
-    let plain = folder(&every("filter = \"none\""), "t,angle\n", line);
-    let dataset = read(&plain).unwrap_or_else(|refusal| panic!("{refusal}"));
+    let unfiltered = folder(&every("filter = \"none\""), "t,angle\n", line);
+    let dataset = read(&unfiltered).unwrap_or_else(|refusal| panic!("{refusal}"));
     assert!(furthest(&dataset) > 4e-3);
     assert_eq!(dataset.channels[0].noise, 1e-4);
 
     let text = record("t,angle\n", 0.0, line).replace("\n1.50,", "\n1.505,");
     write(smooth.path(), "train.csv", &text);
-    let message = refused(&smooth);
+    let message = rejection_message(&smooth);
     assert!(message.contains("line 152: the low-pass"), "{message}");
     write(smooth.path(), "dataset.toml", &every("filter = \"none\""));
     assert!(read(&smooth).is_ok());
@@ -292,7 +296,7 @@ fn decimation_works_with_and_without_low_pass() {
             "dataset.toml",
             &every("").replace("every = 5", wrong),
         );
-        assert!(refused(&smooth).contains(part), "{wrong}");
+        assert!(rejection_message(&smooth).contains(part), "{wrong}");
     }
 }
 
@@ -301,7 +305,7 @@ fn sensor_priors_are_converted_to_si() {
     let said = format!(
         "{DESCRIPTION}gain = {{ mean = 2, sd = 0.5 }}\nbias = {{ sd = 3 }}\ndelay = {{ mean = 0.02, sd = 0 }}\n"
     );
-    let folder = folder(&said, "t,angle\n", plain);
+    let folder = folder(&said, "t,angle\n", format_sample_line);
     let priors = read(&folder).expect("a dataset").channels[0].priors;
     let numbers = |of: Option<eomgen_records::dataset::PriorInSi>| {
         of.map(|expected| (expected.mean, expected.sd))
@@ -323,7 +327,7 @@ fn sensor_priors_are_converted_to_si() {
     ] {
         write(folder.path(), "dataset.toml", &said.replacen(from, to, 1));
         message.clear();
-        write!(message, "{}", refused(&folder)).expect("text");
+        write!(message, "{}", rejection_message(&folder)).expect("text");
         assert!(message.contains(part), "{part}: {message}");
         assert!(message.contains("dataset.toml:"), "{message}");
     }
@@ -497,29 +501,29 @@ fn records_without_possible_proposal_are_rejected() {
 #[test]
 fn names_below_other_lines_are_located() {
     let head = "Bench 3\ndate 1.1.2020\nt,angle\n";
-    let message = refused(&folder(DESCRIPTION, head, plain));
+    let message = rejection_message(&folder(DESCRIPTION, head, format_sample_line));
     let cure = "the names of the columns, t, angle, are in line 3; write skip = 2 in [format]";
     assert!(message.contains(cure), "{message}");
     let cured = format!("{DESCRIPTION}\n[format]\nskip = 2\n");
-    assert!(read(&folder(&cured, head, plain)).is_ok());
+    assert!(read(&folder(&cured, head, format_sample_line)).is_ok());
 }
 
 #[test]
 fn utf_16_without_byte_order_mark_is_named() {
-    let folder = folder(DESCRIPTION, "t,angle\n", plain);
-    let text = record("t,angle\n", 0.0, plain);
+    let folder = folder(DESCRIPTION, "t,angle\n", format_sample_line);
+    let text = record("t,angle\n", 0.0, format_sample_line);
     for order in [u16::to_le_bytes, u16::to_be_bytes] {
         let bytes: Vec<u8> = text.encode_utf16().flat_map(order).collect();
         std::fs::write(folder.path().join("train.csv"), bytes).expect("a file");
-        let message = refused(&folder);
+        let message = rejection_message(&folder);
         assert!(message.contains("is UTF-16; expected UTF-8"), "{message}");
     }
 }
 
 #[test]
 fn gap_is_noted_and_splits_record() {
-    let folder = folder(DESCRIPTION, "t,angle\n", plain);
-    let whole = record("t,angle\n", 0.0, plain);
+    let folder = folder(DESCRIPTION, "t,angle\n", format_sample_line);
+    let whole = record("t,angle\n", 0.0, format_sample_line);
     let lost = |from: usize, to: usize| -> String {
         let lines = whole.lines().enumerate();
         let kept = lines.filter(|(line, _)| !(from..to).contains(line));
@@ -569,19 +573,23 @@ fn rates_and_accelerations_are_channels_in_their_units() {
         ("theta_ddot", "rad/s^2", Quantity::Acceleration(0)),
         ("dot(dot(theta))", "deg/s^2", Quantity::Acceleration(0)),
     ] {
-        let folder = folder(&channel(observable, unit), "t,angle\n", plain);
+        let folder = folder(&channel(observable, unit), "t,angle\n", format_sample_line);
         let dataset = read(&folder).unwrap_or_else(|refusal| panic!("{observable}: {refusal}"));
         assert_eq!(dataset.channels[0].quantity, quantity);
     }
-    let folder = folder(&channel("theta_ddot", "rad/s"), "t,angle\n", plain);
-    assert!(refused(&folder).contains("expected rad/s^2"));
+    let folder = folder(
+        &channel("theta_ddot", "rad/s"),
+        "t,angle\n",
+        format_sample_line,
+    );
+    assert!(rejection_message(&folder).contains("expected rad/s^2"));
 }
 
 #[test]
 fn first_order_state_is_a_channel() {
     let description = DESCRIPTION.replace("[channels.theta]", "[channels.i]");
     let description = description.replace("\"mrad\"", "\"mA\"");
-    let of_current = folder(&description, "t,angle\n", plain);
+    let of_current = folder(&description, "t,angle\n", format_sample_line);
     let source = eomgen_model_spec::models::LOUDSPEAKER.source();
     let model = eomgen_model_spec::check(source).expect("a model").model;
     let read = |folder: &TempDir| read_dataset(&folder.path().join("dataset.toml"), &model);
@@ -595,7 +603,7 @@ fn first_order_state_is_a_channel() {
     let misspelt = folder(
         &description.replace("channels.i", "channels.i_3"),
         "t,angle\n",
-        plain,
+        format_sample_line,
     );
     let refused = read(&misspelt).map(|_| ()).expect_err("no such state");
     assert!(refused.to_string().contains("`i_2`"), "{refused}");
@@ -645,7 +653,7 @@ noise = 0.01
 observable = "G"
 "#;
 
-fn along(description: &str) -> Result<Dataset, Refusal> {
+fn read_along_given_motion(description: &str) -> Result<Dataset, Refusal> {
     let folder = folder(description, "t,x,F,G\n", |t, angle| {
         format!(
             "{t},{:.12},{angle},{}\n",
@@ -665,7 +673,8 @@ fn given_motion_has_rates() {
             1 => ALONG.to_owned(),
             _ => ALONG.replacen("unit = \"s\"", decimated, 1),
         };
-        let dataset = along(&description).unwrap_or_else(|refusal| panic!("{refusal}"));
+        let dataset =
+            read_along_given_motion(&description).unwrap_or_else(|refusal| panic!("{refusal}"));
         assert_eq!(dataset.motion, ["x", "y"]);
         let record = &dataset.train[0];
         for (place, t) in record.times.iter().enumerate() {
@@ -695,7 +704,10 @@ fn given_motion_has_rates() {
 }
 
 /// Reads a dataset with given motion; in the training record, the cells of `x` between two samples are empty.
-fn along_with_empty(description: &str, empty: std::ops::Range<usize>) -> Result<Dataset, Refusal> {
+fn read_with_empty_cells(
+    description: &str,
+    empty: std::ops::Range<usize>,
+) -> Result<Dataset, Refusal> {
     let folder = tempfile::tempdir().expect("a folder");
     write(folder.path(), "dataset.toml", description);
     for (file, turn) in [("train.csv", 0.0), ("test.csv", 1.0)] {
@@ -725,7 +737,7 @@ fn empty_cells_of_a_given_motion_split_a_record_and_few_are_filled() {
     for every in [1, 3] {
         let description =
             ALONG.replacen("unit = \"s\"", &format!("unit = \"s\"\nevery = {every}"), 1);
-        let dataset = along_with_empty(&description, 180..210);
+        let dataset = read_with_empty_cells(&description, 180..210);
         let dataset = dataset.unwrap_or_else(|refusal| panic!("{refusal}"));
         let notes = dataset.notes.join("\n");
         assert!(
@@ -755,14 +767,14 @@ fn empty_cells_of_a_given_motion_split_a_record_and_few_are_filled() {
             }
         }
     }
-    let dataset = along_with_empty(ALONG, 180..184);
+    let dataset = read_with_empty_cells(ALONG, 180..184);
     let dataset = dataset.unwrap_or_else(|refusal| panic!("{refusal}"));
     assert_eq!(dataset.train.len(), 1);
     let notes = dataset.notes.join("\n");
     let note = "train[0]: missing, and interpolated: 4 samples from t = 1.8 s on of `x`";
     assert!(notes.contains(note), "{notes}");
     // The position is unknown before its first value.
-    let dataset = along_with_empty(ALONG, 0..20);
+    let dataset = read_with_empty_cells(ALONG, 0..20);
     let dataset = dataset.unwrap_or_else(|refusal| panic!("{refusal}"));
     assert_eq!(dataset.train[0].times[0], 0.2);
 }
@@ -772,7 +784,7 @@ fn integrated_speed_with_a_gap_is_rejected() {
     let y = "[motion.y]\ncolumn = \"x\"\nunit = \"m\"\n";
     let speed = "[motion.y]\ncolumn = \"G\"\nunit = \"m/min\"\ninitial = 0.25\n";
     let given = ALONG.replace(y, speed);
-    let said = along_with_empty(&given, 180..210).map(|_| ());
+    let said = read_with_empty_cells(&given, 180..210).map(|_| ());
     let said = said.expect_err("an unknown position").to_string();
     let place = "30 samples of `y` are missing between 1.790000 s and 2.100000 s";
     assert!(said.contains(place) && said.contains("train.csv"), "{said}");
@@ -782,8 +794,8 @@ fn integrated_speed_with_a_gap_is_rejected() {
         "train = [{ file = \"train.csv\", to = 1.7 }]",
         1,
     );
-    assert!(along_with_empty(&before, 180..210).is_ok());
-    assert!(along_with_empty(&given, 180..184).is_ok());
+    assert!(read_with_empty_cells(&before, 180..210).is_ok());
+    assert!(read_with_empty_cells(&given, 180..184).is_ok());
 }
 
 #[test]
@@ -791,7 +803,7 @@ fn given_speed_is_integrated_from_initial_position() {
     let y = "[motion.y]\ncolumn = \"x\"\nunit = \"m\"\n";
     let speed = "[motion.y]\ncolumn = \"G\"\nunit = \"m/min\"\ninitial = 0.25\n";
     let given = ALONG.replace(y, speed);
-    let dataset = along(&given).unwrap_or_else(|refusal| panic!("{refusal}"));
+    let dataset = read_along_given_motion(&given).unwrap_or_else(|refusal| panic!("{refusal}"));
     let record = &dataset.train[0];
     for (place, t) in record.times.iter().enumerate().skip(1) {
         let row = record.inputs.last_sample(*t);
@@ -810,7 +822,7 @@ fn given_speed_is_integrated_from_initial_position() {
         "{:?}",
         dataset.notes
     );
-    let unstated = along(&given.replace("initial = 0.25\n", ""));
+    let unstated = read_along_given_motion(&given.replace("initial = 0.25\n", ""));
     let notes = unstated
         .unwrap_or_else(|refusal| panic!("{refusal}"))
         .notes
@@ -826,7 +838,7 @@ fn given_speed_is_integrated_from_initial_position() {
             "a speed does not wrap around",
         ),
     ] {
-        let said = along(&wrong)
+        let said = read_along_given_motion(&wrong)
             .err()
             .map(|refusal| refusal.to_string())
             .unwrap_or_default();
@@ -836,7 +848,7 @@ fn given_speed_is_integrated_from_initial_position() {
 
 #[test]
 fn samples_at_reversals_are_ignored() {
-    let dataset = along(ALONG).unwrap_or_else(|refusal| panic!("{refusal}"));
+    let dataset = read_along_given_motion(ALONG).unwrap_or_else(|refusal| panic!("{refusal}"));
     let left_out = dataset.train[0].channels[0]
         .iter()
         .filter(|v| v.is_nan())
@@ -908,7 +920,9 @@ fn incomplete_and_duplicate_motions_are_rejected() {
             "noise",
         ),
     ] {
-        let refusal = along(&description).err().map(|refusal| refusal.to_string());
+        let refusal = read_along_given_motion(&description)
+            .err()
+            .map(|refusal| refusal.to_string());
         let refusal = refusal.unwrap_or_else(|| panic!("accepted: {description}"));
         assert!(refusal.contains(said), "{said}: {refusal}");
     }
@@ -918,24 +932,24 @@ fn incomplete_and_duplicate_motions_are_rejected() {
 fn common_mistakes_are_reported_with_cure() {
     let refused_with = |description: &str, head: &str, line: &dyn Fn(f64, f64) -> String| {
         let folder = folder(description, head, line);
-        refused(&folder)
+        rejection_message(&folder)
     };
     let bench = "# bench 4, drive, run 7\n# by hand\nt,angle\n";
-    let said = refused_with(DESCRIPTION, bench, &plain);
+    let said = refused_with(DESCRIPTION, bench, &format_sample_line);
     assert!(said.contains("write comment = \"#\" in [format]"), "{said}");
-    let said = refused_with(DESCRIPTION, "t,angle\ns,mrad\n", &plain);
+    let said = refused_with(DESCRIPTION, "t,angle\ns,mrad\n", &format_sample_line);
     assert!(said.contains("write units = true in [format]"), "{said}");
-    let said = refused_with(DESCRIPTION, "", &plain);
+    let said = refused_with(DESCRIPTION, "", &format_sample_line);
     assert!(said.contains("write names = false in [format]"), "{said}");
     let quoted = DESCRIPTION
         .replace("column = \"t\"", "column = \"1\"")
         .replace("[time]", "[format]\nnames = false\n[time]");
-    let said = refused_with(&quoted, "", &plain);
+    let said = refused_with(&quoted, "", &format_sample_line);
     assert!(said.contains("from 1 on: column = 1"), "{said}");
     let joined = DESCRIPTION.replace("\"mrad\"", "\"mNm\"");
-    let said = refused_with(&joined, "t,angle\n", &plain);
+    let said = refused_with(&joined, "t,angle\n", &format_sample_line);
     assert!(said.contains("separate factors by a space: mN m"), "{said}");
-    let motion = along(&ALONG.replace("observable = \"G\"", ""));
+    let motion = read_along_given_motion(&ALONG.replace("observable = \"G\"", ""));
     let said = motion.err().map(|refusal| refusal.to_string());
     let said = said.expect("no such input");
     assert!(

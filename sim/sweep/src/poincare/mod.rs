@@ -13,7 +13,9 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use self::crossing::{Crossing, find_crossings};
-use self::numbers::{MAX_RELATIVE_DISTANCE, find_repetition, linear_comparisons, statistics};
+use self::numbers::{
+    MAX_RELATIVE_DISTANCE, compute_statistics, create_linear_comparisons, find_repetition,
+};
 use self::quantity::Quantity;
 use self::rotation::{MotionSamples, remove_drift};
 use crate::conditions::{Conditions, Start};
@@ -77,7 +79,7 @@ pub struct Poincare<'a> {
 }
 
 impl<'a> Poincare<'a> {
-    /// Creates the measure `name`: `poincare` for the first coordinate, or for example `poincare:theta`. `span` counts
+    /// Creates the measure `measure_name`: `poincare` for the first coordinate, or for example `poincare:theta`. `span` counts
     /// forcing periods or crossings. With `keep_points`, the points become columns of a bifurcation diagram. Returns
     /// `None` for the name of another measure.
     ///
@@ -85,19 +87,19 @@ impl<'a> Poincare<'a> {
     /// A missing coordinate, rate or forcing, an invalid section or an invalid span.
     pub fn new(
         driven: (&'a CompiledModel, &'a Conditions),
-        asked: &str,
+        measure_name: &str,
         section: &Section,
         span: Span,
         keep_points: bool,
     ) -> Option<Result<Self, SweepError>> {
-        let name = match asked.split_once(':') {
-            None if asked == NAME => None,
+        let name = match measure_name.split_once(':') {
+            None if measure_name == NAME => None,
             Some((NAME, name)) => Some(name),
             _ => return None,
         };
         Some(Self::build(
             driven,
-            (asked, name),
+            (measure_name, name),
             section,
             span,
             keep_points,
@@ -106,14 +108,14 @@ impl<'a> Poincare<'a> {
 
     fn build(
         (model, conditions): (&'a CompiledModel, &'a Conditions),
-        (asked, name): (&str, Option<&str>),
+        (measure_name, name): (&str, Option<&str>),
         section: &Section,
         span: Span,
         keep_points: bool,
     ) -> Result<Self, SweepError> {
         let refused = |reason: String| SweepError::Request(reason);
-        reject_controllers(model, asked)?;
-        span.check(asked, 2)?;
+        reject_controllers(model, measure_name)?;
+        span.check(measure_name, 2)?;
         if keep_points && span.periods > MAX_POINTS_KEPT {
             return Err(refused(format!(
                 "{}: expected at most {MAX_POINTS_KEPT}, because each point becomes a column",
@@ -122,7 +124,7 @@ impl<'a> Poincare<'a> {
         }
         let states = model.state_names();
         let name = name.or(states.first().map(String::as_str));
-        let of_measure = Argument::Measure.with_text(asked);
+        let of_measure = Argument::Measure.with_text(measure_name);
         let name =
             name.ok_or_else(|| refused(format!("{of_measure}: the model has no coordinate")))?;
         let quantity = Quantity::from_name(model, name);
@@ -144,7 +146,7 @@ impl<'a> Poincare<'a> {
         Ok(Self {
             quantity: quantity.map_err(|reason| refused(format!("{of_measure}: {reason}")))?,
             places,
-            measure_name: asked.to_owned(),
+            measure_name: measure_name.to_owned(),
             model,
             conditions,
             span,
@@ -197,7 +199,7 @@ impl<'a> Poincare<'a> {
             ]),
         };
         let about = format!("{name} on the section, {after}");
-        let points = self.point_columns().into_iter();
+        let points = self.name_point_columns().into_iter();
         columns
             .into_iter()
             .chain(time.into_iter().flatten())
@@ -211,12 +213,12 @@ impl<'a> Poincare<'a> {
     }
 
     /// Returns the index of the column with the number of crossings; `None` for a section per forcing period.
-    fn crossings_place(&self) -> Option<usize> {
+    fn crossings_index(&self) -> Option<usize> {
         let name = crossings_column(&self.measure_name);
         self.columns().iter().position(|column| column.name == name)
     }
 
-    fn point_columns(&self) -> Vec<String> {
+    fn name_point_columns(&self) -> Vec<String> {
         let count = if self.keep_points {
             self.span.periods
         } else {
@@ -230,7 +232,7 @@ impl<'a> Poincare<'a> {
 
 impl Measure for Poincare<'_> {
     fn describe(&self) -> Vec<Description> {
-        let (name, points) = (&self.quantity.name, self.point_columns());
+        let (name, points) = (&self.quantity.name, self.name_point_columns());
         let option = |name: &str, value: String| (name.to_owned(), value);
         let general = || {
             vec![
@@ -295,14 +297,14 @@ impl Worker for &Poincare<'_> {
         let start = self.conditions.start_at(&instance, settings)?;
         let found = match &self.places {
             ResolvedSection::Forcing(frequency) => {
-                self.points_per_period(&instance, &start, frequency)
+                self.sample_points_per_period(&instance, &start, frequency)
             }
             ResolvedSection::Crossing(crossing, until) => {
-                self.points_at_crossings(&instance, &start, crossing, *until)
+                self.find_points_at_crossings(&instance, &start, crossing, *until)
             }
         };
         if let Err(Failure::FewCrossings(count)) = found
-            && let Some(place) = self.crossings_place()
+            && let Some(place) = self.crossings_index()
         {
             out[place] = count as f64;
         }
@@ -312,7 +314,7 @@ impl Worker for &Poincare<'_> {
             time,
         } = found?;
         let crossings = (self.span.transient + self.span.periods) as f64;
-        let statistics = statistics(&points).ok_or(Failure::Undefined)?;
+        let statistics = compute_statistics(&points).ok_or(Failure::Undefined)?;
         let points = points.iter().map(|[x, _]| *x);
         let numbers = repetition
             .into_iter()
@@ -343,15 +345,15 @@ impl Poincare<'_> {
             && !self.conditions.are_time_varying()
     }
 
-    fn points_per_period(
+    fn sample_points_per_period(
         &self,
         instance: &Instance<'_>,
         start: &Start,
         frequency: &Frequency,
     ) -> Result<SectionPoints, Failure> {
-        let times = self.sample_times(frequency.period(instance)?);
+        let times = self.compute_sample_times(frequency.period(instance)?);
         let motion = self.motion(instance, start, &times)?;
-        let seen: Vec<[f64; 2]> = self.quantity_values(&motion.states);
+        let seen: Vec<[f64; 2]> = self.extract_quantity(&motion.states);
         let points = seen.iter().step_by(SAMPLES_PER_PERIOD).copied().collect();
         let looks = MotionSamples {
             start,
@@ -372,7 +374,7 @@ impl Poincare<'_> {
             true => EXACT_RESOLUTION,
             false => 10.0 * self.settings.tolerance,
         };
-        let mut parts = linear_comparisons(seen, resolution);
+        let mut parts = create_linear_comparisons(seen, resolution);
         let mut found = find_repetition(&points, parts).ok_or(Failure::Undefined)?;
         if found[0] == 0.0 {
             let seen = (seen, &mut points[..]);
@@ -392,7 +394,7 @@ impl Poincare<'_> {
         })
     }
 
-    fn points_at_crossings(
+    fn find_points_at_crossings(
         &self,
         instance: &Instance<'_>,
         start: &Start,
@@ -403,8 +405,8 @@ impl Poincare<'_> {
         let span = (self.conditions.start(), until);
         let found = find_crossings((instance, start), crossing, wanted, span, &self.settings)?;
         let (points, between) = (
-            self.quantity_values(&found.points),
-            self.quantity_values(&found.states_between),
+            self.extract_quantity(&found.points),
+            self.extract_quantity(&found.states_between),
         );
         let seen = [&points[..], &between].concat();
         let time = found.times.last().zip(found.times.first());
@@ -417,7 +419,7 @@ impl Poincare<'_> {
         self.analyse_points(instance, &looks, (&seen, points), time)
     }
 
-    fn quantity_values(&self, states: &[Vec<f64>]) -> Vec<[f64; 2]> {
+    fn extract_quantity(&self, states: &[Vec<f64>]) -> Vec<[f64; 2]> {
         states
             .iter()
             .map(|state| self.quantity.values_in_state(state))
@@ -453,7 +455,7 @@ impl Poincare<'_> {
     }
 
     /// Returns the times of all samples in s. Every [`SAMPLES_PER_PERIOD`]th sample, from the first, is on the section.
-    fn sample_times(&self, period: f64) -> Vec<f64> {
+    fn compute_sample_times(&self, period: f64) -> Vec<f64> {
         let start = self.conditions.start();
         let look = |look: usize| {
             let periods = self.span.transient + look / SAMPLES_PER_PERIOD;

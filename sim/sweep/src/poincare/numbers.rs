@@ -56,7 +56,7 @@ pub fn find_repetition(points: &[[f64; 2]], parts: [CoordinateComparison; 2]) ->
 }
 
 /// Returns mean, minimum, maximum and RMS of the first coordinate; `None` if a point is not finite.
-pub fn statistics(points: &[[f64; 2]]) -> Option<[f64; 4]> {
+pub fn compute_statistics(points: &[[f64; 2]]) -> Option<[f64; 4]> {
     let values = || points.iter().map(|[x, _]| *x);
     let count = values().count() as f64;
     let found = [
@@ -72,8 +72,8 @@ pub fn statistics(points: &[[f64; 2]]) -> Option<[f64; 4]> {
 }
 
 /// Returns comparisons of the coordinates. A coordinate is constant if it changes by at most `resolution` of its size.
-pub fn linear_comparisons(seen: &[[f64; 2]], resolution: f64) -> [CoordinateComparison; 2] {
-    extents(seen.iter()).map(|(least, greatest)| {
+pub fn create_linear_comparisons(seen: &[[f64; 2]], resolution: f64) -> [CoordinateComparison; 2] {
+    compute_extents(seen.iter()).map(|(least, greatest)| {
         let extent = greatest - least;
         match extent <= resolution * least.abs().max(greatest.abs()) {
             true => CoordinateComparison::Ignored,
@@ -82,7 +82,7 @@ pub fn linear_comparisons(seen: &[[f64; 2]], resolution: f64) -> [CoordinateComp
     })
 }
 
-pub fn extents<'s>(seen: impl Iterator<Item = &'s [f64; 2]> + Clone) -> [(f64, f64); 2] {
+pub fn compute_extents<'s>(seen: impl Iterator<Item = &'s [f64; 2]> + Clone) -> [(f64, f64); 2] {
     [0, 1].map(|place| {
         let values = || seen.clone().map(|pair| pair[place]);
         let least = values().fold(f64::INFINITY, f64::min);
@@ -99,28 +99,28 @@ pub fn wrap_angle(angle: f64, from: f64) -> f64 {
 mod tests {
     use super::*;
 
-    const LOOKS: usize = 8;
+    const SAMPLES_PER_PERIOD: usize = 8;
 
     /// Relative change below which a coordinate is constant.
     const RESOLUTION: f64 = 1e-12;
 
     /// Returns samples of x = a + b cos(t) + c cos(t/2) at the phases of cos(t), over `periods`.
-    fn seen(periods: usize, [a, b, c]: [f64; 3]) -> Vec<[f64; 2]> {
+    fn sample_motion(periods: usize, [a, b, c]: [f64; 3]) -> Vec<[f64; 2]> {
         let look = |look: usize| {
-            let t = TAU * look as f64 / LOOKS as f64;
+            let t = TAU * look as f64 / SAMPLES_PER_PERIOD as f64;
             [
                 a + b * t.cos() + c * (t / 2.0).cos(),
                 -b * t.sin() - c / 2.0 * (t / 2.0).sin(),
             ]
         };
-        (0..periods * LOOKS).map(look).collect()
+        (0..periods * SAMPLES_PER_PERIOD).map(look).collect()
     }
 
     fn analyse(seen: &[[f64; 2]]) -> [f64; 6] {
-        let points: Vec<[f64; 2]> = seen.iter().step_by(LOOKS).copied().collect();
+        let points: Vec<[f64; 2]> = seen.iter().step_by(SAMPLES_PER_PERIOD).copied().collect();
         let [period, clusters] =
-            find_repetition(&points, linear_comparisons(seen, RESOLUTION)).expect("numbers");
-        let [mean, min, max, rms] = statistics(&points).expect("numbers");
+            find_repetition(&points, create_linear_comparisons(seen, RESOLUTION)).expect("numbers");
+        let [mean, min, max, rms] = compute_statistics(&points).expect("numbers");
         [period, clusters, mean, min, max, rms]
     }
 
@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn motion_with_half_forcing_frequency_has_two_points() {
         // On the section x alternates between a + b + c and a + b - c.
-        let [period, clusters, mean, min, max, rms] = analyse(&seen(10, [3.0, 4.0, 1.0]));
+        let [period, clusters, mean, min, max, rms] = analyse(&sample_motion(10, [3.0, 4.0, 1.0]));
         assert_eq!((period, clusters), (2.0, 2.0));
         assert_close(mean, 7.0);
         assert_close(min, 6.0);
@@ -142,10 +142,10 @@ mod tests {
 
     #[test]
     fn motion_with_forcing_frequency_and_rest_have_one_point() {
-        let found = analyse(&seen(10, [3.0, 4.0, 0.0]));
+        let found = analyse(&sample_motion(10, [3.0, 4.0, 0.0]));
         assert_eq!(found[..2], [1.0, 1.0]);
         assert_close(found[2], 7.0);
-        let rest = analyse(&[[2.0, 0.0]; 5 * LOOKS]);
+        let rest = analyse(&[[2.0, 0.0]; 5 * SAMPLES_PER_PERIOD]);
         assert_eq!(rest, [1.0, 1.0, 2.0, 2.0, 2.0, 2.0]);
     }
 

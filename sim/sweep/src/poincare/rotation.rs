@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 use eomgen_compiled_model::{Instance, OperatingPoint};
 
-use super::numbers::{CoordinateComparison, extents, wrap_angle};
+use super::numbers::{CoordinateComparison, compute_extents, wrap_angle};
 use super::quantity::Quantity;
 use crate::conditions::Start;
 use crate::measure::Failure;
@@ -45,7 +45,7 @@ pub fn remove_drift(
 ) -> Result<(), Failure> {
     let (shown, place) = quantity.coordinate();
     let is_angle = instance.is_angle(place);
-    let extent = extents(seen.iter())[shown];
+    let extent = compute_extents(seen.iter())[shown];
     let turns = is_angle && extent.1 - extent.0 >= TAU;
     if is_cyclic(instance, looks, place)? {
         parts[shown] = CoordinateComparison::Ignored;
@@ -55,7 +55,7 @@ pub fn remove_drift(
         return Ok(());
     }
     // The solver's error is relative to the angle, which grows without bound, and affects the rate.
-    let [angle, rate] = [shown, 1 - shown].map(|place| extents(seen.iter())[place]);
+    let [angle, rate] = [shown, 1 - shown].map(|place| compute_extents(seen.iter())[place]);
     let size = |(least, greatest): (f64, f64)| least.abs().max(greatest.abs());
     if is_angle && rate.1 - rate.0 <= resolution * size(angle).max(1.0) * size(rate) {
         parts[1 - shown] = CoordinateComparison::Ignored;

@@ -4,7 +4,7 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::contact_friction::{ContactDecision, ContactMode};
 
 use super::super::tangents::{ContactForces, Tangent};
-use super::super::{Contacts, Overlap, solve_rows};
+use super::super::{ContactFailure, Contacts, solve_rows};
 
 /// Rounding error of a force, relative to the forces of its contact.
 const FORCE_ROUNDING: f64 = 1e-12;
@@ -31,9 +31,9 @@ impl Contacts {
         own: &mut Evaluator,
         point: Point<'_>,
         located: Point<'_>,
-    ) -> Result<(), (usize, Overlap)> {
-        let places = self.resting();
-        let forces = self.friction_forces();
+    ) -> Result<(), (usize, ContactFailure)> {
+        let places = self.list_resting();
+        let forces = self.compute_friction_forces();
         let has_left = self.free_left_slips(&forces);
         let mut modes: Vec<ContactMode> =
             self.closed.iter().map(|place| self.mode(*place)).collect();
@@ -42,7 +42,7 @@ impl Contacts {
             let is_pulling = forces.normal[index] + self.allowances[*place] < 0.0;
             let tangent = self.tangent(*place);
             let has_ended =
-                tangent.is_some_and(|own| self.friction_guard(own, index, &forces) < 0.0);
+                tangent.is_some_and(|own| self.compute_friction_guard(own, index, &forces) < 0.0);
             if is_pulling || has_ended {
                 excluded.push((index, modes[index]));
             }
@@ -53,13 +53,13 @@ impl Contacts {
             return Ok(());
         }
         modes.resize(places.len(), ContactMode::Open);
-        let roundings = self.slip_roundings(own, point);
-        let slipping = self.slip_directions(&roundings, &excluded);
-        let accelerations = self.free_accelerations(&places);
+        let roundings = self.compute_slip_roundings(own, point);
+        let slipping = self.list_slip_directions(&roundings, &excluded);
+        let accelerations = self.compute_free_accelerations(&places);
         let problem = self.problem(&places, slipping, &accelerations);
         let decided = problem.decide(Some(&modes), &excluded);
         let decided = decided.or_else(|| problem.decide(Some(&modes), &[]));
-        let decision = decided.ok_or((places[0], Overlap::NoForces))?;
+        let decision = decided.ok_or((places[0], ContactFailure::NoForces))?;
         self.note_choice(point.t, (&places, &decision));
         self.enter_modes(own, (&places, &decision), &roundings, (point, located));
         Ok(())
@@ -74,14 +74,14 @@ impl Contacts {
         &mut self,
         own: &mut Evaluator,
         point: Point<'_>,
-    ) -> Result<(), (usize, Overlap)> {
-        let roundings = self.slip_roundings(own, point);
+    ) -> Result<(), (usize, ContactFailure)> {
+        let roundings = self.compute_slip_roundings(own, point);
         let places = self.closed.clone();
         let modes: Vec<ContactMode> = places.iter().map(|place| self.mode(*place)).collect();
-        let slipping = self.slip_directions(&roundings, &[]);
-        let problem = self.problem(&places, slipping, &self.free_accelerations(&places));
+        let slipping = self.list_slip_directions(&roundings, &[]);
+        let problem = self.problem(&places, slipping, &self.compute_free_accelerations(&places));
         let decided = problem.decide(Some(&modes), &[]);
-        let decision = decided.ok_or((places[0], Overlap::NoForces))?;
+        let decision = decided.ok_or((places[0], ContactFailure::NoForces))?;
         if decision.modes != modes {
             self.note_choice(point.t, (&places, &decision));
             self.enter_modes(own, (&places, &decision), &roundings, (point, point));
@@ -90,7 +90,7 @@ impl Contacts {
         let bears = |contacts: &Self| -> Vec<bool> {
             contacts.tangents.iter().map(|own| own.bears).collect()
         };
-        let (before, forces) = (bears(self), self.friction_forces());
+        let (before, forces) = (bears(self), self.compute_friction_forces());
         self.mark_bearing(&roundings);
         let changed = before.iter().zip(bears(self)).map(|(a, b)| *a != b);
         let changed: Vec<bool> = changed.collect();
@@ -103,7 +103,7 @@ impl Contacts {
     }
 
     /// Returns the known directions of slip; `None` for contacts that do not slip.
-    fn slip_directions(
+    fn list_slip_directions(
         &self,
         roundings: &[f64],
         ended: &[(usize, ContactMode)],
@@ -141,7 +141,7 @@ impl Contacts {
         &self,
         places: &[usize],
         (smallest, roundings): (&[f64], &[f64]),
-    ) -> Result<ContactDecision, (usize, Overlap)> {
+    ) -> Result<ContactDecision, (usize, ContactFailure)> {
         let is_zero = |place: usize, slip: f64| {
             let index = self.tangent_index(place);
             index.is_none_or(|index| slip.abs() <= roundings[index].max(smallest[place]))
@@ -154,16 +154,19 @@ impl Contacts {
             })
             .collect();
         // Flights too short to resolve leave small rates, which would make a rocking body slip.
-        let stopped = self.stopped_slips(places, &modes);
+        let stopped = self.compute_stopped_slips(places, &modes);
         let slips: Vec<(usize, f64)> = places.iter().copied().zip(stopped).collect();
         let direction = |place: usize| {
             let slip = slips.iter().find(|(own, _)| *own == place)?.1;
             (!is_zero(place, slip)).then(|| slip.signum())
         };
-        let accelerations = self.free_accelerations(places);
+        let accelerations = self.compute_free_accelerations(places);
         let problem = self.problem(places, direction, &accelerations);
         let decided = problem.decide(None, &[]);
-        decided.ok_or((places.first().copied().unwrap_or(0), Overlap::NoForces))
+        decided.ok_or((
+            places.first().copied().unwrap_or(0),
+            ContactFailure::NoForces,
+        ))
     }
 
     /// Enters the modes decided at `point`. Contacts that do not push open.
@@ -190,7 +193,7 @@ impl Contacts {
         }
         self.note_redundant(own, point, places);
         self.offset_by_rounding(&opened, (located.t, located.state));
-        let forces = self.friction_forces();
+        let forces = self.compute_friction_forces();
         self.mark_bearing(roundings);
         for index in 0..self.closed.len() {
             let place = self.closed[index];
@@ -203,7 +206,7 @@ impl Contacts {
     fn free_left_slips(&mut self, forces: &ContactForces) -> bool {
         let has_left = |tangent: &Tangent| {
             let closed = self.closed.iter().position(|place| *place == tangent.place);
-            let guard = closed.map(|index| self.friction_guard(tangent, index, forces));
+            let guard = closed.map(|index| self.compute_friction_guard(tangent, index, forces));
             tangent.bears && guard.is_some_and(|guard| guard < 0.0)
         };
         let left: Vec<bool> = self.tangents.iter().map(has_left).collect();
@@ -223,8 +226,8 @@ impl Contacts {
         let sticks = |index: &usize| self.mode(self.closed[*index]) == ContactMode::Sticks;
         let sticking = (0..count).filter(sticks).map(|index| count + index);
         let kept: Vec<usize> = (0..count).chain(sticking).collect();
-        let delassus = self.full_delassus(&self.closed);
-        let forces = self.friction_forces();
+        let delassus = self.compute_full_delassus(&self.closed);
+        let forces = self.compute_friction_forces();
         let rows: Vec<Vec<f64>> = delassus
             .chunks_exact((2 * count).max(1))
             .map(<[f64]>::to_vec)
@@ -238,7 +241,7 @@ impl Contacts {
             if !slides || slip.abs() > NEAR_ROUNDINGS * roundings[tangent] {
                 continue;
             }
-            let (acceleration, size) = self.slip_acceleration(index, &forces);
+            let (acceleration, size) = self.compute_slip_acceleration(index, &forces);
             if acceleration.abs() > ACCELERATION_ROUNDING * size {
                 continue;
             }
@@ -264,7 +267,9 @@ impl Contacts {
             return;
         };
         let slip = self.slip(place);
-        let mu = self.friction_at(place).map_or(0.0, |one| one.coefficient);
+        let mu = self
+            .friction_values(place)
+            .map_or(0.0, |one| one.coefficient);
         let size = mu * forces.normal[index].abs() + forces.tangential[index].abs();
         let margin = mu * forces.normal[index] - forces.tangential[index].abs();
         let own = &mut self.tangents[tangent];

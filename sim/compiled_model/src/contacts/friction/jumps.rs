@@ -12,39 +12,39 @@ use super::super::tangents::ContactForces;
 const RATE_ROUNDING: f64 = 1e-12;
 
 impl Contacts {
-    /// Returns the impulses of contacts that touch and were hit `ago` s before; `None` if no impulses keep the bodies
+    /// Returns the impulses of contacts that touch and were hit `time_since_hit` s before; `None` if no impulses keep the bodies
     /// apart.
     pub(in super::super) fn solve_friction_impulses(
         &self,
         touching: &[usize],
-        ago: f64,
+        time_since_hit: f64,
     ) -> Option<ContactForces> {
         let required = touching.iter();
         let required: Vec<f64> = required
-            .map(|place| self.required_rate_change(*place, ago, 1.0))
+            .map(|place| self.compute_required_rate_change(*place, time_since_hit, 1.0))
             .collect();
         let small = RATE_ROUNDING * max_magnitude(&required);
         // The rate of a closed contact is only rounding and must not count as a hit.
         let is_hit = |index: &usize| !self.rests(touching[*index]) && required[*index] < -small;
         let mut hit = (0..touching.len()).filter(is_hit);
         if let (Some(index), None) = (hit.next(), hit.next())
-            && let Some(impulses) = self.solve_single(touching, index, ago)
-            && self.leaves_apart(touching, &impulses, ago)
+            && let Some(impulses) = self.solve_single(touching, index, time_since_hit)
+            && self.leaves_apart(touching, &impulses, time_since_hit)
         {
             return Some(impulses);
         }
-        self.solve_together(touching, ago)
+        self.solve_together(touching, time_since_hit)
     }
 
     /// Returns the magnitude of the terms in the acceleration of each slip, including the forces of closed contacts.
-    pub(in super::super) fn slip_acceleration_sizes(&self) -> Vec<f64> {
+    pub(in super::super) fn compute_slip_acceleration_sizes(&self) -> Vec<f64> {
         if !self.has_friction() {
             return Vec::new();
         }
-        let forces = self.friction_forces();
+        let forces = self.compute_friction_forces();
         let impacts = self.names.len();
         let size = |place: usize| {
-            let friction = self.friction_at(place)?;
+            let friction = self.friction_values(place)?;
             let pushes = self.closed.iter().enumerate().map(|(index, other)| {
                 let tangent = self.tangent_index(*other);
                 let along = tangent.map_or(0.0, |tangent| {
@@ -60,19 +60,29 @@ impl Contacts {
             .collect()
     }
 
-    fn hit_slip(&self, place: usize, ago: f64) -> f64 {
-        let friction = self.friction_at(place);
-        friction.map_or(0.0, |friction| friction.slip - ago * friction.acceleration)
+    fn compute_hit_slip(&self, place: usize, time_since_hit: f64) -> f64 {
+        let friction = self.friction_values(place);
+        friction.map_or(0.0, |friction| {
+            friction.slip - time_since_hit * friction.acceleration
+        })
     }
 
     /// Returns the impulses if only one of the contacts receives one.
-    fn solve_single(&self, touching: &[usize], index: usize, ago: f64) -> Option<ContactForces> {
+    fn solve_single(
+        &self,
+        touching: &[usize],
+        index: usize,
+        time_since_hit: f64,
+    ) -> Option<ContactForces> {
         let place = touching[index];
-        let w = self.full_delassus(&[place]);
-        let friction = self.friction_at(place);
+        let w = self.compute_full_delassus(&[place]);
+        let friction = self.friction_values(place);
         let [normal, tangential] = energetic_impulse(&SingleImpact {
             w: [[w[0], w[1]], [w[2], w[3]]],
-            rates: [self.hit_rate(place, ago), self.hit_slip(place, ago)],
+            rates: [
+                self.compute_hit_rate(place, time_since_hit),
+                self.compute_hit_slip(place, time_since_hit),
+            ],
             friction: friction.map_or(0.0, |friction| friction.coefficient),
             restitution: self.restitution(place),
         })?;
@@ -85,16 +95,25 @@ impl Contacts {
     }
 
     /// Returns the rates of the distances, then of the slips, at the time of the hit.
-    fn hit_rates(&self, touching: &[usize], ago: f64) -> Vec<f64> {
-        let normal = touching.iter().map(|place| self.hit_rate(*place, ago));
-        let slips = touching.iter().map(|place| self.hit_slip(*place, ago));
+    fn compute_hit_rates(&self, touching: &[usize], time_since_hit: f64) -> Vec<f64> {
+        let normal = touching
+            .iter()
+            .map(|place| self.compute_hit_rate(*place, time_since_hit));
+        let slips = touching
+            .iter()
+            .map(|place| self.compute_hit_slip(*place, time_since_hit));
         normal.chain(slips).collect()
     }
 
     /// Returns true if no distance decreases after the given impulses.
-    fn leaves_apart(&self, touching: &[usize], impulses: &ContactForces, ago: f64) -> bool {
-        let before = self.hit_rates(touching, ago);
-        let changes = self.rate_changes(touching, impulses);
+    fn leaves_apart(
+        &self,
+        touching: &[usize],
+        impulses: &ContactForces,
+        time_since_hit: f64,
+    ) -> bool {
+        let before = self.compute_hit_rates(touching, time_since_hit);
+        let changes = self.compute_rate_changes(touching, impulses);
         let small = RATE_ROUNDING * max_magnitude(&before);
         let mut after = touching.iter().zip(before.iter().zip(&changes));
         after.all(|(place, (before, change))| match self.rests(*place) {
@@ -104,14 +123,18 @@ impl Contacts {
     }
 
     /// Returns the changes of the rates of distances, then of slips, by the given impulses.
-    pub(super) fn rate_changes(&self, touching: &[usize], impulses: &ContactForces) -> Vec<f64> {
+    pub(super) fn compute_rate_changes(
+        &self,
+        touching: &[usize],
+        impulses: &ContactForces,
+    ) -> Vec<f64> {
         let all: Vec<f64> = impulses
             .normal
             .iter()
             .chain(&impulses.tangential)
             .copied()
             .collect();
-        let w = self.full_delassus(touching);
+        let w = self.compute_full_delassus(touching);
         let rows = w.chunks_exact(all.len().max(1));
         rows.map(|row| row.iter().zip(&all).map(|(w, p)| w * p).sum())
             .collect()
@@ -120,19 +143,19 @@ impl Contacts {
     /// Returns the impulses of contacts that are hit together: Newton's law in Moreau's form with Coulomb's law
     /// of friction. The restitutions are limited so that the energy above that of the plastic impact is
     /// at most e^2 times as large as before the impact.
-    fn solve_together(&self, touching: &[usize], ago: f64) -> Option<ContactForces> {
-        let before = self.hit_rates(touching, ago);
+    fn solve_together(&self, touching: &[usize], time_since_hit: f64) -> Option<ContactForces> {
+        let before = self.compute_hit_rates(touching, time_since_hit);
         let with = |most: f64| {
             let mut rates = before.clone();
             for (rate, place) in rates.iter_mut().zip(touching) {
-                *rate = self.required_rate_change(*place, ago, most);
+                *rate = self.compute_required_rate_change(*place, time_since_hit, most);
             }
             let decided = self.problem(touching, |_| None, &rates).decide(None, &[])?;
             Some(ContactForces::from_directions(decided.impulses))
         };
         // Returns the energy gain and the magnitude of its terms.
         let gain = |impulses: &ContactForces| {
-            let changes = self.rate_changes(touching, impulses);
+            let changes = self.compute_rate_changes(touching, impulses);
             let all = impulses.normal.iter().chain(&impulses.tangential);
             let rates = before.iter().zip(&changes);
             all.zip(rates)

@@ -15,7 +15,10 @@ use eomgen_sim::contact_friction::{ContactMode, ContactProblem};
 
 use super::Contacts;
 use super::tangents::{ContactForces, Tangent};
-pub(crate) use problem::{contact_problem, free_accelerations, full_delassus, rates_and_slips};
+pub(crate) use problem::{
+    build_contact_problem, collect_rates_and_slips, compute_free_accelerations,
+    compute_full_delassus,
+};
 
 /// Relative change of a rate, for a difference quotient of the slip.
 const RELATIVE_CHANGE: f64 = 1e-6;
@@ -56,12 +59,12 @@ impl Contacts {
     }
 
     /// Returns the friction values of a contact at the last point; `None` without friction.
-    pub(super) fn friction_at(&self, place: usize) -> Option<&FrictionValues> {
+    pub(super) fn friction_values(&self, place: usize) -> Option<&FrictionValues> {
         self.at[place].friction.as_ref()
     }
 
     pub(super) fn slip(&self, place: usize) -> f64 {
-        self.friction_at(place)
+        self.friction_values(place)
             .map_or(0.0, |friction| friction.slip)
     }
 
@@ -73,43 +76,43 @@ impl Contacts {
         direction: impl Fn(usize) -> Option<f64>,
         rates: &[f64],
     ) -> ContactProblem {
-        contact_problem(&self.at, places, direction, rates)
+        build_contact_problem(&self.at, places, direction, rates)
     }
 
-    fn full_delassus(&self, places: &[usize]) -> Vec<f64> {
-        full_delassus(&self.at, places)
+    fn compute_full_delassus(&self, places: &[usize]) -> Vec<f64> {
+        compute_full_delassus(&self.at, places)
     }
 
     /// Returns the accelerations of distances and slips without contact forces.
-    fn free_accelerations(&self, places: &[usize]) -> Vec<f64> {
-        free_accelerations(&self.at, places)
+    fn compute_free_accelerations(&self, places: &[usize]) -> Vec<f64> {
+        compute_free_accelerations(&self.at, places)
     }
 
     /// Returns the forces of the closed contacts in their modes.
-    pub(super) fn friction_forces(&self) -> ContactForces {
+    pub(super) fn compute_friction_forces(&self) -> ContactForces {
         let modes: Vec<ContactMode> = self.closed.iter().map(|place| self.mode(*place)).collect();
-        let rates = self.free_accelerations(&self.closed);
+        let rates = self.compute_free_accelerations(&self.closed);
         let problem = self.problem(&self.closed, |_| None, &rates);
         ContactForces::from_directions(problem.forces(&modes))
     }
 
     /// Returns the impulses that stop the closed contacts and the slips of contacts that stick.
-    pub(super) fn stopping_impulses(&self) -> ContactForces {
+    pub(super) fn compute_stopping_impulses(&self) -> ContactForces {
         let sticks = |place: &usize| self.mode(*place) == ContactMode::Sticks;
         let modes = self.closed.iter().map(|place| match sticks(place) {
             true => ContactMode::Sticks,
             false => ContactMode::Slides(0.0),
         });
-        self.impulses_to_stop(&self.closed, &modes.collect::<Vec<ContactMode>>())
+        self.solve_stopping_impulses(&self.closed, &modes.collect::<Vec<ContactMode>>())
     }
 
     /// Returns the impulses that stop the closed contacts, with friction at contacts that slide; `None` if a contact
     /// stops sliding. A contact that closes after an impact has a smaller friction impulse, because part of its normal
     /// impulse is removed.
-    pub(super) fn closing_impulses(&self) -> Option<ContactForces> {
+    pub(super) fn compute_closing_impulses(&self) -> Option<ContactForces> {
         let modes: Vec<ContactMode> = self.closed.iter().map(|place| self.mode(*place)).collect();
-        let impulses = self.impulses_to_stop(&self.closed, &modes);
-        let changes = self.rate_changes(&self.closed, &impulses);
+        let impulses = self.solve_stopping_impulses(&self.closed, &modes);
+        let changes = self.compute_rate_changes(&self.closed, &impulses);
         let changes = changes[self.closed.len()..].iter();
         let mut sliding = self.closed.iter().zip(&modes).zip(changes);
         let slides_on = sliding.all(|((place, mode), change)| match mode {
@@ -119,16 +122,16 @@ impl Contacts {
         slides_on.then_some(impulses)
     }
 
-    fn impulses_to_stop(&self, places: &[usize], modes: &[ContactMode]) -> ContactForces {
-        let rates = rates_and_slips(&self.at, places);
+    fn solve_stopping_impulses(&self, places: &[usize], modes: &[ContactMode]) -> ContactForces {
+        let rates = collect_rates_and_slips(&self.at, places);
         let problem = self.problem(places, |_| None, &rates);
         ContactForces::from_directions(problem.impulses(modes))
     }
 
     /// Returns the slips after impulses that stop the contacts and the slips of contacts that stick.
-    fn stopped_slips(&self, places: &[usize], modes: &[ContactMode]) -> Vec<f64> {
-        let impulses = self.impulses_to_stop(places, modes);
-        let changes = self.rate_changes(places, &impulses);
+    fn compute_stopped_slips(&self, places: &[usize], modes: &[ContactMode]) -> Vec<f64> {
+        let impulses = self.solve_stopping_impulses(places, modes);
+        let changes = self.compute_rate_changes(places, &impulses);
         let changes = places.iter().zip(&changes[places.len()..]);
         changes
             .map(|(place, change)| self.slip(*place) + change)
@@ -141,20 +144,25 @@ impl Contacts {
         for (slot, tangent) in out.iter_mut().zip(&self.tangents) {
             let closed = self.closed.iter().position(|place| *place == tangent.place);
             *slot = match closed {
-                Some(index) => self.friction_guard(tangent, index, forces),
+                Some(index) => self.compute_friction_guard(tangent, index, forces),
                 None => 1.0,
             };
         }
     }
 
     /// Returns the friction guard of a closed contact; `index` counts the closed contacts.
-    fn friction_guard(&self, tangent: &Tangent, index: usize, forces: &ContactForces) -> f64 {
-        let Some(friction) = self.friction_at(tangent.place) else {
+    fn compute_friction_guard(
+        &self,
+        tangent: &Tangent,
+        index: usize,
+        forces: &ContactForces,
+    ) -> f64 {
+        let Some(friction) = self.friction_values(tangent.place) else {
             return 1.0;
         };
         match tangent.mode {
             _ if tangent.bears => {
-                let (acceleration, size) = self.slip_acceleration(index, forces);
+                let (acceleration, size) = self.compute_slip_acceleration(index, forces);
                 MAX_BEARING_ACCELERATION * size - acceleration.abs() + f64::MIN_POSITIVE
             }
             ContactMode::Slides(side) => side * friction.slip + tangent.slip_offset,
@@ -168,13 +176,17 @@ impl Contacts {
 
     /// Returns the acceleration of the slip of a closed contact, and the magnitude of its terms. `index` counts the
     /// closed contacts.
-    pub(super) fn slip_acceleration(&self, index: usize, forces: &ContactForces) -> (f64, f64) {
+    pub(super) fn compute_slip_acceleration(
+        &self,
+        index: usize,
+        forces: &ContactForces,
+    ) -> (f64, f64) {
         let count = self.closed.len();
-        let delassus = self.full_delassus(&self.closed);
+        let delassus = self.compute_full_delassus(&self.closed);
         let row = delassus.chunks_exact(2 * count).nth(count + index);
         let forces = forces.normal.iter().chain(&forces.tangential);
         let terms = row.into_iter().flatten().zip(forces);
-        let free = self.free_accelerations(&self.closed)[count + index];
+        let free = self.compute_free_accelerations(&self.closed)[count + index];
         terms.fold((free, free.abs()), |(sum, size), (entry, force)| {
             (sum + entry * force, size + (entry * force).abs())
         })
@@ -190,7 +202,11 @@ impl Contacts {
 
     /// Returns the rounding error of each slip due to rounding of the rates. At rest the rounding comes from earlier,
     /// larger rates, or from the typical sizes of rates that have not moved.
-    pub(super) fn slip_roundings(&mut self, own: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
+    pub(super) fn compute_slip_roundings(
+        &mut self,
+        own: &mut Evaluator,
+        point: Point<'_>,
+    ) -> Vec<f64> {
         let degrees = own.program().degrees_of_freedom();
         own.impacts(point, &mut self.at);
         let slips = |contacts: &Self| -> Vec<f64> {

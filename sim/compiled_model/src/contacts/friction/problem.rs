@@ -5,7 +5,7 @@ use eomgen_sim::contact_friction::{ContactFriction, ContactProblem};
 
 /// Returns the problem of the contacts at `places`. `direction` has the slip directions of the contacts with friction.
 /// The rates are those of the distances, then of the slips.
-pub(crate) fn contact_problem(
+pub(crate) fn build_contact_problem(
     impacts: &[ImpactValues],
     places: &[usize],
     direction: impl Fn(usize) -> Option<f64>,
@@ -18,11 +18,15 @@ pub(crate) fn contact_problem(
         },
         None => ContactFriction::NONE,
     });
-    ContactProblem::new(friction.collect(), &full_delassus(impacts, places), rates)
+    ContactProblem::new(
+        friction.collect(),
+        &compute_full_delassus(impacts, places),
+        rates,
+    )
 }
 
 /// Returns Delassus' matrix of the normal and the tangential directions, row by row.
-pub(crate) fn full_delassus(impacts: &[ImpactValues], places: &[usize]) -> Vec<f64> {
+pub(crate) fn compute_full_delassus(impacts: &[ImpactValues], places: &[usize]) -> Vec<f64> {
     let tangent_column = |place: usize| {
         let before = impacts[..place].iter();
         let before = before.filter(|impact| impact.friction.is_some()).count();
@@ -45,7 +49,7 @@ pub(crate) fn full_delassus(impacts: &[ImpactValues], places: &[usize]) -> Vec<f
 }
 
 /// Returns the accelerations of distances, then of slips, without contact forces.
-pub(crate) fn free_accelerations(impacts: &[ImpactValues], places: &[usize]) -> Vec<f64> {
+pub(crate) fn compute_free_accelerations(impacts: &[ImpactValues], places: &[usize]) -> Vec<f64> {
     normal_and_tangential(impacts, places, |impact| {
         let friction = impact.friction.as_ref();
         [
@@ -56,7 +60,7 @@ pub(crate) fn free_accelerations(impacts: &[ImpactValues], places: &[usize]) -> 
 }
 
 /// Returns the rates of distances, then the slips.
-pub(crate) fn rates_and_slips(impacts: &[ImpactValues], places: &[usize]) -> Vec<f64> {
+pub(crate) fn collect_rates_and_slips(impacts: &[ImpactValues], places: &[usize]) -> Vec<f64> {
     normal_and_tangential(impacts, places, |impact| {
         let friction = impact.friction.as_ref();
         [impact.rate, friction.map_or(0.0, |friction| friction.slip)]

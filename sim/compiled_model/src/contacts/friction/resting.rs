@@ -3,9 +3,9 @@
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::contact_friction::ContactMode;
 
-use super::super::impulses::Flight;
+use super::super::impulses::FlightLimits;
 use super::super::tangents::ContactForces;
-use super::super::{Contacts, DISTANCE_ROUNDING, Overlap};
+use super::super::{ContactFailure, Contacts, DISTANCE_ROUNDING};
 
 impl Contacts {
     /// Closes the contacts at rest that push at the start. Slips up to the rate `small` of each contact are zero.
@@ -17,11 +17,11 @@ impl Contacts {
         own: &mut Evaluator,
         point: Point<'_>,
         (still, small): (&[usize], &[f64]),
-    ) -> Result<(), (usize, Overlap)> {
+    ) -> Result<(), (usize, ContactFailure)> {
         if still.is_empty() {
             return Ok(());
         }
-        let roundings = self.slip_roundings(own, point);
+        let roundings = self.compute_slip_roundings(own, point);
         let decision = self.decide_resting(still, (small, &roundings))?;
         self.note_choice(point.t, (still, &decision));
         self.enter_modes(own, (still, &decision), &roundings, (point, point));
@@ -38,9 +38,9 @@ impl Contacts {
         own: &mut Evaluator,
         point: Point<'_>,
         touching: &[usize],
-        flight: &Flight,
-    ) -> Result<(), (usize, Overlap)> {
-        let mut roundings = self.slip_roundings(own, point);
+        flight: &FlightLimits,
+    ) -> Result<(), (usize, ContactFailure)> {
+        let mut roundings = self.compute_slip_roundings(own, point);
         for (rounding, change) in roundings.iter_mut().zip(&flight.slip_changes) {
             *rounding = rounding.max(*change);
         }
@@ -49,12 +49,13 @@ impl Contacts {
         let mut resting: Vec<usize> = Vec::new();
         let mut decision = None;
         let mut even = flight.acceleration_roundings.clone();
-        let mut accelerations = self.resting_accelerations(touching, (&[], &Default::default()));
+        let mut accelerations =
+            self.compute_resting_accelerations(touching, (&[], &Default::default()));
         loop {
             let is_next = |(place, acceleration): &(&usize, &f64)| {
                 let rate = self.at[**place].rate;
                 !resting.contains(*place)
-                    && flight.is_none(**place, (rate, **acceleration), even[**place])
+                    && flight.is_rest(**place, (rate, **acceleration), even[**place])
             };
             let Some((next, _)) = touching.iter().zip(&accelerations).find(is_next) else {
                 break;
@@ -64,9 +65,9 @@ impl Contacts {
             let forces = ContactForces::from_directions(decided.impulses.clone());
             for (place, even) in even.iter_mut().enumerate() {
                 *even = flight.acceleration_roundings[place]
-                    + DISTANCE_ROUNDING * self.push_size(place, &resting, &forces);
+                    + DISTANCE_ROUNDING * self.compute_push_size(place, &resting, &forces);
             }
-            accelerations = self.resting_accelerations(touching, (&resting, &forces));
+            accelerations = self.compute_resting_accelerations(touching, (&resting, &forces));
             decision = Some(decided);
         }
         self.offset_distances(touching);
@@ -87,7 +88,7 @@ impl Contacts {
             let is_free = !self.is_blocked_by(&pushing, *place);
             if *mode == ContactMode::Open && is_even && is_free {
                 let small = flight.rate_roundings[*place];
-                *mode = self.force_free_mode(*place, (&resting, &forces), (&roundings, small));
+                *mode = self.find_force_free_mode(*place, (&resting, &forces), (&roundings, small));
             }
         }
         self.enter_modes(own, (&resting, &decision), &roundings, (point, point));
@@ -105,7 +106,7 @@ impl Contacts {
     /// Returns the mode of a closed contact without a normal force. Its friction is zero, so the contact sticks only if
     /// its slip and the acceleration of its slip are zero. Slips up to their rounding errors or the rate `small` count
     /// as zero.
-    fn force_free_mode(
+    fn find_force_free_mode(
         &self,
         place: usize,
         (resting, forces): (&[usize], &ContactForces),
@@ -118,11 +119,11 @@ impl Contacts {
         if slip.abs() > roundings[index].max(small) {
             return ContactMode::Slides(slip.signum());
         }
-        let Some(friction) = self.friction_at(place) else {
+        let Some(friction) = self.friction_values(place) else {
             return ContactMode::Sticks;
         };
         let own = &friction.delassus;
-        let (pushes, sizes) = self.pushes(own, (resting, forces));
+        let (pushes, sizes) = self.compute_pushed_acceleration(own, (resting, forces));
         let acceleration = friction.acceleration + pushes;
         let size = friction.acceleration.abs() + sizes;
         match acceleration.abs() > DISTANCE_ROUNDING * size {
@@ -132,21 +133,28 @@ impl Contacts {
     }
 
     /// Returns the accelerations of the distances of contacts due to the forces of other contacts.
-    fn resting_accelerations(
+    fn compute_resting_accelerations(
         &self,
         touching: &[usize],
         (resting, forces): (&[usize], &ContactForces),
     ) -> Vec<f64> {
         let acceleration = |place: &usize| {
             let impact = &self.at[*place];
-            impact.acceleration + self.pushes(&impact.delassus, (resting, forces)).0
+            impact.acceleration
+                + self
+                    .compute_pushed_acceleration(&impact.delassus, (resting, forces))
+                    .0
         };
         touching.iter().map(acceleration).collect()
     }
 
     /// Returns the acceleration due to `forces` in the direction with the given row of the Delassus matrix, and the sum
     /// of the magnitudes of its terms.
-    fn pushes(&self, row: &[f64], (resting, forces): (&[usize], &ContactForces)) -> (f64, f64) {
+    fn compute_pushed_acceleration(
+        &self,
+        row: &[f64],
+        (resting, forces): (&[usize], &ContactForces),
+    ) -> (f64, f64) {
         let normal = resting.iter().zip(&forces.normal);
         let normal = normal.map(|(other, force)| row[*other] * force);
         let along = resting.iter().zip(&forces.tangential);

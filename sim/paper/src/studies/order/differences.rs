@@ -27,7 +27,7 @@ pub(super) fn run_at_order(runs: &[Run], order: usize) -> Result<&Run, StudyErro
 }
 
 /// Computes the RMS difference from the reference over the first `seconds` s, in m.
-pub(super) fn convergence(runs: &[Run], seconds: f64) -> Result<Convergence, StudyError> {
+pub(super) fn compute_convergence(runs: &[Run], seconds: f64) -> Result<Convergence, StudyError> {
     let reference = run_at_order(runs, REFERENCE_ORDER)?;
     let count = (seconds / SAMPLING_INTERVAL_S) as usize;
     Ok(Convergence::of(runs, |run, which| {
@@ -40,7 +40,7 @@ pub(super) fn convergence(runs: &[Run], seconds: f64) -> Result<Convergence, Stu
 }
 
 /// Computes the difference of the long-time RMS, relative to the reference.
-pub(super) fn statistics(runs: &[Run]) -> Result<Convergence, StudyError> {
+pub(super) fn compare_statistics(runs: &[Run]) -> Result<Convergence, StudyError> {
     let reference = run_at_order(runs, REFERENCE_ORDER)?;
     Ok(Convergence::of(runs, |run, which| {
         (rms(run, which) / rms(reference, which) - 1.0).abs()
@@ -78,7 +78,7 @@ fn rms(run: &Run, which: usize) -> f64 {
 }
 
 /// Returns the times, s, and the largest difference of x_sp in each 5 ms, m.
-pub(super) fn largest_differences(of: &Record, reference: &Record) -> (Vec<f64>, Vec<f64>) {
+pub(super) fn find_largest_differences(of: &Record, reference: &Record) -> (Vec<f64>, Vec<f64>) {
     let pieces = of
         .x_sp
         .chunks(SAMPLES_PER_INTERVAL)
@@ -112,7 +112,7 @@ pub(super) fn table(file: &str, runs: &[Run], of: &Convergence) -> Table {
 }
 
 /// Returns the differences and the long-time RMS for the JSON document of the study.
-pub(super) fn convergence_json(
+pub(super) fn format_convergence_json(
     micrometres: u32,
     seconds: f64,
     runs: &[Run],

@@ -20,9 +20,9 @@ use super::case::{Amplitude, RunLength, measure};
 use super::display::{FIGURE_WINDOW_S, SampledCase, even_times, sample_series};
 use super::error::StudyError;
 use super::report::{Study, case_json, tables};
-use super::responses::{Progress, paper_case};
-use differences::{convergence, convergence_json, table};
-use plates::{chaotic, fig_4};
+use super::responses::{Progress, create_paper_case};
+use differences::{compute_convergence, format_convergence_json, table};
+use plates::{draw_chaotic_convergence, draw_fig_4};
 use run::{
     BACKLASH, COARSE_INTERVAL_S, HIGHEST_ORDER, OMEGA, REFERENCE_ORDER, Run, SAMPLING_INTERVAL_S,
     SHORT_TIME_S, SHOWN_ORDERS, START_TIME_S, STATISTICS_TIME_S, TRANSIENT_S,
@@ -41,7 +41,7 @@ pub fn order(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
     let requests = [0, BACKLASH].map(|b| orders.iter().map(move |s| (b, *s)));
     let requests: Vec<(u32, usize)> = requests.into_iter().flatten().collect();
     let found = requests.par_iter().map(|&(b, s)| {
-        let run = run(&arm, &paper_case(s, b, OMEGA));
+        let run = run(&arm, &create_paper_case(s, b, OMEGA));
         step();
         run
     });
@@ -50,7 +50,7 @@ pub fn order(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
     let shown = [(0, 4), (0, 5)].into_iter();
     let shown: Vec<(u32, usize)> = shown.chain(SHOWN_ORDERS.map(|s| (BACKLASH, s))).collect();
     let found = shown.par_iter().map(|&(b, s)| {
-        let pair = display(&arm, &paper_case(s, b, OMEGA));
+        let pair = display(&arm, &create_paper_case(s, b, OMEGA));
         step();
         pair
     });
@@ -95,14 +95,14 @@ fn study(
     displays: &[SampledCase],
     cases: Vec<Value>,
 ) -> Result<Study, StudyError> {
-    let whole = convergence(tight, FIGURE_WINDOW_S)?;
-    let short = convergence(loose, SHORT_TIME_S)?;
+    let whole = compute_convergence(tight, FIGURE_WINDOW_S)?;
+    let short = compute_convergence(loose, SHORT_TIME_S)?;
     let (without, with) = displays.split_at_checked(2).unwrap_or_default();
     let tables = displays.iter().flat_map(tables);
     Ok(Study {
         figures: vec![
-            fig_4(tight, without, &whole)?,
-            chaotic(loose, with, &short)?,
+            draw_fig_4(tight, without, &whole)?,
+            draw_chaotic_convergence(loose, with, &short)?,
         ],
         tables: tables
             .chain([table("convergence_b000.csv", tight, &whole)])
@@ -117,8 +117,8 @@ fn study(
             (
                 "convergence",
                 json!([
-                    convergence_json(0, FIGURE_WINDOW_S, tight, &whole),
-                    convergence_json(BACKLASH, SHORT_TIME_S, loose, &short),
+                    format_convergence_json(0, FIGURE_WINDOW_S, tight, &whole),
+                    format_convergence_json(BACKLASH, SHORT_TIME_S, loose, &short),
                 ]),
             ),
             (

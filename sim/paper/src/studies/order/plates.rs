@@ -3,12 +3,14 @@
 use crate::studies::display::{FIGURE_WINDOW_S, SampledCase};
 use crate::studies::error::StudyError;
 use crate::studies::figures::{
-    Heading, density_panel, draw_frames, frequency_marks, raise_to_floor,
+    Heading, create_density_panel, draw_frames, list_frequency_marks, raise_to_floor,
 };
-use crate::studies::report::{Figure, case_name};
+use crate::studies::report::{Figure, format_case_name};
 use eomgen_plot::{Axes, Frame, Panel, Series};
 
-use super::differences::{Convergence, NAMES, largest_differences, run_at_order, statistics};
+use super::differences::{
+    Convergence, NAMES, compare_statistics, find_largest_differences, run_at_order,
+};
 use super::run::{
     BACKLASH, REFERENCE_ORDER, Run, SAMPLING_INTERVAL_S, SHORT_TIME_S, SHOWN_ORDERS,
     STATISTICS_TIME_S, TRANSIENT_S,
@@ -16,7 +18,7 @@ use super::run::{
 
 /// Draws dr without backlash with four and five modes, as in Fig. 4, and the convergence of the
 /// series.
-pub(super) fn fig_4(
+pub(super) fn draw_fig_4(
     runs: &[Run],
     displays: &[SampledCase],
     convergence: &Convergence,
@@ -71,7 +73,7 @@ pub(super) fn fig_4(
 }
 
 /// Draws the convergence with backlash: differences over time, differences over a short time, and long-time statistics.
-pub(super) fn chaotic(
+pub(super) fn draw_chaotic_convergence(
     runs: &[Run],
     displays: &[SampledCase],
     convergence: &Convergence,
@@ -81,7 +83,7 @@ pub(super) fn chaotic(
     for order in SHOWN_ORDERS {
         growths.push((
             order,
-            largest_differences(&run_at_order(runs, order)?.start, reference),
+            find_largest_differences(&run_at_order(runs, order)?.start, reference),
         ));
     }
     let curves = growths.iter().map(|(order, (times, values))| Series {
@@ -96,7 +98,7 @@ pub(super) fn chaotic(
         axes: Axes::Growth,
         ..Frame::default()
     };
-    let statistics = statistics(runs)?;
+    let statistics = compare_statistics(runs)?;
     let drawn: Vec<Vec<f64>> = displays
         .iter()
         .map(|d| raise_to_floor(&d.f_la.density))
@@ -133,7 +135,7 @@ pub(super) fn chaotic(
 fn ids(displays: &[SampledCase]) -> Vec<String> {
     displays
         .iter()
-        .map(|display| case_name(&display.case))
+        .map(|display| format_case_name(&display.case))
         .collect()
 }
 
@@ -196,12 +198,12 @@ fn spectra<'a>(
         values: density,
         ..Series::default()
     });
-    let mut panel = density_panel(of, curves.collect());
+    let mut panel = create_density_panel(of, curves.collect());
     panel.title = format!("{letter} {}", panel.title);
     Frame {
         panel,
         axes: Axes::Frequency,
-        marks: displays.last().map_or_else(Vec::new, frequency_marks),
+        marks: displays.last().map_or_else(Vec::new, list_frequency_marks),
         ..Frame::default()
     }
 }

@@ -74,7 +74,7 @@ fn read(folder: &TempDir) -> Result<Dataset, Refusal> {
     read_dataset(&folder.path().join("dataset.toml"), &rotor())
 }
 
-fn refused(folder: &TempDir) -> String {
+fn rejection_message(folder: &TempDir) -> String {
     read(folder)
         .map(|_| ())
         .expect_err("it is taken")
@@ -82,12 +82,12 @@ fn refused(folder: &TempDir) -> String {
 }
 
 /// Returns the dataset file with additional keys of the channel.
-fn with(keys: &str) -> String {
+fn with_channel_keys(keys: &str) -> String {
     format!("{DESCRIPTION}{keys}\n")
 }
 
 /// Returns the largest difference of a channel from the angle in degrees, up to full turns.
-fn error(values: &[f64], turn: f64, every: usize) -> f64 {
+fn find_largest_error(values: &[f64], turn: f64, every: usize) -> f64 {
     let degrees = |k: usize| values[k].to_degrees() - angle(k * every, turn);
     let offset = (degrees(0) / 360.0).round() * 360.0;
     // The low-pass filter of `every` is inaccurate at the ends.
@@ -99,7 +99,7 @@ fn error(values: &[f64], turn: f64, every: usize) -> f64 {
 
 #[test]
 fn wrapped_channel_is_rejected_with_key_to_write() {
-    let said = refused(&folder(DESCRIPTION, wrapped, |_| 0.0));
+    let said = rejection_message(&folder(DESCRIPTION, wrapped, |_| 0.0));
     for part in [
         "train.csv: `phi` jumps ",
         " times by about 360.0000 deg, first at 0.",
@@ -108,13 +108,20 @@ fn wrapped_channel_is_rejected_with_key_to_write() {
         assert!(said.contains(part), "{part}: {said}");
     }
     let radians = DESCRIPTION.replace("\"deg\"", "\"rad\"");
-    let said = refused(&folder(&radians, |v| wrapped(v).to_radians(), |_| 0.0));
+    let said = rejection_message(&folder(&radians, |v| wrapped(v).to_radians(), |_| 0.0));
     assert!(said.contains("write wrap = 6.283185307179586 in"), "{said}");
-    assert!(read(&folder(&with("wrap = \"none\""), wrapped, |_| 0.0)).is_ok());
+    assert!(
+        read(&folder(
+            &with_channel_keys("wrap = \"none\""),
+            wrapped,
+            |_| 0.0
+        ))
+        .is_ok()
+    );
 }
 
 /// Returns the error message for a counter with the given period; `turns` is its motion in turns.
-fn refused_counter(period: f64, mut turns: impl FnMut(usize) -> f64) -> String {
+fn counter_rejection_message(period: f64, mut turns: impl FnMut(usize) -> f64) -> String {
     let counts = DESCRIPTION
         .replace("\"deg\"", "\"1\"")
         .replace("0.1", "1")
@@ -126,7 +133,7 @@ fn refused_counter(period: f64, mut turns: impl FnMut(usize) -> f64) -> String {
         writeln!(text, "{:.2},0,{count}", 0.01 * f64::from(k)).expect("a string");
     }
     write(folder.path(), "train.csv", &text);
-    refused(&folder)
+    rejection_message(&folder)
 }
 
 #[test]
@@ -140,7 +147,7 @@ fn usual_counter_period_is_proposed_exactly() {
     };
     for period in [256.0, 1000.0, 1024.0, 3600.0, 4096.0, 65536.0, 16_777_216.0] {
         for (wraps, noise) in [(2.0, 0.0), (3.0, 0.0), (2.0, 1.0), (3.0, 1.0)] {
-            let said = refused_counter(period, |k| {
+            let said = counter_rejection_message(period, |k| {
                 let part = f64::from(k as u32) / 2000.0;
                 0.4 + wraps * (part + 0.05 * (9.0 * part).sin()) + noise * uniform() / period
             });
@@ -157,12 +164,12 @@ fn usual_counter_period_is_proposed_exactly() {
 
 #[test]
 fn unusual_period_is_proposed_with_uncertainty() {
-    let said = refused_counter(5003.0, |k| 0.4 + 0.0017 * k as f64);
+    let said = counter_rejection_message(5003.0, |k| 0.4 + 0.0017 * k as f64);
     assert!(
         said.contains("write wrap = 5003 in [channels.phi] (uncertain by 1"),
         "{said}"
     );
-    let said = refused_counter(65003.0, |k| 0.4 + 0.0017 * k as f64);
+    let said = counter_rejection_message(65003.0, |k| 0.4 + 0.0017 * k as f64);
     assert!(
         said.contains("write wrap = 65003 in [channels.phi] (uncertain by 1"),
         "{said}"
@@ -181,7 +188,7 @@ fn declared_channel_is_unwrapped_before_decimation() {
         ("rad", "wrap = \"3600/10 deg\"", 1f64.to_radians()),
     ] {
         for every in [1, 4] {
-            let description = with(keys)
+            let description = with_channel_keys(keys)
                 .replace("\"deg\"", &format!("\"{unit}\""))
                 .replace(
                     "column = \"t\"",
@@ -190,7 +197,7 @@ fn declared_channel_is_unwrapped_before_decimation() {
             let dataset = read(&folder(&description, |v| scale * wrapped(v), |_| 0.0));
             let dataset = dataset.unwrap_or_else(|refusal| panic!("{refusal}"));
             for (record, turn) in [(&dataset.train[0], 0.0), (&dataset.test[0], 1.0)] {
-                let error = error(&record.channels[0], turn, every);
+                let error = find_largest_error(&record.channels[0], turn, every);
                 assert!(error < 0.05, "{unit}, {every}: {error}");
             }
         }
@@ -202,7 +209,11 @@ fn parts_of_file_keep_turns_from_known_start() {
     let parts =
         "train = [{ file = \"train.csv\", to = 2 }]\ntest = [{ file = \"train.csv\", from = 2 }]";
     let whole = "train = [\"train.csv\"]\ntest = [\"test.csv\"]";
-    let folder_of = folder(&with("wrap = 360").replace(whole, parts), wrapped, |_| 0.0);
+    let folder_of = folder(
+        &with_channel_keys("wrap = 360").replace(whole, parts),
+        wrapped,
+        |_| 0.0,
+    );
     let dataset = read(&folder_of).unwrap_or_else(|refusal| panic!("{refusal}"));
     let [before, after] = [&dataset.train[0], &dataset.test[0]].map(|record| &record.channels[0]);
     let step = (after[0] - before[before.len() - 1]).to_degrees();
@@ -211,7 +222,7 @@ fn parts_of_file_keep_turns_from_known_start() {
         "{step}"
     );
     // A sensor with the range 0 to 360 degrees reads 359.9 at rest.
-    let resting = with("wrap = 360\n[initial]\nstate = \"rest\"");
+    let resting = with_channel_keys("wrap = 360\n[initial]\nstate = \"rest\"");
     let from_zero = folder(&resting, |v| (v - 0.1).rem_euclid(360.0), |_| 0.0);
     let dataset = read(&from_zero).unwrap_or_else(|refusal| panic!("{refusal}"));
     let first = dataset.train[0].channels[0][0].to_degrees();
@@ -233,7 +244,7 @@ fn wrong_period_is_rejected() {
         ("wrap = \"k\"", "expected in deg"),
         ("wrap = \"2*(\"", "or \"none\""),
     ] {
-        let said = refused(&folder(&with(keys), wrapped, |_| 0.0));
+        let said = rejection_message(&folder(&with_channel_keys(keys), wrapped, |_| 0.0));
         assert!(said.contains(part), "{part}: {said}");
     }
 }
@@ -256,14 +267,14 @@ fn gap_with_unknown_turns_is_rejected_only_inside_part() {
         write(folder.path(), "train.csv", &text);
         folder
     };
-    let said = refused(&with_gap(&with("wrap = 360")));
+    let said = rejection_message(&with_gap(&with_channel_keys("wrap = 360")));
     assert!(
         said.contains("`phi` is missing from 1.990000 s to 2.300000 s"),
         "{said}"
     );
     let parts =
         "train = [{ file = \"train.csv\", to = 1.99 }, { file = \"train.csv\", from = 2.3 }]";
-    let parted = with("wrap = 360").replace("train = [\"train.csv\"]", parts);
+    let parted = with_channel_keys("wrap = 360").replace("train = [\"train.csv\"]", parts);
     let dataset = read(&with_gap(&parted)).unwrap_or_else(|refusal| panic!("{refusal}"));
     assert_eq!(dataset.train.len(), 2);
 }
@@ -276,7 +287,11 @@ fn square_wave_input_is_not_wrapped() {
     let model = eomgen_model_spec::source::Source::new("rotor.toml", model);
     let model = eomgen_model_spec::check(model).expect("a model").model;
     let read = |u: &dyn Fn(usize) -> f64| {
-        let folder = folder(&with(&format!("wrap = 360\n{fed}")), wrapped, u);
+        let folder = folder(
+            &with_channel_keys(&format!("wrap = 360\n{fed}")),
+            wrapped,
+            u,
+        );
         read_dataset(&folder.path().join("dataset.toml"), &model).map(|_| ())
     };
     let turn = std::f64::consts::TAU;
@@ -310,7 +325,7 @@ fn proposed_file_declares_wrap() {
     assert!(text.contains("wrap = 6.283185307179586"), "{text}");
     write(folder.path(), "dataset.toml", &text);
     let dataset = read(&folder).unwrap_or_else(|refusal| panic!("{refusal}: {text}"));
-    assert!(error(&dataset.train[0].channels[0], 0.0, 1) < 0.05);
+    assert!(find_largest_error(&dataset.train[0].channels[0], 0.0, 1) < 0.05);
     assert!(dataset.channels[0].noise < 1e-3, "{text}");
 }
 
@@ -324,5 +339,5 @@ fn angle_with_jumps_of_360_and_no_unit_is_in_degrees() {
     }
     write(folder.path(), "dataset.toml", &text);
     let dataset = read(&folder).unwrap_or_else(|refusal| panic!("{refusal}: {text}"));
-    assert!(error(&dataset.train[0].channels[0], 0.0, 1) < 0.05);
+    assert!(find_largest_error(&dataset.train[0].channels[0], 0.0, 1) < 0.05);
 }
