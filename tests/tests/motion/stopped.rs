@@ -123,12 +123,12 @@ table = "1/2*J*(1 - x/a)*dot(phi)^2"
 spring = "1/2*k*phi^2"
 "#;
 
-struct Stopped {
+struct StoppedRun {
     output: Output,
     rows: Vec<Vec<f64>>,
 }
 
-impl Stopped {
+impl StoppedRun {
     fn message(&self) -> String {
         text(&self.output.stderr)
     }
@@ -159,7 +159,7 @@ fn write_spec(folder: &Path, specification: &str) -> String {
     path.display().to_string()
 }
 
-fn run_until_stop(specification: &str, until: &str, more: &[&str]) -> Stopped {
+fn run_until_stop(specification: &str, until: &str, more: &[&str]) -> StoppedRun {
     let folder = tempfile::tempdir().expect("a folder");
     let (spec, out) = (
         write_spec(folder.path(), specification),
@@ -180,7 +180,7 @@ fn run_until_stop(specification: &str, until: &str, more: &[&str]) -> Stopped {
     let rows: Vec<_> = rows.collect();
     assert!(rows.iter().flatten().all(|number| number.is_finite()));
     assert!(rows.windows(2).all(|pair| pair[0][0] < pair[1][0]));
-    Stopped { output, rows }
+    StoppedRun { output, rows }
 }
 
 #[test]
@@ -263,7 +263,7 @@ fn chattering_forces_are_not_reported_as_friction() {
 
 /// A relay with a lead term has a sliding mode on its switching surface, like dry friction.
 #[test]
-fn relay_with_lead_slides() {
+fn relay_with_lead_term_has_sliding_mode() {
     let folder = tempfile::tempdir().expect("a folder");
     let law = between_forces("-F*sign(x + tau*dot(x))");
     let spec = write_spec(folder.path(), &law);

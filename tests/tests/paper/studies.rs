@@ -226,7 +226,7 @@ fn exponent_matches_the_divergence_of_two_motions() {
 }
 
 #[test]
-fn exponent_errors_match_their_scatter() {
+fn standard_errors_of_exponents_match_their_scatter() {
     let arm = Arm::new(&[4]).unwrap();
     let length = RunLength {
         transient: (200, 200),

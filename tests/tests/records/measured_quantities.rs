@@ -263,7 +263,7 @@ fn compare_free_vibrations(train: f64, test: f64, channel: &str, initial: &str) 
 }
 
 #[test]
-fn free_vibration_from_the_other_side_is_no_wrong_sign() {
+fn free_vibration_from_the_other_side_is_not_reported_as_wrong_sign() {
     let found = compare_free_vibrations(-0.1, -0.07, "y", "state = \"estimate\"");
     assert_eq!(found["verdict"], "no_significant_gap", "{found:#}");
 }

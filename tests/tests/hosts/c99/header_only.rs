@@ -43,7 +43,7 @@ const C: [&str; 2] = ["cc", "-std=c99"];
 const CPP: [&str; 2] = ["c++", "-std=c++11"];
 
 #[test]
-fn header_with_the_functions_has_the_bits_of_two_files() {
+fn header_only_code_is_bit_identical_to_header_and_source() {
     if !has_compilers() {
         return;
     }

@@ -38,7 +38,7 @@ fn sticking_block_stays_at_rest() {
     assert!((motion.events[0].t - 1.0).abs() < 1e-14);
 }
 
-fn root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+fn bisect(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     assert!(f(low) * f(high) < 0.0);
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
@@ -68,7 +68,7 @@ fn pushed_block_slides_and_sticks_as_closed_form() {
                 - 0.5 * dry / m * gone * gone
         };
         let turn = std::f64::consts::PI / omega;
-        let rests = root(speed, 0.5 * turn, leaves + 1.2 * turn);
+        let rests = bisect(speed, 0.5 * turn, leaves + 1.2 * turn);
         assert!(
             (force * (omega * rests).sin()).abs() < dry,
             "it sticks at {force}"

@@ -225,7 +225,7 @@ x = "0.2*E/tau*(dot(x)*tau)^2"
 }
 
 #[test]
-fn switches_that_drop_out_of_the_equations_need_no_guard() {
+fn switches_that_cancel_in_the_equations_need_no_guard() {
     let text = masses("k*L^2*contact(x, L/2)*sin(sqrt(k/m)*t)");
     let model = check_model(&text);
     let certificate = certify(&model, &model);
