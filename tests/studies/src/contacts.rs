@@ -1,6 +1,6 @@
-//! Study `contacts`: stacks of two to five balls that fall on a floor and onto each other, and boxes of
-//! `examples/impacts`, without and with friction, dropped from random states. Every motion must reach the end without
-//! overlaps and without an increase of the energy, and the stacks must come to rest.
+//! Study `contacts`: stacks of two to five falling balls, and boxes of `examples/impacts`, without and with friction,
+//! dropped from random states. Every motion must reach the end without overlaps and without an increase of the energy,
+//! and the stacks must stop moving.
 
 use std::path::Path;
 

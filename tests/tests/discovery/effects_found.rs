@@ -182,7 +182,7 @@ tip = { value = "at(w, l)", unit = "m" }
     samples: 400,
 };
 
-/// Beam with longer windows. A compliant joint has a coordinate of its own. In short windows, its fitted initial state
+/// Beam with longer windows. A compliant joint has a separate coordinate. In short windows, its fitted initial state
 /// would explain the records.
 const BEAM_FOR_LONG: Machine = Machine {
     window: 1.0,

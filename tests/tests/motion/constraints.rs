@@ -762,8 +762,8 @@ fn rolling_disc_conserves_energy_and_sleigh_straightens() {
     assert!((last[3].hypot(last[4]) - (energy / 2.0).sqrt()).abs() < 1e-7);
 }
 
-/// With constraints at the end of a field, each additional mode must need only a few operations, as with a tip mass:
-/// the operations with its shape at the end.
+/// With constraints at the end of a field, each additional mode must need only a few operations (with its shape at the
+/// end), as with a tip mass.
 #[test]
 fn constraints_add_few_operations_per_mode() {
     let per_mode = |constrained: bool| {

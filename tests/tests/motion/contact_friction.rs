@@ -496,8 +496,8 @@ fn box_dropped_flat_bounces_evenly() {
     }
 }
 
-/// A rotating disc comes to rest in a groove after sliding, or after rocking from wall to wall. The machine is
-/// formulated in coordinate systems at several angles.
+/// A rotating disc stops in a groove after sliding, or after rocking from wall to wall. The machine is formulated in
+/// coordinate systems at several angles.
 #[test]
 fn disc_comes_to_rest_in_a_groove_at_any_angle() {
     let model = compile(

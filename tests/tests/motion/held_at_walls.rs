@@ -142,8 +142,8 @@ fn sticking_body_at_a_wall_has_one_event() {
     }
 }
 
-/// A periodic force moves a body away from a wall and back to it, and the body comes to rest at the wall. Samples
-/// within the last step are beyond the wall by the error of dense output.
+/// A periodic force moves a body away from a wall and back to it, and the body stops at the wall. Samples within the
+/// last step are beyond the wall by the error of dense output.
 #[test]
 fn sliding_body_returns_to_a_wall() {
     let (m, push, friction, frequency) = (

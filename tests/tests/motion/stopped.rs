@@ -80,8 +80,7 @@ gravity = "-T_g*cos(theta)"
 friction = { on = "theta", value = "-T_c*tanh(dot(theta)/v_0)" }
 "#;
 
-/// Two chambers with an orifice and a piston that comes to rest. At equal pressures the derivative of the flow is
-/// infinite.
+/// Two chambers with an orifice and a piston that stops. At equal pressures the derivative of the flow is infinite.
 const ORIFICE: &str = r#"
 [model]
 name = "orifice"
@@ -382,7 +381,7 @@ fn explicit_solvers_report_stiffness() {
 }
 
 /// The solution of `auto` agrees with the solution for a friction that is a thousand times less steep: the pendulum
-/// comes to rest at the same time.
+/// stops at the same time.
 #[test]
 fn auto_solves_stiff_friction_with_radau() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,5 +1,5 @@
-//! Tests of correct models that are difficult to check: terms of a row cancel, functions have a domain, a force
-//! increases the energy, the motion comes to rest, switches cancel. Their certificates pass and report the coverage.
+//! Tests of correct models that are difficult to check. Terms of a row cancel, functions have a domain, a force
+//! increases the energy, the motion stops, or switches cancel. The certificates pass and report the coverage.
 
 use eomgen_tests::certified::{certify, check_model};
 use eomgen_validate::certificate::{Certificate, Check, Coverage, SkipKind, Verdict};

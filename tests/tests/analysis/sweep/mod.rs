@@ -1,5 +1,5 @@
-//! Tests of `eomgen sweep` and `eomgen merge`: byte-identical results for any number of threads and shards and after
-//! kills, comparison with the closed form of a forced oscillator, and rejected options.
+//! Tests of `eomgen sweep` and `eomgen merge`. Results are byte-identical for any number of threads and shards and
+//! after kills. They are compared with the closed form of a forced oscillator. Invalid options are rejected.
 
 mod conditions;
 mod exponents;

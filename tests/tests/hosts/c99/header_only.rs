@@ -1,5 +1,5 @@
-//! Tests of header-only C (`--packaging header-only`): results are bit-identical to the source file with its header, in
-//! programs of several files in C and C++, and there are no warnings.
+//! Tests of header-only C (`--packaging header-only`) in programs of several files in C and C++. Results are
+//! bit-identical to the source file with its header, and there are no warnings.
 
 use std::path::Path;
 use std::process::Command;

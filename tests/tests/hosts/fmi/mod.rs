@@ -105,7 +105,7 @@ fn units_stick_bounce_and_start_on_constraints_like_simulate() {
         (own.join("mass_step.toml"), "3", "1e-5"),
         (own.join("puck.toml"), "3", "1e-5"),
         (own.join("tabulated.toml"), "0.1", "1e-5"),
-        // The ball comes to rest after 4.06 s. Impacts amplify small differences.
+        // The ball stops bouncing after 4.06 s. Impacts amplify small differences.
         (examples.join("bouncing_ball.toml"), "5", "1e-4"),
         (examples.join("box_with_friction.toml"), "1.5", "1e-3"),
     ] {

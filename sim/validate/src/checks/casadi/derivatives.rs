@@ -1,6 +1,6 @@
-//! Comparison of derivatives with finite differences: the time derivatives of the rates with differences of the rates,
-//! the second derivatives of the weighted rates with differences of the Jacobians. Other checks compare the Jacobians
-//! with the oracle.
+//! Comparison of derivatives with finite differences. The time derivatives of the rates are compared with differences
+//! of the rates; the second derivatives of the weighted rates, with differences of the Jacobians. Other checks compare
+//! the Jacobians with the oracle.
 
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
