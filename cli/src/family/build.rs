@@ -113,7 +113,7 @@ impl Emitted {
         let mut this = Self {
             files: BTreeMap::new(),
             sources: Sources::default(),
-            operations: program.operations_by_function().into_iter().collect(),
+            operations: program.count_operations_by_function().into_iter().collect(),
             states: program.states(),
             outputs,
         };
