@@ -28,7 +28,7 @@ const PASSES: usize = 32;
 /// Number of rounds; the fastest counts.
 const ROUNDS: usize = 2000;
 
-fn best(mut round: impl FnMut()) -> f64 {
+fn measure_shortest(mut round: impl FnMut()) -> f64 {
     let seconds = |_| {
         let start = Instant::now();
         round();
@@ -76,7 +76,7 @@ macro_rules! compare {
         let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
         let single = [state::<{ arm::STATES }>(); STATES];
         let mut single_rates = single;
-        let alone = best(|| {
+        let alone = measure_shortest(|| {
             for (place, (state, found)) in single.iter().zip(&mut single_rates).enumerate() {
                 let t = times(place / LANES)[place % LANES];
                 for _ in 0..PASSES {
@@ -90,7 +90,7 @@ macro_rules! compare {
         let mut lane_rates = states;
         print!("order {:>2}: one by one {alone:6.1} ns", $order);
         for registers in Registers::ALL.into_iter().filter(|kind| kind.are_available()) {
-            let time = best(|| {
+            let time = measure_shortest(|| {
                 eomgen_lanes::run_with(registers, All {
                     states: black_box(&states),
                     rates: &mut lane_rates,

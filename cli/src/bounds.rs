@@ -30,8 +30,8 @@ pub fn bounds(
             ranges.set_point(at.t, &at.state, &at.inputs);
         }
         for text in &options.range {
-            let (name, [low, high]) = ends(&run, text)?;
-            for name in modes(&compiled, &name) {
+            let (name, [low, high]) = read_range(&run, text)?;
+            for name in expand_field_modes(&compiled, &name) {
                 let set = ranges.set(&name, low, high);
                 set.map_err(|message| Error::input(format!("--range {text}: {message}")))?;
             }
@@ -41,7 +41,7 @@ pub fn bounds(
 }
 
 /// Reads `NAME=LOW:HIGH` or `NAME=VALUE`. Returns the name and both ends in SI.
-fn ends(run: &Instance<'_>, text: &str) -> Result<(String, [f64; 2])> {
+fn read_range(run: &Instance<'_>, text: &str) -> Result<(String, [f64; 2])> {
     let (name, value) = text.split_once('=').ok_or_else(|| {
         Error::input(format!(
             "--range {text}: expected NAME=LOW:HIGH, such as `theta_dot=-10:10`"
@@ -63,7 +63,7 @@ fn read_end(run: &Instance<'_>, name: &str, end: &str) -> Result<f64> {
         let values = changed.and_then(|changed| changed.parameter_values());
         return Ok(values.map_err(|error| Error::model(&model.source, error))?[place]);
     }
-    let first = modes(run.model(), name).into_iter().next();
+    let first = expand_field_modes(run.model(), name).into_iter().next();
     let name = first.unwrap_or_else(|| name.to_owned());
     let given = split_assignments("--range", &[format!("{name}={end}")])?;
     let value = run.read_quantities(&given)?.pop();
@@ -72,7 +72,7 @@ fn read_end(run: &Instance<'_>, name: &str, end: &str) -> Result<f64> {
 
 /// Returns the names of all modes (or of their rates) if `name` is the name of a field (or of its rate); otherwise
 /// returns `name`.
-fn modes(compiled: &CompiledModel, name: &str) -> Vec<String> {
+fn expand_field_modes(compiled: &CompiledModel, name: &str) -> Vec<String> {
     let (field, ending) = match name.strip_suffix("_dot") {
         Some(field) => (field, "_dot"),
         None => (name, ""),

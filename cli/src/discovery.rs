@@ -27,7 +27,7 @@ pub struct Task<'a> {
 /// Compares a model with records and writes `comparison.json` and `report.html`. Returns the document.
 pub fn compare(task: &Task<'_>) -> Result<Value> {
     let begin = Instant::now();
-    let (model, order, dataset) = inputs(task)?;
+    let (model, order, dataset) = read_inputs(task)?;
     check_outputs(task, &["comparison.json", "report.html"])?;
     let path = task.spec.display().to_string();
     let specification = Specification {
@@ -48,7 +48,7 @@ pub fn compare(task: &Task<'_>) -> Result<Value> {
 /// `limit` is in s; `effects` is a file with additional effects. Returns the document.
 pub fn discover(task: &Task<'_>, limit: Option<f64>, effects: Option<&Path>) -> Result<Value> {
     let begin = Instant::now();
-    let (model, order, dataset) = inputs(task)?;
+    let (model, order, dataset) = read_inputs(task)?;
     check_outputs(task, &["extended.toml", "report.html", "discovery.json"])?;
     let effects = catalogue::load_effects(effects).map_err(Error::Specification)?;
     let path = task.spec.display().to_string();
@@ -110,7 +110,7 @@ fn seconds(limit: f64) -> Result<Duration> {
 }
 
 /// Reads the specification, the truncation order and the dataset.
-fn inputs(task: &Task<'_>) -> Result<(Model, Option<usize>, Dataset)> {
+fn read_inputs(task: &Task<'_>) -> Result<(Model, Option<usize>, Dataset)> {
     let model = load(task.spec)?.model;
     let (model, open_loop) = open_loop(model, task.dataset).map_err(Error::records)?;
     orders(&model, task.order)?;

@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_of_different_files_differ_in_more_than_case() {
+    fn files_with_different_contents_need_names_that_differ_in_more_than_case() {
         let check = |names: [(&str, &str); 2]| {
             let files = names.map(|(name, text)| (name, text.as_bytes()));
             check_names(files).is_ok()

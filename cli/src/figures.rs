@@ -13,8 +13,8 @@ pub fn draw(job: &Job, table: &Table) -> Vec<(String, Result<Vec<u8>, PlotError>
         .filter(|axis| axes.get(*axis).is_some_and(|axis| axis.count > 1))
         .collect();
     let picture = |measure: &Description| match wide[..] {
-        [along] => diagram(job, table, along, measure),
-        [along, up] => map(job, table, (along, up), measure),
+        [along] => render_diagram(job, table, along, measure),
+        [along, up] => render_map(job, table, (along, up), measure),
         _ => None,
     };
     let measures = job.plan().measures.iter();
@@ -24,7 +24,7 @@ pub fn draw(job: &Job, table: &Table) -> Vec<(String, Result<Vec<u8>, PlotError>
 }
 
 /// Draws the first column as a map: the first axis to the right, the second axis upwards.
-fn map(
+fn render_map(
     job: &Job,
     table: &Table,
     (along, up): (usize, usize),
@@ -63,7 +63,7 @@ fn map(
 }
 
 /// Draws all columns as functions of the axis.
-fn diagram(
+fn render_diagram(
     job: &Job,
     table: &Table,
     axis: usize,

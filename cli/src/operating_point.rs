@@ -32,7 +32,7 @@ pub fn model(file: &ModelFile, parameters: &ParameterValues) -> Result<CompiledM
 /// constraints, or the nearest equilibrium.
 pub fn point(run: &Instance<'_>, state: &[String]) -> Result<OperatingPoint> {
     let request = StateRequest::parse("--state", state)?;
-    match found(run.requested_point(&request))? {
+    match require_result(run.requested_point(&request))? {
         (point, None) => consistent(run, point),
         (point, Some(equilibrium)) => {
             report_equilibrium(&equilibrium);
@@ -43,13 +43,13 @@ pub fn point(run: &Instance<'_>, state: &[String]) -> Result<OperatingPoint> {
 
 /// Finds an equilibrium; the command fails if there is none.
 pub fn equilibrium(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Result<Equilibrium> {
-    let found = found(run.find_equilibrium(request))?;
+    let found = require_result(run.find_equilibrium(request))?;
     report_equilibrium(&found);
     Ok(found)
 }
 
 /// Converts a failed search to a negative result of the command.
-fn found<T>(result: std::result::Result<T, Failure>) -> Result<T> {
+fn require_result<T>(result: std::result::Result<T, Failure>) -> Result<T> {
     result.map_err(|error| match error {
         Failure::Stopped { reason, .. } => Error::Stopped(reason),
         other => other.into(),
@@ -119,7 +119,7 @@ fn describe(found: &Departure) -> String {
 /// Returns the initial state, changed by every `NAME=EXPR` of `--state`, or the nearest equilibrium.
 pub fn initial_state(run: &Instance<'_>, state: &[String]) -> Result<Vec<f64>> {
     let request = StateRequest::parse("--state", state)?;
-    let (state, equilibrium) = found(run.requested_state(&request))?;
+    let (state, equilibrium) = require_result(run.requested_state(&request))?;
     if let Some(equilibrium) = &equilibrium {
         report_equilibrium(equilibrium);
     }

@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn surfaces_beyond_twelve_are_a_number() {
+    fn surfaces_after_the_twelfth_are_counted() {
         let sides: Vec<Side> = (0..15)
             .map(|place| side(&format!("x_{place}"), 1.0))
             .collect();

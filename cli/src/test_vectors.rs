@@ -2,7 +2,7 @@
 //! them.
 
 use eomgen_codegen::program::Program;
-use eomgen_codegen::vectors::{Given, TestVector, TestVectors};
+use eomgen_codegen::vectors::{CallArguments, TestVector, TestVectors};
 use eomgen_codegen::{c, rust};
 use eomgen_model_spec::model::Model;
 use eomgen_validate::oracle::Oracle;
@@ -58,7 +58,7 @@ pub fn files(
 }
 
 /// Draws the arguments of the calls of the test vectors.
-fn calls(model: &Model, orders: &[usize]) -> Result<Vec<Given>> {
+fn calls(model: &Model, orders: &[usize]) -> Result<Vec<CallArguments>> {
     let of_model =
         |error: eomgen_model_spec::variant::ModelError| Error::model(&model.source, error);
     let values = model.parameter_values().map_err(of_model)?;
@@ -77,7 +77,7 @@ fn calls(model: &Model, orders: &[usize]) -> Result<Vec<Given>> {
     while calls.len() < CALLS
         && let Some(drawn) = sampler.draw_inside().map_err(failed)?
     {
-        calls.push(Given {
+        calls.push(CallArguments {
             time: drawn.sample.time,
             state: drawn.sample.state,
             inputs: drawn.sample.inputs,
@@ -112,15 +112,20 @@ fn document(program: &Program, vectors: &TestVectors) -> Result<String> {
 
 fn list(vectors: &[TestVector], bits: impl Fn(&f64) -> String) -> Vec<Value> {
     let all = |numbers: &[f64]| numbers.iter().map(&bits).collect::<Vec<String>>();
-    let vectors = vectors.iter().map(|TestVector { given, expected }| {
-        json!({
-            "time": given.time,
-            "state": given.state,
-            "inputs": given.inputs,
-            "given_bits": all(&given.numbers()),
-            "expected": expected,
-            "expected_bits": all(expected),
-        })
-    });
+    let vectors = vectors.iter().map(
+        |TestVector {
+             arguments,
+             expected,
+         }| {
+            json!({
+                "time": arguments.time,
+                "state": arguments.state,
+                "inputs": arguments.inputs,
+                "given_bits": all(&arguments.numbers()),
+                "expected": expected,
+                "expected_bits": all(expected),
+            })
+        },
+    );
     vectors.collect()
 }

@@ -2,7 +2,7 @@
 //! it is derived.
 
 use eomgen_codegen::program::Program;
-use eomgen_codegen::trace::traced_lines;
+use eomgen_codegen::trace::find_traced_lines;
 use serde_json::{Map, Value, json};
 
 use crate::document::SCHEMA;
@@ -22,7 +22,7 @@ pub fn document<'f>(
     let mut traced = Map::new();
     for (name, contents) in files {
         let text = String::from_utf8_lossy(contents);
-        let lines = traced_lines(&text, &program.trace).into_iter();
+        let lines = find_traced_lines(&text, &program.trace).into_iter();
         let lines = lines.map(|line| {
             json!({
                 "line": line.line,

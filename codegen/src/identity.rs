@@ -20,14 +20,14 @@ pub struct Identity {
     pub name: String,
     /// SHA-256 of the specification.
     pub specification: String,
-    /// SHA-256 of the source without its identity line, see [`source_hash`].
+    /// SHA-256 of the source without its identity line, see [`hash_source`].
     pub source: String,
     /// Version of the generator.
     pub generator: String,
 }
 
 /// Returns the identity text with the placeholder in place of the source hash.
-pub(crate) fn unsealed(program: &Program) -> String {
+pub(crate) fn write_unsealed_identity(program: &Program) -> String {
     let (name, specification) = (&program.name, &program.spec_hash);
     let generator = env!("CARGO_PKG_VERSION");
     format!(
@@ -37,12 +37,12 @@ pub(crate) fn unsealed(program: &Program) -> String {
 
 /// Replaces the placeholder in a complete source by the source hash.
 pub(crate) fn seal(source: &str) -> String {
-    let hash = format!("source={}", source_hash(source));
+    let hash = format!("source={}", hash_source(source));
     source.replacen(&format!("source={PLACEHOLDER}"), &hash, 1)
 }
 
 /// Returns the SHA-256 of a source without the lines that contain an identity. Line ends count as `\n`.
-pub fn source_hash(source: &str) -> String {
+pub fn hash_source(source: &str) -> String {
     let lines = source.lines().filter(|line| !line.contains(MARK));
     let text: String = lines.flat_map(|line| [line, "\n"]).collect();
     sha256(text)
@@ -96,20 +96,20 @@ mod tests {
         let source =
             |inner: &str| format!("int a;\nconst char arm_identity[] = \"{inner}\";\nint b;\n");
         let sealed = seal(&source(&line(PLACEHOLDER)));
-        assert_eq!(source_hash(&sealed), sha256("int a;\nint b;\n"));
+        assert_eq!(hash_source(&sealed), sha256("int a;\nint b;\n"));
         let [identity] = &find(sealed.as_bytes())[..] else {
             panic!("no identity")
         };
-        assert_eq!(identity.source, source_hash(&sealed));
-        assert_eq!(source_hash(&sealed.replace('\n', "\r\n")), identity.source);
+        assert_eq!(identity.source, hash_source(&sealed));
+        assert_eq!(hash_source(&sealed.replace('\n', "\r\n")), identity.source);
         assert_ne!(
-            source_hash(&sealed.replace("int b", "int c")),
+            hash_source(&sealed.replace("int b", "int c")),
             identity.source
         );
     }
 
     #[test]
-    fn binary_files_with_damaged_identities_have_only_whole_ones() {
+    fn damaged_identities_in_binary_files_are_ignored() {
         let mut bytes = vec![0, 255, 3];
         bytes.extend(line("cd34").bytes());
         bytes.extend(b"\0eomgen-identity name=x;eomgen-identity ");

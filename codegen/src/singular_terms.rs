@@ -31,7 +31,7 @@ pub struct SingularTerm {
 ///
 /// # Errors
 /// Expressions that cannot be derived.
-pub fn singular_terms(
+pub fn find_singular_terms(
     model: &Model,
     orders: &[usize],
     parameters: &[f64],
@@ -39,12 +39,12 @@ pub fn singular_terms(
 ) -> Result<Vec<SingularTerm>, Diagnostics> {
     let found = |diagnostic| Diagnostics::from_one(model.source.clone(), diagnostic);
     let mut equations = derive(model, orders).map_err(|error| found(error.diagnostic()))?;
-    let mut terms = terms(model, &equations);
+    let mut terms = collect_terms(model, &equations);
     let mut nodes = Vec::with_capacity(2 * terms.len());
     for term in &terms {
         let mut value = term.node;
         for _ in 0..term.derivatives {
-            value = along_everything(&mut equations.graph, value);
+            value = differentiate_along_all(&mut equations.graph, value);
         }
         nodes.extend([term.node, value]);
     }
@@ -57,12 +57,12 @@ pub fn singular_terms(
     });
     let mut singular = Vec::with_capacity(terms.len());
     for term in terms {
-        let of = variables(&equations.graph, term.node);
+        let of = find_variables(&equations.graph, term.node);
         let mut nodes = vec![term.node];
         for variable in &of {
-            let mut value = along(&mut equations.graph, *variable, term.node);
+            let mut value = differentiate_along(&mut equations.graph, *variable, term.node);
             for _ in 1..term.derivatives {
-                value = along_everything(&mut equations.graph, value);
+                value = differentiate_along_all(&mut equations.graph, value);
             }
             nodes.push(value);
         }
@@ -120,7 +120,7 @@ struct Term {
     derivatives: usize,
 }
 
-fn terms(model: &Model, equations: &Equations) -> Vec<Term> {
+fn collect_terms(model: &Model, equations: &Equations) -> Vec<Term> {
     let energies = [
         ("kinetic energy", &model.kinetic),
         ("potential energy", &model.potential),
@@ -154,7 +154,7 @@ fn terms(model: &Model, equations: &Equations) -> Vec<Term> {
 }
 
 /// Returns the variables that a node depends on, without parameters and time.
-fn variables(graph: &Graph, node: NodeId) -> Vec<Variable> {
+fn find_variables(graph: &Graph, node: NodeId) -> Vec<Variable> {
     let reachable = graph.reachable(&[node]).into_iter();
     reachable
         .filter_map(|id| match *graph.operation(id) {
@@ -170,7 +170,7 @@ fn variables(graph: &Graph, node: NodeId) -> Vec<Variable> {
 }
 
 /// Returns the derivative of a node by one variable; for a field, the sum of the derivatives by all its modes.
-fn along(graph: &mut Graph, variable: Variable, node: NodeId) -> NodeId {
+fn differentiate_along(graph: &mut Graph, variable: Variable, node: NodeId) -> NodeId {
     let variable = graph.variable(variable);
     let tangent = |graph: &mut Graph, leaf: NodeId| match leaf == variable {
         true => graph.one(),
@@ -180,7 +180,7 @@ fn along(graph: &mut Graph, variable: Variable, node: NodeId) -> NodeId {
 }
 
 /// Returns the sum of the derivatives of a node by all variables.
-fn along_everything(graph: &mut Graph, node: NodeId) -> NodeId {
+fn differentiate_along_all(graph: &mut Graph, node: NodeId) -> NodeId {
     let tangent = |graph: &mut Graph, leaf: NodeId| {
         let variables = [
             Dependence::COORDINATE,

@@ -8,7 +8,7 @@
 use eomgen_model_spec::model::Model;
 
 use crate::mechanics::contributions::{
-    Contribution, derive_contributions, observable_contributions,
+    Contribution, collect_observable_contributions, derive_contributions,
 };
 use crate::mechanics::equations::Equations;
 use crate::program::units::infer_units;
@@ -17,9 +17,9 @@ use crate::symbolic::graph::NodeId;
 
 /// Set of term indices, one bit for each term.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-struct Terms(Vec<u64>);
+struct TermSet(Vec<u64>);
 
-impl Terms {
+impl TermSet {
     fn insert(&mut self, term: usize) {
         let word = term / 64;
         if self.0.len() <= word {
@@ -63,9 +63,9 @@ pub(crate) fn trace_program(
     let known = graph.len();
     let mut contributions = derive_contributions(model, equations, &mut graph);
     let first_observable = contributions.len();
-    contributions.extend(observable_contributions(model, equations));
-    let mut by_node = vec![Terms::default(); known];
-    let mut observed = vec![Terms::default(); known];
+    contributions.extend(collect_observable_contributions(model, equations));
+    let mut by_node = vec![TermSet::default(); known];
+    let mut observed = vec![TermSet::default(); known];
     for (term, part) in contributions.iter().enumerate() {
         let by_node = match term < first_observable {
             true => &mut by_node,
@@ -78,8 +78,8 @@ pub(crate) fn trace_program(
         }
     }
     let pairs: Vec<(NodeId, ValueId)> = values.filter(|(node, _)| node.index() < known).collect();
-    let spread = |by_node: &[Terms]| {
-        let mut found = vec![Terms::default(); program.values.len()];
+    let spread = |by_node: &[TermSet]| {
+        let mut found = vec![TermSet::default(); program.values.len()];
         for (node, value) in &pairs {
             found[value.index()].extend(&by_node[node.index()]);
         }
@@ -88,10 +88,10 @@ pub(crate) fn trace_program(
     let found = spread(&by_node);
     let observed = spread(&observed);
     let units = infer_units(program);
-    let trace = |(place, terms): (usize, &Terms)| ValueTrace {
-        unit: units[place].si_text(),
+    let trace = |(index, terms): (usize, &TermSet)| ValueTrace {
+        unit: units[index].si_text(),
         terms: match terms.is_empty() {
-            true => observed[place].indices(),
+            true => observed[index].indices(),
             false => terms.indices(),
         },
     };
@@ -111,11 +111,11 @@ fn term_of(part: Contribution) -> TraceTerm {
 /// Assigns terms to the values that have none: the terms of their operands, else the terms of the values that use
 /// them. Several terms can share a parameter or a product of parameters. Therefore a product of such factors gets
 /// only the terms that all its factors have in common, if there are any.
-fn spread_terms(program: &Program, mut found: Vec<Terms>) -> Vec<Terms> {
+fn spread_terms(program: &Program, mut found: Vec<TermSet>) -> Vec<TermSet> {
     // True for values of the solution, which depend on all terms of their operands.
     let mut is_combined = vec![false; found.len()];
-    for (place, value) in program.values.iter().enumerate() {
-        if !found[place].is_empty() {
+    for (index, value) in program.values.iter().enumerate() {
+        if !found[index].is_empty() {
             continue;
         }
         let operands = value.op.operands();
@@ -152,17 +152,17 @@ fn spread_terms(program: &Program, mut found: Vec<Terms>) -> Vec<Terms> {
         } else {
             all.for_each(|other| terms.extend(&other));
         }
-        found[place] = terms;
-        is_combined[place] = !is_monomial;
+        found[index] = terms;
+        is_combined[index] = !is_monomial;
     }
-    let mut from_users = vec![Terms::default(); found.len()];
-    for (place, value) in program.values.iter().enumerate().rev() {
-        if found[place].is_empty() {
-            found[place] = std::mem::take(&mut from_users[place]);
+    let mut from_users = vec![TermSet::default(); found.len()];
+    for (index, value) in program.values.iter().enumerate().rev() {
+        if found[index].is_empty() {
+            found[index] = std::mem::take(&mut from_users[index]);
         }
         for operand in value.op.operands() {
             if found[operand.index()].is_empty() {
-                from_users[operand.index()].extend(&found[place]);
+                from_users[operand.index()].extend(&found[index]);
             }
         }
     }
@@ -185,23 +185,23 @@ pub struct TracedLine {
 }
 
 /// Finds the lines of an emitted Rust or C file that are preceded by a comment with the terms of a value.
-pub fn traced_lines(source: &str, trace: &Trace) -> Vec<TracedLine> {
+pub fn find_traced_lines(source: &str, trace: &Trace) -> Vec<TracedLine> {
     let mut found = Vec::new();
     let mut function = String::new();
     let mut note: Option<&str> = None;
     if trace.values.is_empty() {
         return found;
     }
-    for (place, line) in source.lines().enumerate() {
+    for (index, line) in source.lines().enumerate() {
         let text = line.trim();
         if let Some(name) = function_name(line) {
             name.clone_into(&mut function);
         }
-        if let Some(comment) = comment_text(text) {
+        if let Some(comment) = read_comment_text(text) {
             note = Some(comment);
             continue;
         }
-        if let (Some(comment), Some(name)) = (note.take(), defined_name(text))
+        if let (Some(comment), Some(name)) = (note.take(), read_defined_name(text))
             && let Some((unit, terms)) = read_note(comment, trace)
         {
             // Comments of coefficients have a formula; comments of parameters and inputs have only a unit.
@@ -210,7 +210,7 @@ pub fn traced_lines(source: &str, trace: &Trace) -> Vec<TracedLine> {
                 continue;
             }
             found.push(TracedLine {
-                line: place + 1,
+                line: index + 1,
                 function: match is_coefficient {
                     true => "coefficients".to_owned(),
                     false => function.clone(),
@@ -250,7 +250,7 @@ fn is_words(text: &str) -> bool {
 }
 
 /// Returns the text of a comment of one line.
-fn comment_text(line: &str) -> Option<&str> {
+fn read_comment_text(line: &str) -> Option<&str> {
     let c = |open: &str| line.strip_prefix(open)?.strip_suffix(" */");
     let rust = |open: &str| line.strip_prefix(open);
     c("/** ")
@@ -260,7 +260,7 @@ fn comment_text(line: &str) -> Option<&str> {
 }
 
 /// Returns the name that a line of Rust or C defines.
-fn defined_name(line: &str) -> Option<&str> {
+fn read_defined_name(line: &str) -> Option<&str> {
     let line = line.strip_suffix(';').unwrap_or(line);
     let words = line.split(" = ").next()?.split([':', ',']).next()?;
     let name = words.rsplit(' ').next()?.split('[').next()?;

@@ -5,7 +5,7 @@ use eomgen_model_spec::model::Model;
 
 use crate::examination;
 use crate::independence::bounds::check_signs;
-use crate::independence::constraint_program::{constraint_program, residual_places};
+use crate::independence::constraint_program::{constraint_program, find_residual_indices};
 use crate::independence::find_redundancy;
 use crate::independence::rows::ConstraintRows;
 use crate::mechanics::corners::{add_corner_sides, has_jumping_momenta};
@@ -121,7 +121,7 @@ pub fn derive_equations(model: &Model, orders: &[usize]) -> Result<Equations, Di
     let Some(program) = constraint_program(model, &equations, &values) else {
         return Ok(equations);
     };
-    let residuals = residual_places(model, &program);
+    let residuals = find_residual_indices(model, &program);
     let redundancy = find_redundancy(model, orders, &mut ConstraintRows::new(program, residuals))?;
     match redundancy.groups.is_empty() {
         true => {
@@ -142,14 +142,14 @@ pub fn derive_equations(model: &Model, orders: &[usize]) -> Result<Equations, Di
 pub fn examine(model: &Model, orders: &[usize]) -> Result<Redundancy, Diagnostics> {
     match examination::examine(model) {
         Ok(Some(found)) => Ok(found.redundancy),
-        Ok(None) => examine_by_equations(model, orders),
+        Ok(None) => check_by_equations(model, orders),
         Err(diagnostic) => Err(Diagnostics::from_one(model.source.clone(), diagnostic)),
     }
 }
 
 /// Checks the model by its equations of motion, without impacts. The number of derived rate changes by impacts grows
 /// with the square of the number of impacts, and they cause no error.
-fn examine_by_equations(model: &Model, orders: &[usize]) -> Result<Redundancy, Diagnostics> {
+fn check_by_equations(model: &Model, orders: &[usize]) -> Result<Redundancy, Diagnostics> {
     let translated = translate_impacts(&mut Translator::new(model, orders));
     let found =
         |error: DeriveError| Diagnostics::from_one(model.source.clone(), error.diagnostic());
@@ -168,7 +168,7 @@ fn check_inertia(model: &Model, orders: &[usize], variant: &Variant) -> Result<(
     {
         return Ok(());
     }
-    let mass = initial_mass_matrix(model, orders, &variant.program)?;
+    let mass = compute_initial_mass_matrix(model, orders, &variant.program)?;
     inertia::check(model, orders, equations, &mass)
 }
 
@@ -266,7 +266,7 @@ fn differentiate(
         let terms = model.kinetic.iter().chain(&model.potential);
         let spans = terms.chain(&model.dissipation).map(|term| term.value.span);
         let mut spans = spans.chain(model.forces.iter().map(|force| force.value.span));
-        let message = match error.term().and_then(|place| spans.nth(place)) {
+        let message = match error.term().and_then(|index| spans.nth(index)) {
             Some(span) => message.with_span(span, "in this term"),
             None => message,
         };
@@ -319,7 +319,7 @@ fn side_inputs(count: usize, doc: &str) -> impl Iterator<Item = Quantity> {
 }
 
 /// Returns the mass matrix at the initial state and the declared parameters, row by row.
-fn initial_mass_matrix(
+fn compute_initial_mass_matrix(
     model: &Model,
     orders: &[usize],
     program: &Program,

@@ -7,7 +7,7 @@ use crate::statements::{EmitError, File, collect_coefficients};
 
 /// Time, state and inputs of a call.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Given {
+pub struct CallArguments {
     /// Time in s.
     pub time: f64,
     /// State, in SI units.
@@ -16,7 +16,7 @@ pub struct Given {
     pub inputs: Vec<f64>,
 }
 
-impl Given {
+impl CallArguments {
     /// Returns time, state and inputs in this order.
     pub fn numbers(&self) -> Vec<f64> {
         [&[self.time][..], &self.state, &self.inputs].concat()
@@ -36,7 +36,7 @@ impl Given {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestVector {
     /// Arguments.
-    pub given: Given,
+    pub arguments: CallArguments,
     /// Rates, observables, energy, power, guards and mass matrix, in this order.
     pub expected: Vec<f64>,
 }
@@ -44,7 +44,7 @@ pub struct TestVector {
 impl TestVector {
     /// Returns the arguments, then the results.
     pub(crate) fn numbers(&self) -> Vec<f64> {
-        [self.given.numbers(), self.expected.clone()].concat()
+        [self.arguments.numbers(), self.expected.clone()].concat()
     }
 }
 
@@ -59,12 +59,12 @@ pub struct TestVectors {
 
 impl TestVectors {
     /// Computes all outputs of `program` for each call. Calls with a result that is not finite are left out.
-    pub fn new(program: &Program, calls: &[Given]) -> Self {
-        let vectors = |evaluator: &mut Evaluator, calls: Vec<Given>| {
+    pub fn new(program: &Program, calls: &[CallArguments]) -> Self {
+        let vectors = |evaluator: &mut Evaluator, calls: Vec<CallArguments>| {
             let calls = calls.into_iter();
-            let vectors = calls.map(|given| TestVector {
-                expected: results(evaluator, &given),
-                given,
+            let vectors = calls.map(|arguments| TestVector {
+                expected: compute_outputs(evaluator, &arguments),
+                arguments,
             });
             vectors
                 .filter(|vector| vector.expected.iter().all(|number| number.is_finite()))
@@ -73,12 +73,15 @@ impl TestVectors {
         let mut evaluator = Evaluator::new(program.clone());
         let double = vectors(&mut evaluator, calls.to_vec());
         let mut evaluator = evaluator.in_single_precision(&collect_coefficients(program));
-        let single = vectors(&mut evaluator, calls.iter().map(Given::rounded).collect());
+        let single = vectors(
+            &mut evaluator,
+            calls.iter().map(CallArguments::rounded).collect(),
+        );
         Self { double, single }
     }
 }
 
-fn results(evaluator: &mut Evaluator, given: &Given) -> Vec<f64> {
+fn compute_outputs(evaluator: &mut Evaluator, arguments: &CallArguments) -> Vec<f64> {
     let program = evaluator.program();
     let (states, degrees) = (program.states(), program.degrees_of_freedom());
     let (known, observables) = (program.observable_values.len(), program.observables.len());
@@ -86,9 +89,9 @@ fn results(evaluator: &mut Evaluator, given: &Given) -> Vec<f64> {
     let [mut rates, mut values, mut surfaces, mut mass] =
         [states, known, guards, degrees * degrees].map(|length| vec![0.0; length]);
     let point = Point {
-        t: given.time,
-        state: &given.state,
-        inputs: &given.inputs,
+        t: arguments.time,
+        state: &arguments.state,
+        inputs: &arguments.inputs,
     };
     evaluator.rates(point, &mut rates);
     evaluator.observables(point, &mut values);
@@ -117,7 +120,7 @@ pub(crate) struct DefaultCoefficients {
 ///
 /// # Errors
 /// A coefficient that is not finite, with its name.
-pub(crate) fn default_coefficients(
+pub(crate) fn compute_default_coefficients(
     file: &File<'_>,
     literal: impl Fn(f64) -> String,
     array: impl Fn(&[String]) -> String,

@@ -69,7 +69,7 @@ fn transposed(matrix: &Matrix) -> Matrix {
 
 /// Computes one step of the linearised motion for each column of a matrix by the symplectic Euler method: rates first,
 /// then positions with the new rates. With this method, amplitudes of oscillations do not grow.
-fn carried(matrix: &Matrix, jacobian: &Matrix) -> Matrix {
+fn propagate_columns(matrix: &Matrix, jacobian: &Matrix) -> Matrix {
     let mut carried = *matrix;
     for i in 0..HALF {
         for (factor, line) in jacobian[HALF + i].iter().zip(matrix) {
@@ -111,8 +111,8 @@ impl Observer {
     /// Propagates the estimate over one step after time `t` (in s) for a torque (in N m).
     pub fn step(&mut self, t: f64, torque: f64, coefficients: &Coefficients) {
         let jacobian = jacobian(t, &self.state, torque, coefficients);
-        let half = transposed(&carried(&self.covariance, &jacobian));
-        let both = carried(&half, &jacobian);
+        let half = transposed(&propagate_columns(&self.covariance, &jacobian));
+        let both = propagate_columns(&half, &jacobian);
         // The covariance is symmetrised. Otherwise its asymmetry, a rounding error, would grow, and the filter would
         // fail within a third of a second.
         let other = transposed(&both);
@@ -141,13 +141,13 @@ impl Observer {
             let slopes: [State; OBSERVABLES] = OBSERVABLES_BY_STATE.dense(&nonzeros);
             let observable = MEASURED[sensor];
             let larger = values[sensor] - expected[observable];
-            self.taken(&slopes[observable], larger, DEVIATION[sensor]);
+            self.apply_residual(&slopes[observable], larger, DEVIATION[sensor]);
         }
     }
 
     /// Updates the estimate with the residual `larger` of a measured quantity; `slopes` are the derivatives of the
     /// quantity by the state.
-    fn taken(&mut self, slopes: &State, larger: f64, deviation: f64) {
+    fn apply_residual(&mut self, slopes: &State, larger: f64, deviation: f64) {
         let mut direction = [0.0; STATES];
         let mut variance = deviation * deviation;
         for i in 0..STATES {

@@ -66,7 +66,7 @@ struct Tracking {
 }
 
 /// Computes one step of the classical Runge-Kutta method.
-fn stepped<const N: usize>(
+fn runge_kutta_step<const N: usize>(
     t: f64,
     state: &[f64; N],
     rates: impl Fn(f64, &[f64; N]) -> [f64; N],
@@ -80,7 +80,7 @@ fn stepped<const N: usize>(
 }
 
 /// Simulates a machine of `N` states, whose first coordinates are the joints.
-fn followed<const N: usize>(
+fn simulate<const N: usize>(
     law: impl Fn(f64, [f64; 2], [f64; 2]) -> [f64; 2],
     rates: impl Fn(f64, &[f64; N], [f64; 2]) -> [f64; N],
 ) -> Tracking {
@@ -90,7 +90,7 @@ fn followed<const N: usize>(
     for count in 0..(DURATION / STEP).round() as u32 {
         let t = f64::from(count) * STEP;
         let torques = law(t, [state[0], state[1]], [state[N / 2], state[N / 2 + 1]]);
-        state = stepped(t, &state, |t, state| rates(t, state, torques));
+        state = runge_kutta_step(t, &state, |t, state| rates(t, state, torques));
         let wanted = path(t + STEP)[0];
         tracking.end = (state[0] - wanted[0]).hypot(state[1] - wanted[1]);
         assert!(tracking.end.is_finite(), "the arm is lost at t = {t} s");
@@ -100,16 +100,16 @@ fn followed<const N: usize>(
 }
 
 /// Simulates a machine with both control laws; prints and returns their errors.
-fn compared<const N: usize>(
+fn compare_control_laws<const N: usize>(
     name: &str,
     known: &rigid::Coefficients,
     rates: impl Fn(f64, &[f64; N], [f64; 2]) -> [f64; N],
 ) -> [Tracking; 2] {
-    let alone = followed(
+    let alone = simulate(
         |t, angles, speeds| gains_alone(known, t, angles, speeds),
         &rates,
     );
-    let computed = followed(
+    let computed = simulate(
         |t, angles, speeds| computed(known, t, angles, speeds),
         &rates,
     );
@@ -138,14 +138,14 @@ fn main() {
             )
         }
     };
-    let [alone, computed] = compared("as known", &known, of(known.clone()));
+    let [alone, computed] = compare_control_laws("as known", &known, of(known.clone()));
     assert!(computed.way < 1e-3 && alone.way > 100.0 * computed.way);
 
     let heavier = rigid::Parameters {
         M_t: 0.36,
         ..rigid::Parameters::default()
     };
-    let [alone, computed] = compared(
+    let [alone, computed] = compare_control_laws(
         "tip 20 % heavier",
         &known,
         of(rigid::Coefficients::prepare(&heavier)),
@@ -153,7 +153,7 @@ fn main() {
     assert!(computed.way < 0.02 && alone.way > 5.0 * computed.way);
 
     let bending = flexible::Coefficients::prepare(&flexible::Parameters::default());
-    let [alone, computed] = compared(
+    let [alone, computed] = compare_control_laws(
         "links that bend",
         &known,
         |t, state: &[f64; flexible::STATES], u: [f64; 2]| {

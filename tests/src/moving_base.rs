@@ -5,7 +5,7 @@
 use crate::random_numbers::NormalNumbers;
 
 /// Number of samples per record.
-const SAMPLES: usize = 1500;
+const SAMPLES_PER_RECORD: usize = 1500;
 
 /// Motion of the base: a sum of sines times a factor that increases from 0 to 1.
 struct Base {
@@ -120,7 +120,7 @@ impl<const N: usize, const C: usize> Machine<N, C> {
         q[0] = self.initial[number];
         let h = recording.step / recording.parts as f64;
         let mut text = format!("t,s,{}\n", self.channels.join(","));
-        for sample in 0..SAMPLES {
+        for sample in 0..SAMPLES_PER_RECORD {
             let t = sample as f64 * recording.step;
             text += &format!("{t:.6},{:.12e}", base.evaluate(t)[0] / recording.unit.1);
             for factors in &self.observed {

@@ -109,7 +109,7 @@ impl SmoothModels {
         (self.unit() * count as f64) as usize
     }
 
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    fn draw_between(&mut self, low: f64, high: f64) -> f64 {
         let value = low + (high - low) * self.unit();
         (value * 1e3).round() / 1e3
     }
@@ -134,9 +134,15 @@ impl SmoothModels {
 
     fn head(&mut self, coordinates: &[Coordinate], inputs: usize) -> String {
         let mut text = "[model]\nname = \"smooth\"\n\n[parameters]\n".to_owned();
-        let (mass, length) = (self.between(200.0, 3000.0), self.between(300.0, 1500.0));
-        let (other, energy) = (self.between(0.2, 3.0), self.between(0.3, 9.0));
-        let (time, angle) = (self.between(200.0, 2000.0), self.between(5.0, 80.0));
+        let (mass, length) = (
+            self.draw_between(200.0, 3000.0),
+            self.draw_between(300.0, 1500.0),
+        );
+        let (other, energy) = (self.draw_between(0.2, 3.0), self.draw_between(0.3, 9.0));
+        let (time, angle) = (
+            self.draw_between(200.0, 2000.0),
+            self.draw_between(5.0, 80.0),
+        );
         let _ = write!(
             text,
             "m_1 = {{ value = {mass}, unit = \"g\" }}\nm_2 = {{ value = {other}, unit = \"kg\" }}\n\
@@ -150,7 +156,7 @@ impl SmoothModels {
                 true => ("m", 0.15),
                 false => ("rad", 0.4),
             };
-            let (place, rate) = (self.between(-size, size), self.between(-0.5, 0.5));
+            let (place, rate) = (self.draw_between(-size, size), self.draw_between(-0.5, 0.5));
             let range = match self.chance(0.25) {
                 true => format!(", range = [{}, {}]", -2.5 * size, 2.0 * size),
                 false => String::new(),
@@ -207,7 +213,7 @@ impl SmoothModels {
             self.one_of(arguments).clone(),
             self.one_of(arguments).clone(),
         );
-        let factor = self.between(0.3, 1.2);
+        let factor = self.draw_between(0.3, 1.2);
         let choices = if timed { 7 } else { 5 };
         match self.below(choices) {
             0 => first,
@@ -227,7 +233,7 @@ impl SmoothModels {
             true => self.function(arguments, timed, false),
             false => z.clone(),
         };
-        let a = self.between(1.3, 2.5);
+        let a = self.draw_between(1.3, 2.5);
         let everywhere = [
             format!("sin({inner})"),
             format!("cos({a}*({inner}))"),
@@ -264,7 +270,7 @@ impl SmoothModels {
     /// Returns a dimensionless factor that is positive in its domain.
     fn positive(&mut self, arguments: &[String], timed: bool) -> String {
         let z = self.argument(arguments, timed);
-        let a = self.between(1.2, 2.0);
+        let a = self.draw_between(1.2, 2.0);
         let choices = [
             format!("({a} + sin({z}))"),
             format!("(1 + ({z})^2)"),

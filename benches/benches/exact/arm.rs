@@ -86,7 +86,7 @@ impl Momentum {
         let unit = |place: usize, value: f64| -> Lanes {
             let mut state = [0.0; STATES];
             state[place] = value;
-            minus(&at(&rows, 0.0, &state), &still)
+            subtract(&at(&rows, 0.0, &state), &still)
         };
         let quarter = std::f64::consts::FRAC_PI_2 / damped.omega;
         Self {
@@ -95,7 +95,7 @@ impl Momentum {
                 let mut closed = [0.0; STATES];
                 closed[mesh] = 2.0 * half_width[mesh];
                 closed[DEGREES + mesh] = 1.0;
-                minus(&at(&rows, 0.0, &closed), &at(&damped_rows, 0.0, &closed))
+                subtract(&at(&rows, 0.0, &closed), &at(&damped_rows, 0.0, &closed))
             }),
             stiffness: [0, 1].map(|mesh| unit(mesh, half_width[mesh] + 1.0)),
             modes: [3, 4, 5, 6].map(|mode| unit(mode, 1.0)),
@@ -135,6 +135,6 @@ fn compression(x: f64, half_width: f64) -> f64 {
     x - x.clamp(-half_width, half_width)
 }
 
-fn minus(a: &Lanes, b: &Lanes) -> Lanes {
+fn subtract(a: &Lanes, b: &Lanes) -> Lanes {
     std::array::from_fn(|row| a[row] - b[row])
 }

@@ -164,7 +164,7 @@ fn drive<M: OrdinaryNumericalMethod<f64, State>>(
         method.set_status(Status::Solving);
         let until = if is_last { 1.0 } else { method.t() };
         while let Some(&time) = times.get(samples.len()).filter(|time| **time <= until) {
-            samples.push(inside(arm, method.t_prev(), method.y_prev(), time)?);
+            samples.push(interpolate(arm, method.t_prev(), method.y_prev(), time)?);
         }
         if is_last {
             break;
@@ -175,7 +175,7 @@ fn drive<M: OrdinaryNumericalMethod<f64, State>>(
 
 /// Returns x_sp at `time` within a step that starts at `t`. A shorter step of order 8 is used, because the dense output
 /// of the crate has a lower order.
-fn inside(arm: &Momentum, t: f64, y: &State, time: f64) -> Option<f64> {
+fn interpolate(arm: &Momentum, t: f64, y: &State, time: f64) -> Option<f64> {
     let length = time - t;
     if length <= 0.0 {
         return Some(y[0]);

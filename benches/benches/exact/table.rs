@@ -26,7 +26,7 @@ const ROUNDS: usize = 12;
 const MEASURED: f64 = 0.04;
 
 /// Peers with the tolerances that satisfy the error limit.
-pub struct Tuned {
+pub struct TunedPeers {
     /// Equations to solve.
     pub problem: Problem,
     /// Peers that satisfy the error limit, with their tolerances.
@@ -34,7 +34,7 @@ pub struct Tuned {
 }
 
 /// Finds the tolerances and prints the tables; `orders` must contain order 4.
-pub fn print(orders: &mut [Exact]) -> Tuned {
+pub fn print(orders: &mut [Exact]) -> TunedPeers {
     let times: Vec<f64> = (0..=1000).map(|i| f64::from(i) / 1000.0).collect();
     let arm = orders.iter_mut().find(|arm| arm.order == 4);
     let arm = arm.expect("order 4 is among the orders");
@@ -57,7 +57,7 @@ pub fn print(orders: &mut [Exact]) -> Tuned {
     println!("DOP853, located, at {TIGHTEST:e} differs from exact by {tightest:.1e} m\n");
     print_switches(orders);
     let peers = found.iter().map(|found| (found.0, found.1)).collect();
-    Tuned { problem, peers }
+    TunedPeers { problem, peers }
 }
 
 fn print_peers(arm: &mut Exact, problem: &Problem, found: &[(Peer, f64, f64)]) {

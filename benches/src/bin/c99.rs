@@ -34,7 +34,7 @@ const FLAGS: [&[&str]; 3] = [
 const MAX_DIFFERENCE: f64 = 1e-12;
 
 /// Returns a generator of a fixed sequence of numbers in (-1, 1).
-fn numbers() -> impl FnMut() -> f64 {
+fn number_sequence() -> impl FnMut() -> f64 {
     let mut state = 1_u64;
     move || {
         state = state
@@ -46,7 +46,7 @@ fn numbers() -> impl FnMut() -> f64 {
 
 /// Returns states with deflections of both signs within 50 um, twice the play.
 fn states<const N: usize>() -> Vec<[f64; N]> {
-    let mut number = numbers();
+    let mut number = number_sequence();
     let one = |k: usize, number: f64| match k % (N / 2) {
         0 | 1 if k < N / 2 => 5e-5 * number,
         mode @ 3.. => 1e-4 * number / (mode * mode) as f64,

@@ -46,7 +46,7 @@ fn cartesian_definitions_take_at_most_15_percent_more_than_energies_by_hand() {
 }
 
 #[test]
-fn every_tree_has_energies_in_casadi() {
+fn energies_of_every_tree_convert_to_casadi() {
     for text in [
         specifications::planar_arm(3),
         specifications::puma(4),

@@ -144,7 +144,7 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
             print_text(&format!("{file}\n"))?;
         }
     }
-    certificate.as_ref().map_or(Ok(()), judge)
+    certificate.as_ref().map_or(Ok(()), require_passed)
 }
 
 /// Bounds the instructions and the stack of the functions of emitted C for each compiler.
@@ -170,7 +170,7 @@ fn instruction_bounds(sources: &Sources, commands: &[String]) -> Result<Vec<Inst
 }
 
 /// Fails with exit status 1 if a check failed or was not run.
-fn judge(certificate: &Certificate) -> Result {
+fn require_passed(certificate: &Certificate) -> Result {
     if certificate.passed {
         return Ok(());
     }

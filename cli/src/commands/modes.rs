@@ -98,11 +98,11 @@ fn table(compiled: &CompiledModel, modes: &[NaturalMode]) -> String {
     let (names, units): (Vec<String>, Vec<String>) = compiled.amplitudes().into_iter().unzip();
     for mode in modes {
         let sizes: Vec<f64> = mode.shape.iter().map(|value| value.norm()).collect();
-        let parts: Vec<String> = largest(&units, &sizes)
+        let parts: Vec<String> = find_largest_amplitudes(&units, &sizes)
             .into_iter()
             .map(|place| {
                 let value = mode.shape[place];
-                part(
+                format_amplitude(
                     &names[place],
                     (value.re, value.im),
                     unit_shown(&units, place),
@@ -127,7 +127,7 @@ fn frequency_in_words(frequency: f64) -> String {
 
 /// Returns the indices of the largest amplitudes of a shape, in descending order. Amplitudes in different units are
 /// compared relative to the largest amplitude in their unit. At least one amplitude of each unit is listed.
-fn largest(units: &[String], sizes: &[f64]) -> Vec<usize> {
+fn find_largest_amplitudes(units: &[String], sizes: &[f64]) -> Vec<usize> {
     let mut most: HashMap<&String, f64> = HashMap::new();
     for (unit, size) in units.iter().zip(sizes) {
         let most = most.entry(unit).or_insert(f64::MIN_POSITIVE);
@@ -158,7 +158,7 @@ fn unit_shown(units: &[String], place: usize) -> Option<&str> {
 
 /// Formats an amplitude with its unit, and with its phase unless it is in phase or antiphase with the reference
 /// coordinate of amplitude 1.
-fn part(name: &str, (real, imaginary): (f64, f64), unit: Option<&str>) -> String {
+fn format_amplitude(name: &str, (real, imaginary): (f64, f64), unit: Option<&str>) -> String {
     let (size, phase) = (
         real.hypot(imaginary),
         imaginary.atan2(real).to_degrees().round(),

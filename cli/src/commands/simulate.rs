@@ -126,7 +126,7 @@ fn driven_model(
             derive(model, &orders)
         },
     )?;
-    let library = library(options, &compiled, &prescribed)?;
+    let library = open_library(options, &compiled, &prescribed)?;
     let controlled = library.iter().flat_map(ControllerLibrary::inputs);
     let mut driven: Vec<&str> = controlled.map(String::as_str).collect();
     driven.extend(prescribed.iter().map(Assignment::name));
@@ -136,7 +136,7 @@ fn driven_model(
 }
 
 /// Opens the library of `--controller`.
-fn library(
+fn open_library(
     options: &Simulate,
     compiled: &CompiledModel,
     prescribed: &[Assignment],

@@ -25,7 +25,7 @@ use crate::test_vectors;
 use crate::trace_file::{self, TRACE};
 
 /// Emitted files of a variant.
-pub struct Built {
+pub struct BuiltVariant {
     pub name: String,
     /// Name of the model.
     pub model: String,
@@ -46,7 +46,7 @@ pub struct Built {
 
 /// Derives, emits and certifies a variant. With `check`, no certificate checks are run. If the certificate in the
 /// output folder belongs to the emitted sources, its verdict is read.
-pub fn build(family: &Family, variant: &Variant, options: &Options<'_>) -> Result<Built> {
+pub fn build(family: &Family, variant: &Variant, options: &Options<'_>) -> Result<BuiltVariant> {
     let path = family.folder().join(&variant.spec);
     let checked = eomgen_model_spec::load(&path).map_err(Error::Specification)?;
     let warnings = match checked.warnings.is_empty() {
@@ -62,11 +62,11 @@ pub fn build(family: &Family, variant: &Variant, options: &Options<'_>) -> Resul
         .files
         .insert(CERTIFICATE.to_owned(), certificate.text.into_bytes());
     let inside = |(file, contents)| (format!("{}/{file}", variant.name), contents);
-    Ok(Built {
+    Ok(BuiltVariant {
         name: variant.name.clone(),
         model: model.name.clone(),
         states: emitted.states,
-        inputs: inputs(family, &model)?,
+        inputs: hash_input_files(family, &model)?,
         files: emitted.files.into_iter().map(inside).collect(),
         operations: emitted.operations,
         verdict: certificate.verdict,
@@ -113,7 +113,7 @@ impl Emitted {
         let mut this = Self {
             files: BTreeMap::new(),
             sources: Sources::default(),
-            operations: program.operations_by_function().into_iter().collect(),
+            operations: program.count_operations_by_function().into_iter().collect(),
             states: program.states(),
             outputs,
         };
@@ -255,7 +255,7 @@ fn certificate(
     })
 }
 
-fn inputs(family: &Family, model: &Model) -> Result<BTreeMap<String, String>> {
+fn hash_input_files(family: &Family, model: &Model) -> Result<BTreeMap<String, String>> {
     let folder = family.folder();
     let hash = |path: PathBuf| {
         let name = path.strip_prefix(folder).unwrap_or(&path);

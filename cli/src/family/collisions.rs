@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use super::build::Built;
+use super::build::BuiltVariant;
 use super::description::{Family, Variant};
 use crate::arguments::Target;
 use crate::error::{Error, Result};
@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 ///
 /// # Errors
 /// A name that two variants declare.
-pub fn check_declarations(family: &Family, built: &[Built], out: &Path) -> Result {
+pub fn check_declarations(family: &Family, built: &[BuiltVariant], out: &Path) -> Result {
     let in_c = family
         .variants
         .iter()
@@ -48,7 +48,7 @@ pub fn check_declarations(family: &Family, built: &[Built], out: &Path) -> Resul
 }
 
 /// Returns the header of a variant; empty if there is none.
-fn read_header(variant: &Variant, prefix: &str, built: &[Built], out: &Path) -> String {
+fn read_header(variant: &Variant, prefix: &str, built: &[BuiltVariant], out: &Path) -> String {
     let path = format!("{}/{prefix}.h", variant.name);
     let generated = built.iter().find(|built| built.name == variant.name);
     match generated.and_then(|built| built.files.get(&path)) {

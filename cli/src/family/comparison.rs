@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::build::Built;
+use super::build::BuiltVariant;
 use super::description::{Family, Variant};
 use super::hashes::{Hashes, hash_file};
 use super::manifest::Manifest;
@@ -138,7 +138,7 @@ pub fn changes(
 /// Compares a generated variant with the output folder and with the operation counts in the manifest.
 pub fn compare_built(
     variant: &Variant,
-    built: &Built,
+    built: &BuiltVariant,
     manifest: &Manifest,
     options: &Options<'_>,
     growth: f64,

@@ -230,7 +230,7 @@ impl Reader<'_> {
             return None;
         }
         let mut variants = Vec::with_capacity(entries.len());
-        let mut used = Used::default();
+        let mut used = UsedNames::default();
         for entry in &entries {
             variants.extend(self.variant(entry, &mut used));
         }
@@ -242,7 +242,7 @@ impl Reader<'_> {
         })
     }
 
-    fn variant(&mut self, entry: &Entry<'_>, used: &mut Used) -> Option<Variant> {
+    fn variant(&mut self, entry: &Entry<'_>, used: &mut UsedNames) -> Option<Variant> {
         let record = Record::read(entry, &VARIANT, self.found)?;
         let name = record.required("name", Entry::written, self.found)?;
         self.check_name(&name)?;
@@ -476,12 +476,12 @@ impl Reader<'_> {
 
 /// Names and prefixes of earlier variants, in lower case because some file systems ignore the case.
 #[derive(Default)]
-struct Used {
+struct UsedNames {
     names: HashMap<String, StringValue>,
     prefixes: HashMap<String, StringValue>,
 }
 
-impl Used {
+impl UsedNames {
     fn add_name(&mut self, name: &StringValue, found: &mut Diagnostics) -> bool {
         Self::add(&mut self.names, &name.text, name, "name", found)
     }

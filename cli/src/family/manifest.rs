@@ -7,7 +7,7 @@ use std::path::Path;
 use eomgen_model_spec::source::sha256;
 use serde_json::{Value, json};
 
-use super::build::Built;
+use super::build::BuiltVariant;
 use super::description::{Family, Variant};
 use crate::document::SCHEMA;
 use crate::emitted_files::CERTIFICATE;
@@ -97,7 +97,7 @@ impl Manifest {
     }
 
     /// Sets the entry of a variant.
-    pub fn insert(&mut self, variant: &Variant, built: &Built) {
+    pub fn insert(&mut self, variant: &Variant, built: &BuiltVariant) {
         let file = |(path, contents): (&String, &Vec<u8>)| {
             (
                 path.clone(),

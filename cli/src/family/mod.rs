@@ -23,7 +23,7 @@ use crate::count::count;
 use crate::document::SCHEMA;
 use crate::error::{Error, Result, print_json, print_text, warn};
 use crate::progress::Note;
-use build::{Built, build};
+use build::{BuiltVariant, build};
 use comparison::{Findings, changes, compare_built, table};
 use description::{Family, Variant};
 use hashes::Hashes;
@@ -125,13 +125,17 @@ fn differ(count: usize) -> &'static str {
 }
 
 /// Generates the chosen variants in parallel and returns them in the order of `chosen`.
-fn build_all(family: &Family, chosen: &[usize], options: &Options<'_>) -> Result<Vec<Built>> {
+fn build_all(
+    family: &Family,
+    chosen: &[usize],
+    options: &Options<'_>,
+) -> Result<Vec<BuiltVariant>> {
     let _note = (!chosen.is_empty())
         .then(|| Note::new(format!("generating {}", count(chosen.len(), "variant"))));
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = threads.min(MAX_THREADS).min(chosen.len());
     let next = AtomicUsize::new(0);
-    let results: Vec<Mutex<Option<Result<Built>>>> =
+    let results: Vec<Mutex<Option<Result<BuiltVariant>>>> =
         chosen.iter().map(|_| Mutex::new(None)).collect();
     std::thread::scope(|scope| {
         for _ in 0..threads {

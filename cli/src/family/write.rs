@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use super::build::Built;
+use super::build::BuiltVariant;
 use super::description::{Family, Precision};
 use super::hashes::hash_file;
 use super::interface::{self, CVariant};
@@ -52,7 +52,7 @@ pub fn root_files(family: &Family) -> BTreeMap<String, Vec<u8>> {
 }
 
 fn files<'f>(
-    built: &'f [Built],
+    built: &'f [BuiltVariant],
     root: &'f BTreeMap<String, Vec<u8>>,
 ) -> impl Iterator<Item = (&'f String, &'f Vec<u8>)> {
     built.iter().flat_map(|built| &built.files).chain(root)
@@ -60,7 +60,7 @@ fn files<'f>(
 
 /// Returns the emitted files that differ from those in the folder.
 pub fn different_files(
-    built: &[Built],
+    built: &[BuiltVariant],
     root: &BTreeMap<String, Vec<u8>>,
     out: &Path,
 ) -> BTreeSet<String> {
@@ -74,7 +74,7 @@ pub fn different_files(
 }
 
 /// Writes all files that differ.
-pub fn write(built: &[Built], root: &BTreeMap<String, Vec<u8>>, out: &Path) -> Result {
+pub fn write(built: &[BuiltVariant], root: &BTreeMap<String, Vec<u8>>, out: &Path) -> Result {
     let different = different_files(built, root, out);
     for (path, contents) in files(built, root).filter(|(path, _)| different.contains(*path)) {
         write_file(&out.join(path), contents)?;

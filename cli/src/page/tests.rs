@@ -42,6 +42,7 @@ fn report(text: &str) -> Report {
             formula: Formula::from_name(text),
             indices: vec![Index::I],
             columns: 1,
+            unit: None,
             values: vec![0.25; 10],
         }],
         accelerations: vec![line(text, text)],

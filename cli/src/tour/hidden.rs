@@ -169,7 +169,7 @@ impl Rediscovery {
         format!(
             "From noisy records of a positioning stage, eomgen found {}, which the specification lacks: on held-out \
              data, the RMS residual fell from {} to {}.",
-            self.found(),
+            self.describe_effects(),
             self.residual("before"),
             self.residual("after"),
         )
@@ -193,7 +193,7 @@ impl Rediscovery {
                     self.multiple("before")
                 ),
             ),
-            ("Found", self.found()),
+            ("Found", self.describe_effects()),
             (
                 "Residual with the found effect",
                 format!(
@@ -216,7 +216,7 @@ impl Rediscovery {
     }
 
     /// Describes the found effects.
-    fn found(&self) -> String {
+    fn describe_effects(&self) -> String {
         let effects = self.discovery["effects"].as_array().into_iter().flatten();
         match effects.map(effect).collect::<Vec<String>>() {
             all if all.is_empty() => "no effect".to_owned(),

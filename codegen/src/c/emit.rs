@@ -14,7 +14,7 @@ use super::stages::write_definition;
 use super::standard_macros::{find_macros, hide_macros};
 use super::step;
 use super::types::write_fill_functions;
-use crate::identity::{seal, unsealed};
+use crate::identity::{seal, write_unsealed_identity};
 use crate::program::{Extent, Op, Program};
 use crate::statements::layout;
 use crate::statements::{
@@ -124,7 +124,7 @@ impl Parts {
         text += &format!(
             "const char {}_identity[] = \"{}\";\n",
             program.name,
-            unsealed(program)
+            write_unsealed_identity(program)
         );
         // `<math.h>` is included above these lines, because they can hide its macros.
         let [hide, restore] = hide_macros(find_macros(&defined));

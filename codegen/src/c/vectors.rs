@@ -7,7 +7,7 @@ use super::names::{WORDS, fill_template};
 use crate::program::Program;
 use crate::statements::layout;
 use crate::statements::{EmitError, File};
-use crate::vectors::{TestVector, TestVectors, default_coefficients};
+use crate::vectors::{TestVector, TestVectors, compute_default_coefficients};
 
 /// Writes the header `NAME_baked.h`: the coefficients of the default parameters, prepared in double precision, as a
 /// constant for read-only memory.
@@ -16,7 +16,7 @@ use crate::vectors::{TestVector, TestVectors, default_coefficients};
 /// As for [`emit`](super::emit()), and coefficients that are not finite.
 pub fn baked(program: &Program) -> Result<String, EmitError> {
     let file = File::new(program, &WORDS)?;
-    let found = default_coefficients(&file, literal, write_initialiser)?;
+    let found = compute_default_coefficients(&file, literal, write_initialiser)?;
     let mut fields: Vec<String> = found.fields.into_iter().map(|(_, text)| text).collect();
     fields.push(i32::from(found.is_definite).to_string());
     let text = comment(&[

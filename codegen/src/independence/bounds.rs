@@ -21,16 +21,16 @@ pub(crate) fn check_signs(
     for (constraint, residual) in model.constraints.iter().zip(residuals) {
         let Interval { low, high } = bounds[residual.0 as usize];
         if low > 0.0 {
-            return Err(never_zero(constraint, "least", low));
+            return Err(describe_never_zero(constraint, "least", low));
         }
         if high < 0.0 {
-            return Err(never_zero(constraint, "most", high));
+            return Err(describe_never_zero(constraint, "most", high));
         }
     }
     Ok(())
 }
 
-fn never_zero(constraint: &Constraint, end: &str, bound: f64) -> Diagnostic {
+fn describe_never_zero(constraint: &Constraint, end: &str, bound: f64) -> Diagnostic {
     let (name, unit) = (&constraint.name, &constraint.unit);
     Diagnostic::error(format!("the constraint `{name}` is never zero"))
         .with_span(

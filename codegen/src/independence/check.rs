@@ -8,10 +8,10 @@ use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::model::{Constraint, Model};
 use eomgen_model_spec::variant::ModelError;
 
-use super::dependence::dependent_combinations;
+use super::dependence::find_dependent_combinations;
 use super::geometry::ConstraintGeometry;
-use super::projection::{Place, project};
-use super::rows::positive_or_one;
+use super::projection::{EvaluationPoint, project};
+use super::rows::replace_nonpositive_by_one;
 use super::vectors::norm;
 use crate::mechanics::redundancy::{DependentGroup, Redundancy};
 
@@ -86,7 +86,7 @@ pub(crate) fn find_redundancy(
     Ok(Redundancy {
         groups,
         singular_start: match is_singular {
-            true => initial.members(),
+            true => initial.find_members(),
             false => Vec::new(),
         },
     })
@@ -120,21 +120,27 @@ impl Search<'_> {
     /// Finds the dependent combinations of constraints at the projection of `from`.
     fn dependence(&mut self, from: &[f64]) -> Dependence {
         let inputs = self.inputs;
-        let at = |state| Place { state, inputs };
+        let at = |state| EvaluationPoint { state, inputs };
         self.scaled_rows(from);
         let residuals = self.rows.residuals(at(from).point());
         for (largest, residual) in self.largest.iter_mut().zip(residuals) {
             *largest = residual.abs().max(*largest);
         }
-        let scales: Vec<f64> = self.scales.iter().copied().map(positive_or_one).collect();
+        let scales: Vec<f64> = self
+            .scales
+            .iter()
+            .copied()
+            .map(replace_nonpositive_by_one)
+            .collect();
         let state = project(self.rows, at(from), &self.holonomic, &scales);
         let scaled = self.scaled_rows(&state);
-        let combinations = dependent_combinations(&scaled, MAX_DEPENDENT_REMAINDER).into_iter();
+        let combinations =
+            find_dependent_combinations(&scaled, MAX_DEPENDENT_REMAINDER).into_iter();
         let combinations = combinations.map(|parts| {
             let scaled = parts.iter().zip(&self.scales);
             Combination {
                 factors: scaled
-                    .map(|(part, scale)| part / positive_or_one(*scale))
+                    .map(|(part, scale)| part / replace_nonpositive_by_one(*scale))
                     .collect(),
                 parts,
             }
@@ -149,7 +155,7 @@ impl Search<'_> {
     fn size(&self, found: &Dependence) -> f64 {
         let scaled = found.residuals.iter().zip(&self.scales);
         let scaled: Vec<f64> = scaled
-            .map(|(residual, scale)| residual / positive_or_one(*scale))
+            .map(|(residual, scale)| residual / replace_nonpositive_by_one(*scale))
             .collect();
         norm(&scaled)
     }
@@ -157,11 +163,11 @@ impl Search<'_> {
     /// Returns the rows at `state`, divided by their largest lengths so far.
     fn scaled_rows(&mut self, state: &[f64]) -> Vec<Vec<f64>> {
         let inputs = self.inputs;
-        let mut rows = self.rows.rows(Place { state, inputs }.point());
+        let mut rows = self.rows.rows(EvaluationPoint { state, inputs }.point());
         for (row, scale) in rows.iter_mut().zip(&mut self.scales) {
             *scale = scale.max(norm(row));
             row.iter_mut()
-                .for_each(|entry| *entry /= positive_or_one(*scale));
+                .for_each(|entry| *entry /= replace_nonpositive_by_one(*scale));
         }
         rows
     }
@@ -170,13 +176,13 @@ impl Search<'_> {
     /// `state` itself if the rows are constant.
     fn move_state(&mut self, state: &[f64], seed: u64) -> Vec<f64> {
         let inputs = self.inputs;
-        let inertia = self.rows.inertia(Place { state, inputs }.point());
+        let inertia = self.rows.inertia(EvaluationPoint { state, inputs }.point());
         let here = self.scaled_rows(state);
         let mut moved = state.to_vec();
         for power in 0..MOVE_COUNT {
             let length = FIRST_MOVE * 4.0_f64.powi(power);
             for (degree, inertia) in inertia.iter().enumerate() {
-                let part = symmetric(seed, degree as u64);
+                let part = pseudorandom_number(seed, degree as u64);
                 moved[degree] = state[degree] + length * part / inertia.sqrt();
             }
             let there = self.scaled_rows(&moved);
@@ -195,8 +201,8 @@ impl Search<'_> {
 }
 
 /// Returns element `index` of a pseudorandom sequence between -1 and 1 (splitmix64).
-fn symmetric(seed: u64, place: u64) -> f64 {
-    let mut bits = (seed << 32 | place)
+fn pseudorandom_number(seed: u64, index: u64) -> f64 {
+    let mut bits = (seed << 32 | index)
         .wrapping_add(1)
         .wrapping_mul(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -207,18 +213,24 @@ fn symmetric(seed: u64, place: u64) -> f64 {
 
 impl Dependence {
     /// Returns the constraints of all combinations, ascending.
-    fn members(&self) -> Vec<usize> {
-        let all = self.combinations.iter().flat_map(Combination::members);
+    fn find_members(&self) -> Vec<usize> {
+        let all = self.combinations.iter().flat_map(Combination::find_members);
         let all: BTreeSet<usize> = all.collect();
         all.into_iter().collect()
     }
 
     /// Returns the groups of dependent constraints. `initial_residuals` are the largest initial residuals.
-    fn find_groups(&self, model: &Model, began: &[f64]) -> Result<Vec<DependentGroup>, Diagnostic> {
+    fn find_groups(
+        &self,
+        model: &Model,
+        initial_residuals: &[f64],
+    ) -> Result<Vec<DependentGroup>, Diagnostic> {
         let mut groups: Vec<DependentGroup> = Vec::new();
         for combination in &self.combinations {
-            let members = combination.members();
-            if let Some(error) = self.error(model, combination, &members, began) {
+            let members = combination.find_members();
+            if let Some(error) =
+                self.describe_contradiction(model, combination, &members, initial_residuals)
+            {
                 return Err(error);
             }
             let shares = |group: &DependentGroup| {
@@ -245,12 +257,12 @@ impl Dependence {
     }
 
     /// Returns the error for a dependent combination of constraints; `None` if the constraints are redundant.
-    fn error(
+    fn describe_contradiction(
         &self,
         model: &Model,
         combination: &Combination,
         members: &[usize],
-        began: &[f64],
+        initial_residuals: &[f64],
     ) -> Option<Diagnostic> {
         let (last, others) = members.split_last()?;
         let own = &model.constraints[*last];
@@ -259,7 +271,7 @@ impl Dependence {
         let is_mixed = others.iter().any(|other| other.is_nonholonomic != kind);
         let apart = match is_mixed {
             true => None,
-            false => self.combined_residual(combination, members, began),
+            false => self.find_contradiction_residual(combination, members, initial_residuals),
         };
         if apart.is_none() && !is_mixed && !others.is_empty() {
             return None;
@@ -268,7 +280,7 @@ impl Dependence {
             .iter()
             .map(|other| format!("`{}`", other.name))
             .collect();
-        let (message, label, help) = message_parts(own, &names.join(", "), apart);
+        let (message, label, help) = describe_dependence(own, &names.join(", "), apart);
         let found = Diagnostic::error(message)
             .with_span(own.zero.span, label)
             .with_help(help);
@@ -281,11 +293,11 @@ impl Dependence {
     /// Returns the residual of a combination, in the unit of its last constraint, if the constraints contradict each
     /// other. They contradict each other if the residual of the combination exceeds rounding and the fraction
     /// [`MIN_RELATIVE_RESIDUAL`] of its largest contribution.
-    fn combined_residual(
+    fn find_contradiction_residual(
         &self,
         combination: &Combination,
         members: &[usize],
-        began: &[f64],
+        initial_residuals: &[f64],
     ) -> Option<f64> {
         let factors = &combination.factors;
         let last = members.last()?;
@@ -298,14 +310,14 @@ impl Dependence {
         };
         let largest = most(&self.residuals);
         (apart.abs() > MIN_RELATIVE_RESIDUAL * largest
-            && largest > MAX_ROUNDING_RESIDUAL * most(began))
+            && largest > MAX_ROUNDING_RESIDUAL * most(initial_residuals))
         .then_some(apart)
     }
 }
 
 impl Combination {
     /// Returns the constraints of the combination, ascending.
-    fn members(&self) -> Vec<usize> {
+    fn find_members(&self) -> Vec<usize> {
         let parts = self.parts.iter();
         let most = parts.fold(0.0_f64, |most, part| most.max(part.abs()));
         let is_member = |place: &usize| self.parts[*place].abs() > MIN_RELATIVE_FACTOR * most;
@@ -313,7 +325,7 @@ impl Combination {
     }
 }
 
-fn message_parts(
+fn describe_dependence(
     own: &Constraint,
     others: &str,
     apart: Option<f64>,

@@ -19,11 +19,11 @@ pub fn constraint_program(
     let rows = &equations.constraint_rows;
     let first = rows.first()?;
     let mut entries = Vec::new();
-    for (place, row) in rows.iter().enumerate() {
+    for (index, row) in rows.iter().enumerate() {
         let mut add = |column: usize, columns: usize, value: NodeId| {
             if !equations.graph.is_zero(value) && columns > 0 {
                 entries.push(JacobianBlock {
-                    row: place,
+                    row: index,
                     rows: 1,
                     column,
                     columns,
@@ -56,11 +56,11 @@ pub fn constraint_program(
 }
 
 /// Returns the indices of the residuals of a model's constraints among the observables of a program.
-pub fn residual_places(model: &Model, program: &Program) -> Vec<usize> {
-    let place = |constraint: &Constraint| {
+pub fn find_residual_indices(model: &Model, program: &Program) -> Vec<usize> {
+    let index = |constraint: &Constraint| {
         let name = format!("{RESIDUAL}{}", constraint.name);
         let mut known = program.observables.iter();
         known.position(|observable| observable.name == name)
     };
-    model.constraints.iter().filter_map(place).collect()
+    model.constraints.iter().filter_map(index).collect()
 }

@@ -21,42 +21,42 @@ impl Remainder {
 
 /// Returns the factors of a linear combination of `rows` with a norm of at most `tolerance`; `None` if the rows are
 /// independent. Rows must have norms of about 1; one row of the combination has a factor of about 1.
-pub fn dependent_combination(rows: &[Vec<f64>], tolerance: f64) -> Option<Vec<f64>> {
-    dependent_combinations(rows, tolerance).pop()
+pub fn find_dependent_combination(rows: &[Vec<f64>], tolerance: f64) -> Option<Vec<f64>> {
+    find_dependent_combinations(rows, tolerance).pop()
 }
 
 /// Returns the factors of all independent combinations of `rows` with a norm of at most `tolerance`, ordered by their
 /// last rows. Rows must have norms of about 1. Each combination has one row that no other combination contains; its
 /// factor is about 1.
-pub fn dependent_combinations(rows: &[Vec<f64>], tolerance: f64) -> Vec<Vec<f64>> {
-    let found = remainders(rows, tolerance).into_iter();
+pub fn find_dependent_combinations(rows: &[Vec<f64>], tolerance: f64) -> Vec<Vec<f64>> {
+    let found = find_remainders(rows, tolerance).into_iter();
     found.map(|(_, rest)| rest.parts).collect()
 }
 
 /// Returns the indices of the rows that depend linearly on the remaining rows, ascending; the remaining rows are
 /// independent.
-pub fn dependent_rows(rows: &[Vec<f64>], tolerance: f64) -> Vec<usize> {
-    let found = remainders(rows, tolerance).into_iter();
-    found.map(|(place, _)| place).collect()
+pub fn find_dependent_rows(rows: &[Vec<f64>], tolerance: f64) -> Vec<usize> {
+    let found = find_remainders(rows, tolerance).into_iter();
+    found.map(|(index, _)| index).collect()
 }
 
 /// Returns the remainders with a norm of at most `tolerance`, each with the index of its row, ascending.
-fn remainders(rows: &[Vec<f64>], tolerance: f64) -> Vec<(usize, Remainder)> {
-    let unit = |place: usize| {
+fn find_remainders(rows: &[Vec<f64>], tolerance: f64) -> Vec<(usize, Remainder)> {
+    let unit = |index: usize| {
         (0..rows.len())
-            .map(|k| f64::from(u8::from(k == place)))
+            .map(|k| f64::from(u8::from(k == index)))
             .collect()
     };
     let mut rests: Vec<(usize, Remainder)> = rows
         .iter()
         .enumerate()
-        .map(|(place, row)| {
+        .map(|(index, row)| {
             let rest = Remainder {
                 vector: row.clone(),
-                parts: unit(place),
+                parts: unit(index),
                 size: norm(row),
             };
-            (place, rest)
+            (index, rest)
         })
         .collect();
     while let Some(longest) =
@@ -67,7 +67,7 @@ fn remainders(rows: &[Vec<f64>], tolerance: f64) -> Vec<(usize, Remainder)> {
             break;
         }
         if size <= tolerance {
-            rests.sort_by_key(|(place, _)| *place);
+            rests.sort_by_key(|(index, _)| *index);
             return rests;
         }
         let (_, mut chosen) = rests.swap_remove(longest);
@@ -99,11 +99,11 @@ mod tests {
             vec![0.6, 0.8, 0.0],
             vec![0.0, 1.0, 0.0],
         ];
-        let factors = dependent_combination(&rows, 1e-9).expect("a combination");
+        let factors = find_dependent_combination(&rows, 1e-9).expect("a combination");
         let last = factors[2];
         assert!((factors[1] / last + 1.25).abs() < 1e-12);
         assert!((factors[0] / last - 0.75).abs() < 1e-12);
-        assert_eq!(dependent_combination(&rows[..2], 1e-9), None);
+        assert_eq!(find_dependent_combination(&rows[..2], 1e-9), None);
     }
 
     #[test]
@@ -114,9 +114,9 @@ mod tests {
             vec![0.0, 1.0, 0.0],
             vec![0.8, 0.6, 0.0],
         ];
-        let found = dependent_combinations(&rows, 1e-9);
+        let found = find_dependent_combinations(&rows, 1e-9);
         assert_eq!(found.len(), 2);
-        assert_eq!(dependent_rows(&rows, 1e-9).len(), 2);
+        assert_eq!(find_dependent_rows(&rows, 1e-9).len(), 2);
         for parts in found {
             for column in 0..3 {
                 let entries = parts.iter().zip(&rows);
@@ -129,6 +129,9 @@ mod tests {
     #[test]
     fn zero_row_is_dependent() {
         let rows = [vec![1.0, 0.0], vec![0.0, 0.0]];
-        assert_eq!(dependent_combination(&rows, 1e-9), Some(vec![0.0, 1.0]));
+        assert_eq!(
+            find_dependent_combination(&rows, 1e-9),
+            Some(vec![0.0, 1.0])
+        );
     }
 }

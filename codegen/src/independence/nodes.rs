@@ -2,7 +2,7 @@
 //! equations of motion are needed.
 
 use crate::independence::geometry::ConstraintGeometry;
-use crate::independence::rows::positive_or_one;
+use crate::independence::rows::replace_nonpositive_by_one;
 use crate::mechanics::inertia::point::Point as NodePoint;
 use crate::mechanics::inertia::sweep::Velocities;
 use crate::mechanics::unsolved::Unsolved;
@@ -55,8 +55,8 @@ impl ConstraintGeometry for NodeGeometry<'_> {
         let values = self.values(&self.constraints, point);
         let row = |derivatives: &[(usize, NodeId)]| {
             let mut row = vec![0.0; self.coordinates];
-            for &(place, node) in derivatives {
-                row[place] = values[node.0 as usize] / inertia[place].sqrt();
+            for &(index, node) in derivatives {
+                row[index] = values[node.0 as usize] / inertia[index].sqrt();
             }
             row
         };
@@ -68,7 +68,7 @@ impl ConstraintGeometry for NodeGeometry<'_> {
         let values = self.values(&self.energy, point);
         let velocities = Velocities::new(&self.model.graph, &self.energy, &values);
         let diagonal = velocities.diagonal(self.coordinates).into_iter();
-        diagonal.map(positive_or_one).collect()
+        diagonal.map(replace_nonpositive_by_one).collect()
     }
 
     fn residuals(&mut self, point: Point<'_>) -> Vec<f64> {

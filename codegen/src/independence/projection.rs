@@ -32,12 +32,12 @@ const MAX_DAMPING: f64 = 1e12;
 
 /// State and inputs at which constraints are evaluated.
 #[derive(Clone, Copy)]
-pub(super) struct Place<'p> {
+pub(super) struct EvaluationPoint<'p> {
     pub state: &'p [f64],
     pub inputs: &'p [f64],
 }
 
-impl<'p> Place<'p> {
+impl<'p> EvaluationPoint<'p> {
     pub fn point(self) -> Point<'p> {
         Point {
             t: 0.0,
@@ -52,7 +52,7 @@ impl<'p> Place<'p> {
 /// minimum with nonzero residuals.
 pub(super) fn project(
     rows: &mut dyn ConstraintGeometry,
-    place: Place<'_>,
+    place: EvaluationPoint<'_>,
     holonomic: &[usize],
     scales: &[f64],
 ) -> Vec<f64> {
@@ -92,7 +92,7 @@ impl Projection<'_> {
     fn solve(&mut self, from: &[f64]) -> Vec<f64> {
         let mut state = from.to_vec();
         for _ in 0..MAX_NEWTON_STEPS {
-            let directions = self.directions(&state);
+            let directions = self.compute_directions(&state);
             let residuals = self.residuals(&state);
             let Some(factors) = solve(&directions.rows, residuals, MIN_DAMPING) else {
                 break;
@@ -116,7 +116,7 @@ impl Projection<'_> {
         let mut residuals = self.residuals(&state);
         let mut damping = MIN_DAMPING;
         for _ in 0..MAX_STEPS {
-            let directions = self.directions(&state);
+            let directions = self.compute_directions(&state);
             loop {
                 let Some(factors) = solve(&directions.rows, residuals.clone(), damping) else {
                     return state;
@@ -144,9 +144,9 @@ impl Projection<'_> {
         state
     }
 
-    fn directions(&mut self, state: &[f64]) -> Directions {
+    fn compute_directions(&mut self, state: &[f64]) -> Directions {
         let inputs = self.inputs;
-        let point = Place { state, inputs }.point();
+        let point = EvaluationPoint { state, inputs }.point();
         let all = self.rows.rows(point);
         let scaled = (self.holonomic.iter()).map(|k| {
             all[*k]
@@ -162,7 +162,9 @@ impl Projection<'_> {
 
     fn residuals(&mut self, state: &[f64]) -> Vec<f64> {
         let inputs = self.inputs;
-        let residuals = self.rows.residuals(Place { state, inputs }.point());
+        let residuals = self
+            .rows
+            .residuals(EvaluationPoint { state, inputs }.point());
         let scaled = self
             .holonomic
             .iter()

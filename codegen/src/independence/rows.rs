@@ -54,16 +54,16 @@ impl ConstraintRows {
         };
         let mut nonzeros = vec![0.0; jacobian.nonzeros()];
         self.evaluator.jacobian(0, point, &mut nonzeros);
-        for (entry, place) in jacobian.entries.iter().zip(jacobian.places()) {
+        for (entry, position) in jacobian.entries.iter().zip(jacobian.places()) {
             for column in 0..entry.columns {
-                rows[entry.row][entry.column + column] = nonzeros[place.start + column];
+                rows[entry.row][entry.column + column] = nonzeros[position.start + column];
             }
         }
         rows
     }
 
     /// Returns the sum over j of |A_kj| s_j for each row k, with the magnitudes s_j of the coordinates, in SI units.
-    pub fn weighted_lengths(&mut self, point: Point<'_>, sizes: &[f64]) -> Vec<f64> {
+    pub fn compute_weighted_lengths(&mut self, point: Point<'_>, sizes: &[f64]) -> Vec<f64> {
         let weighted = |row: Vec<f64>| {
             let entries = row.iter().zip(sizes);
             entries.map(|(entry, size)| entry.abs() * size).sum()
@@ -83,8 +83,8 @@ impl ConstraintRows {
     pub(super) fn diagonal(&mut self, point: Point<'_>) -> Vec<f64> {
         let degrees = self.degrees_of_freedom();
         let mass = self.mass_matrix(point);
-        let diagonal = (0..degrees).map(|place| mass[place * degrees + place]);
-        diagonal.map(positive_or_one).collect()
+        let diagonal = (0..degrees).map(|index| mass[index * degrees + index]);
+        diagonal.map(replace_nonpositive_by_one).collect()
     }
 
     /// Returns the residuals of the constraints in SI units.
@@ -92,11 +92,11 @@ impl ConstraintRows {
         let mut observables = vec![0.0; self.evaluator.program().observables.len()];
         self.evaluator.observables(point, &mut observables);
         let places = self.residuals.iter();
-        places.map(|place| observables[*place]).collect()
+        places.map(|index| observables[*index]).collect()
     }
 }
 
 /// Returns `size`, or 1 if it is not positive.
-pub(super) fn positive_or_one(size: f64) -> f64 {
+pub(super) fn replace_nonpositive_by_one(size: f64) -> f64 {
     if size > 0.0 { size } else { 1.0 }
 }

@@ -11,7 +11,7 @@ pub fn norm(vector: &[f64]) -> f64 {
 }
 
 /// Returns the largest magnitude of the entries, or 0 if there are none.
-pub fn max_magnitude<'e>(entries: impl IntoIterator<Item = &'e f64>) -> f64 {
+pub fn find_max_magnitude<'e>(entries: impl IntoIterator<Item = &'e f64>) -> f64 {
     let magnitudes = entries.into_iter().map(|entry| entry.abs());
     magnitudes.fold(0.0, f64::max)
 }

@@ -77,7 +77,7 @@ fn derive_coefficient(
         }
         CoefficientKind::Factor { of, by, times } => (of, by, times),
     };
-    let row = row_of(of)?;
+    let row = find_equation_row(of)?;
     let acceleration = match row {
         EquationRow::Coordinate(index) => accelerations.rows.scalars[index],
         EquationRow::Modes(field) => accelerations.rows.modal[field],
@@ -103,7 +103,7 @@ fn derive_coefficient(
     })
 }
 
-pub(crate) fn row_of(of: &Expr) -> Derived<EquationRow> {
+pub(crate) fn find_equation_row(of: &Expr) -> Derived<EquationRow> {
     match of.kind {
         ExprKind::Coordinate(index) => Ok(EquationRow::Coordinate(index)),
         ExprKind::ModeCoordinate(field) => Ok(EquationRow::Modes(field)),

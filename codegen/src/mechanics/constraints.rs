@@ -57,8 +57,8 @@ impl Constraints {
         {
             let zero = translator.residual(id)?;
             let (row, right) = match constraint.is_nonholonomic {
-                true => nonholonomic(&mut translator.graph, variables, zero, rate),
-                false => holonomic(&mut translator.graph, variables, zero, rate),
+                true => derive_nonholonomic_row(&mut translator.graph, variables, zero, rate),
+                false => derive_holonomic_row(&mut translator.graph, variables, zero, rate),
             };
             let moves = (row.nodes().iter())
                 .any(|entry| translator.graph.dependence(*entry).has(Dependence::RATE));
@@ -73,7 +73,7 @@ impl Constraints {
     }
 }
 
-fn holonomic(
+fn derive_holonomic_row(
     graph: &mut Graph,
     variables: &Variables,
     zero: NodeId,
@@ -89,7 +89,7 @@ fn holonomic(
     (row, right)
 }
 
-fn nonholonomic(
+fn derive_nonholonomic_row(
     graph: &mut Graph,
     variables: &Variables,
     zero: NodeId,
@@ -118,7 +118,7 @@ pub(crate) fn nonlinear_error(constraint: &Constraint) -> DeriveError {
 
 /// Returns the power of the constraint forces, lambda A q'. It is 0 for exact constraints that do not depend
 /// on time.
-pub(crate) fn reaction_power(
+pub(crate) fn derive_reaction_power(
     graph: &mut Graph,
     variables: &Variables,
     constraints: &Constraints,
@@ -126,7 +126,7 @@ pub(crate) fn reaction_power(
 ) -> NodeId {
     let mut terms = Vec::new();
     for (row, multiplier) in constraints.rows.iter().zip(multipliers) {
-        let speed = variables.dot_rates(graph, row);
+        let speed = variables.multiply_by_rates(graph, row);
         terms.push((1.0, graph.multiply(*multiplier, speed)));
     }
     graph.combine(&terms)

@@ -37,7 +37,7 @@ pub(crate) fn derive_contributions(
         });
     };
     for (term, node) in model.kinetic.iter().zip(nodes.by_ref()) {
-        let mut part = kinetic_nodes(graph, &variables, node);
+        let mut part = derive_kinetic_nodes(graph, &variables, node);
         part.push(node);
         add("kinetic", &term.name, part);
     }
@@ -62,14 +62,14 @@ pub(crate) fn derive_contributions(
     for (constraint, node) in model.constraints.iter().zip(&equations.residuals) {
         add("constraints", &constraint.name, vec![*node]);
     }
-    for (place, guard) in equations.guards.iter().enumerate() {
-        add("guards", &place.to_string(), vec![guard.value]);
+    for (index, guard) in equations.guards.iter().enumerate() {
+        add("guards", &index.to_string(), vec![guard.value]);
     }
     found
 }
 
 /// Derives the momenta, mass matrix and velocity terms of one kinetic energy and returns their nodes.
-fn kinetic_nodes(graph: &mut Graph, variables: &Variables, kinetic: NodeId) -> Vec<NodeId> {
+fn derive_kinetic_nodes(graph: &mut Graph, variables: &Variables, kinetic: NodeId) -> Vec<NodeId> {
     let momenta = variables.gradient(graph, kinetic, GradientBy::Rates);
     let mut nodes = momenta.nodes();
     if variables.fields == 0 && variables.coordinates > MAX_COORDINATES {
@@ -77,14 +77,14 @@ fn kinetic_nodes(graph: &mut Graph, variables: &Variables, kinetic: NodeId) -> V
     }
     let mass = variables.mass_matrix(graph, &momenta);
     nodes.extend(mass.scalars.iter().chain(&mass.coupling).flatten());
-    let blocks = mass.assembled_blocks(graph);
+    let blocks = mass.assemble_blocks(graph);
     nodes.extend(blocks.iter().map(|block| block.matrix));
     nodes.extend(variables.velocity_terms(graph, kinetic, &momenta).nodes());
     nodes
 }
 
 /// Returns the contribution of each observable.
-pub(crate) fn observable_contributions<'e>(
+pub(crate) fn collect_observable_contributions<'e>(
     model: &'e Model,
     equations: &'e Equations,
 ) -> impl Iterator<Item = Contribution> + 'e {

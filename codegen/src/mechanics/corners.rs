@@ -17,7 +17,7 @@ use eomgen_model_spec::ids::InputId;
 use eomgen_model_spec::model::Model;
 
 use crate::mechanics::equations::Equations;
-use crate::mechanics::function_rates::guard_rate;
+use crate::mechanics::function_rates::derive_guard_rate;
 use crate::mechanics::lagrange::{GradientBy, Variables};
 use crate::mechanics::outputs::{Corners, RateRow};
 use crate::mechanics::rows::RowNodes;
@@ -49,7 +49,7 @@ pub(crate) fn add_corner_sides(
     let places = guard_places(equations);
     let surfaces = corners.iter().map(|corner| {
         let value = equations.guards[corner.guard].value;
-        let rate = guard_rate(equations, value);
+        let rate = derive_guard_rate(equations, value);
         let graph = &mut equations.graph;
         RateRow {
             place: places[corner.guard],
@@ -85,9 +85,9 @@ pub(crate) fn add_corner_sides(
     });
     let constraints = constraints.collect();
     let momenta = variables.gradient(graph, kinetic, GradientBy::Rates);
-    let product = variables.dot_rates(graph, &momenta);
+    let product = variables.multiply_by_rates(graph, &momenta);
     equations.mass = variables.mass_matrix(graph, &momenta);
-    equations.modal_blocks = equations.mass.assembled_blocks(graph);
+    equations.modal_blocks = equations.mass.assemble_blocks(graph);
     Corners {
         hamiltonian: graph.combine(&[(1.0, product), (-1.0, kinetic), (1.0, potential)]),
         energy: graph.add(kinetic, potential),

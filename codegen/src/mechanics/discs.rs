@@ -43,7 +43,7 @@ pub(crate) fn find_discs(graph: &mut Graph, roots: &[NodeId]) -> Vec<Disc> {
         };
         for (norm, exponent) in factors {
             if exponent < 0 && found.iter().all(|disc| disc.norm != norm) {
-                found.extend(disc_of_norm(graph, norm));
+                found.extend(recognise_disc(graph, norm));
             }
         }
     }
@@ -51,7 +51,7 @@ pub(crate) fn find_discs(graph: &mut Graph, roots: &[NodeId]) -> Vec<Disc> {
 }
 
 /// Returns the disc of a norm: the square root of a sum of squares of velocities.
-fn disc_of_norm(graph: &mut Graph, norm: NodeId) -> Option<Disc> {
+fn recognise_disc(graph: &mut Graph, norm: NodeId) -> Option<Disc> {
     let Operation::Call(Function::Sqrt, Arguments::One([sum])) = *graph.operation(norm) else {
         return None;
     };
@@ -147,7 +147,7 @@ impl Disc {
         }
         let factors = powers(graph, id);
         for (component, unit) in self.components.iter().zip(unit) {
-            let (scale, parts) = scaled_powers(graph, *component);
+            let (scale, parts) = read_scaled_powers(graph, *component);
             let moves = Dependence::RATE.join(Dependence::STATE);
             let holds = |(part, power): (&NodeId, &i32)| {
                 let own = factors.get(part).copied().unwrap_or(0);
@@ -202,7 +202,7 @@ fn powers(graph: &Graph, id: NodeId) -> BTreeMap<NodeId, i32> {
 }
 
 /// Returns the numerical factor and the powers of a product.
-fn scaled_powers(graph: &Graph, id: NodeId) -> (f64, BTreeMap<NodeId, i32>) {
+fn read_scaled_powers(graph: &Graph, id: NodeId) -> (f64, BTreeMap<NodeId, i32>) {
     match graph.operation(id) {
         Operation::Sum(terms) if terms.len() == 1 => {
             (terms[0].0.value(), powers(graph, terms[0].1))

@@ -6,8 +6,8 @@ use eomgen_model_spec::ids::StateId;
 use eomgen_model_spec::model::{MULTIPLIER, Model, ParameterValue, Term};
 
 use crate::mechanics::coefficients::{NamedCoefficient, derive_coefficients};
-use crate::mechanics::constraints::{Constraints, reaction_power};
-use crate::mechanics::forces::{applied_forces, guards, power};
+use crate::mechanics::constraints::{Constraints, derive_reaction_power};
+use crate::mechanics::forces::{derive_applied_forces, derive_power, find_guards};
 use crate::mechanics::guard::Guard;
 use crate::mechanics::impact::Impact;
 use crate::mechanics::impacts::impacts;
@@ -131,9 +131,9 @@ pub fn derive_with_redundancy(
         sweep,
     } = KineticRows::derive_cheapest(&mut translator.graph, &variables, kinetic, potential);
     name_mass_matrix(&mut translator.graph, model, &mass);
-    let applied = applied_forces(&mut translator, &variables, dissipation, &mut terms)?;
+    let applied = derive_applied_forces(&mut translator, &variables, dissipation, &mut terms)?;
     let forces = variables.with_potential(&mut translator.graph, &applied, potential);
-    let right_side = variables.difference(&mut translator.graph, &forces, &velocity_terms);
+    let right_side = variables.subtract_rows(&mut translator.graph, &forces, &velocity_terms);
     let constraints = Constraints::derive(&mut translator, &variables, redundancy)?;
     let (accelerations, multipliers) =
         solve(&mut translator.graph, &mass, &right_side, &constraints);
@@ -141,18 +141,18 @@ pub fn derive_with_redundancy(
         let name = format!("{MULTIPLIER}{}", constraint.name);
         translator.graph.suggest_name(*multiplier, &name);
     }
-    translator.known_multipliers(&multipliers);
+    translator.set_multipliers(&multipliers);
     name_accelerations(&mut translator.graph, model, &accelerations);
     let state_rates = StateId::first(model.states.len())
         .map(|index| translator.state_rate(index))
         .collect::<Derived<Vec<NodeId>>>()?;
-    let reactions = reaction_power(
+    let reactions = derive_reaction_power(
         &mut translator.graph,
         &variables,
         &constraints,
         &multipliers,
     );
-    let power = power(
+    let power = derive_power(
         &mut translator.graph,
         &variables,
         kinetic,
@@ -176,7 +176,7 @@ pub fn derive_with_redundancy(
     moving.extend(mass.scalars.iter().flatten());
     moving.extend(accelerations.rows.nodes());
     moving.extend(&state_rates);
-    let mut guards = guards(&mut translator.graph, &moving);
+    let mut guards = find_guards(&mut translator.graph, &moving);
     let jumps = find_jumps(&mut translator, &energies)?;
     let corners = add_corners(&translator.graph, jumps, &mut guards);
     if corners.iter().any(|corner| corner.moves_rates) {
@@ -188,7 +188,7 @@ pub fn derive_with_redundancy(
         (kinetic, &mass, &constraints),
         &accelerations.rows,
     )?;
-    let modal_blocks = mass.assembled_blocks(&mut translator.graph);
+    let modal_blocks = mass.assemble_blocks(&mut translator.graph);
     let definitions = translator.definition_nodes();
     // This comes last because other equations must not share its nodes.
     let rigid_bodies = RigidBodies::find(&mut translator, &variables, &applied)?;

@@ -11,7 +11,7 @@ use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 
 /// Derives -dR/dq' and the forces by virtual work, Q_j = value d(on)/dq_j.
-pub(crate) fn applied_forces(
+pub(crate) fn derive_applied_forces(
     translator: &mut Translator,
     variables: &Variables,
     dissipation: NodeId,
@@ -57,7 +57,7 @@ pub(crate) fn translate_force(
 
 /// Returns d(T + V)/dt due to forces and explicit time dependence: Q q' + dV/dt - dT/dt with partial derivatives by
 /// time. If T is not a quadratic form of the rates, d(2 T - p q')/dt is added.
-pub(crate) fn power(
+pub(crate) fn derive_power(
     graph: &mut Graph,
     variables: &Variables,
     kinetic: NodeId,
@@ -66,12 +66,12 @@ pub(crate) fn power(
     momenta: &RowNodes,
     accelerations: &Accelerations,
 ) -> NodeId {
-    let work = variables.dot_rates(graph, applied);
+    let work = variables.multiply_by_rates(graph, applied);
     let potential_rate = explicit_rate(graph, potential);
     let mut terms = vec![(1.0, work), (1.0, potential_rate)];
     let kinetic_rate = explicit_rate(graph, kinetic);
     if !crate::symbolic::degree::is_quadratic_in_rates(graph, kinetic) {
-        let twice = variables.dot_rates(graph, momenta);
+        let twice = variables.multiply_by_rates(graph, momenta);
         let rest = graph.combine_flat(&[(2.0, kinetic), (-1.0, twice)]);
         let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
             Operation::Rate(index) => accelerations.rows.scalars[index],
@@ -86,7 +86,7 @@ pub(crate) fn power(
 }
 
 /// Returns the distinct switching surfaces in the expressions of `roots`, in the order of the graph.
-pub(crate) fn guards(graph: &mut Graph, roots: &[NodeId]) -> Vec<Guard> {
+pub(crate) fn find_guards(graph: &mut Graph, roots: &[NodeId]) -> Vec<Guard> {
     let mut found: Vec<Guard> = Vec::new();
     for id in graph.reachable(roots) {
         if graph.dependence(id).is_parameter_only() || graph.guarded_power(id).is_some() {
@@ -110,7 +110,7 @@ pub(crate) fn guards(graph: &mut Graph, roots: &[NodeId]) -> Vec<Guard> {
             }
             _ => continue,
         };
-        for value in surfaces(graph, function, &arguments).all() {
+        for value in find_surfaces(graph, function, &arguments).all() {
             if found.iter().all(|guard| guard.value != value) {
                 found.push(Guard { value, function });
             }
@@ -154,7 +154,11 @@ impl Surfaces {
 
 /// Returns the surfaces of a piecewise function. If a sign or contact can be zero for a whole regime, each end of the
 /// interval -b <= p <= b (p = 0 for a sign) has its own surface, because the function has a third value there.
-pub(crate) fn surfaces(graph: &mut Graph, function: Function, arguments: &[NodeId]) -> Surfaces {
+pub(crate) fn find_surfaces(
+    graph: &mut Graph,
+    function: Function,
+    arguments: &[NodeId],
+) -> Surfaces {
     match (function, arguments) {
         (Function::Contact, &[p, b]) if can_be_constant(graph, p) => {
             let beyond = graph.add(p, b);

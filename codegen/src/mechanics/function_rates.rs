@@ -11,7 +11,7 @@ use crate::symbolic::graph::{Graph, NodeId, Operation};
 pub(crate) type Column = (RowNodes, Vec<NodeId>);
 
 /// Returns the rate of a function of the motion, with constant inputs.
-pub(crate) fn guard_rate(equations: &mut Equations, value: NodeId) -> NodeId {
+pub(crate) fn derive_guard_rate(equations: &mut Equations, value: NodeId) -> NodeId {
     let rows = &equations.accelerations.rows;
     let rates = (rows, &equations.state_rates[..]);
     derive_with(&mut equations.graph, value, rates, along_motion)

@@ -17,7 +17,7 @@ use crate::mechanics::mass_matrix::MassMatrix;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::solve::solve;
 use crate::mechanics::translate::{DeriveError, Derived, Translator, along_motion, explicit_rate};
-use crate::mechanics::workless_rates::{RestTerms, at_zero_rates};
+use crate::mechanics::workless_rates::{RestTerms, set_rates_to_zero};
 use crate::symbolic::graph::{Dependence, NodeId};
 
 pub(crate) fn impacts(
@@ -52,7 +52,7 @@ pub(crate) fn impacts(
         // At order 0, a distance of a field depends on no mode.
         let is_rigid = model.fields.is_empty();
         if is_rigid && gradient.nodes().iter().all(|entry| graph.is_zero(*entry)) {
-            return Err(immovable_distance_error(impact));
+            return Err(describe_constant_distance(impact));
         }
         let rate = along_motion(graph, distance);
         let of_rates = along_motion(graph, rate);
@@ -84,12 +84,12 @@ pub(crate) fn impacts(
         let gradient = variables.gradient(graph, slip, GradientBy::Rates);
         let moves = |entry: &NodeId| graph.dependence(*entry).has(Dependence::RATE);
         if gradient.nodes().iter().any(moves) {
-            return Err(nonlinear_slip_error(impact, friction));
+            return Err(describe_nonlinear_slip(impact, friction));
         }
         let of_rates = along_motion(graph, slip);
         let of_accelerations = gradient.dot(graph, accelerations);
         let (solved, multipliers) = solve(graph, mass, &gradient, &along_constraints);
-        let own_slip = at_zero_rates(graph, slip);
+        let own_slip = set_rates_to_zero(graph, slip);
         let effect = (&solved.rows, &multipliers[..]);
         own.friction = Some(Friction {
             coefficient,
@@ -123,7 +123,7 @@ pub(crate) fn impacts(
 }
 
 /// Returns the error for a slip that is not linear in the rates.
-pub(crate) fn nonlinear_slip_error(
+pub(crate) fn describe_nonlinear_slip(
     impact: &model::Impact,
     friction: &model::ContactFriction,
 ) -> DeriveError {
@@ -135,7 +135,7 @@ pub(crate) fn nonlinear_slip_error(
 }
 
 /// Returns the error for a distance that depends on no coordinate.
-pub(crate) fn immovable_distance_error(impact: &model::Impact) -> DeriveError {
+pub(crate) fn describe_constant_distance(impact: &model::Impact) -> DeriveError {
     DeriveError {
         span: impact.when.span,
         message: format!(

@@ -10,7 +10,7 @@ use eomgen_model_spec::ids::InputId;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::span::Span;
 
-use crate::mechanics::forces::{guards, surfaces};
+use crate::mechanics::forces::{find_guards, find_surfaces};
 use crate::mechanics::guard::Guard;
 use crate::mechanics::mass_matrix::MassMatrix;
 use crate::mechanics::sides::Sides;
@@ -48,13 +48,13 @@ pub(crate) struct Energies {
 pub(crate) fn find_jumps(translator: &mut Translator, energies: &Energies) -> Derived<Vec<Jump>> {
     check_positions(translator, energies)?;
     let roots = [energies.kinetic, energies.potential];
-    let steps = Steps::find(translator, &roots);
+    let steps = JumpFunctions::find(translator, &roots);
     let mut found = vec![None; steps.guards.len()];
-    for (place, found) in found.iter_mut().enumerate() {
-        let value = steps.guards[place].value;
+    for (index, found) in found.iter_mut().enumerate() {
+        let value = steps.guards[index].value;
         let graph = &mut translator.graph;
-        let kinetic = steps.jump(graph, energies.kinetic, place);
-        let potential = steps.jump(graph, energies.potential, place);
+        let kinetic = steps.derive_jump(graph, energies.kinetic, index);
+        let potential = steps.derive_jump(graph, energies.potential, index);
         let difference = graph.subtract(kinetic, potential);
         // A jump at a given time changes the rates only if the momenta jump.
         let is_felt = graph.dependence(value).has(Dependence::COORDINATE)
@@ -64,14 +64,14 @@ pub(crate) fn find_jumps(translator: &mut Translator, energies: &Energies) -> De
         *found = has_energy_jump.then_some(moves_rates);
         let dependence = graph.dependence(value);
         if moves_rates && graph.shape(value) != Shape::Scalar {
-            return Err(field_error(term_of(translator, value)));
+            return Err(field_error(find_term(translator, value)));
         }
         if moves_rates && dependence.has(Dependence::RATE) {
-            return Err(rate_error(term_of(translator, value)));
+            return Err(rate_error(find_term(translator, value)));
         }
     }
     check_momenta(translator, energies)?;
-    Ok(steps.chosen(&found))
+    Ok(steps.select_jumps(&found))
 }
 
 /// Rejects positions that jump although an energy contains their rates.
@@ -81,10 +81,10 @@ fn check_positions(translator: &mut Translator, energies: &Energies) -> Derived<
         return Ok(());
     }
     for (span, node) in &energies.positions {
-        let steps = Steps::find(translator, &[*node]);
+        let steps = JumpFunctions::find(translator, &[*node]);
         let graph = &mut translator.graph;
-        for (place, guard) in steps.guards.iter().enumerate() {
-            let jump = steps.jump(graph, *node, place);
+        for (index, guard) in steps.guards.iter().enumerate() {
+            let jump = steps.derive_jump(graph, *node, index);
             if !vanishes_on(graph, jump, guard.value) && is_solvable(graph, guard.value) {
                 return Err(position_error(*span));
             }
@@ -116,17 +116,17 @@ fn check_momenta(translator: &mut Translator, energies: &Energies) -> Derived<()
         .iter()
         .map(|rate| derive_by_scalar(&mut translator.graph, energies.kinetic, *rate))
         .collect();
-    let steps = Steps::find(translator, &momenta);
-    for (place, guard) in steps.guards.iter().enumerate() {
+    let steps = JumpFunctions::find(translator, &momenta);
+    for (index, guard) in steps.guards.iter().enumerate() {
         let graph = &mut translator.graph;
         if !graph.dependence(guard.value).has(Dependence::RATE) || !is_solvable(graph, guard.value)
         {
             continue;
         }
         for momentum in &momenta {
-            let jump = steps.jump(graph, *momentum, place);
+            let jump = steps.derive_jump(graph, *momentum, index);
             if !vanishes_on(graph, jump, guard.value) {
-                return Err(rate_error(term_of(translator, guard.value)));
+                return Err(rate_error(find_term(translator, guard.value)));
             }
         }
     }
@@ -134,7 +134,7 @@ fn check_momenta(translator: &mut Translator, energies: &Energies) -> Derived<()
 }
 
 /// Functions that jump in some expressions, and their switching surfaces.
-struct Steps {
+struct JumpFunctions {
     guards: Vec<Guard>,
     /// Indices of the surfaces of each function.
     calls: Vec<Vec<usize>>,
@@ -143,7 +143,7 @@ struct Steps {
     sides: Vec<NodeId>,
 }
 
-impl Steps {
+impl JumpFunctions {
     fn find(translator: &mut Translator, roots: &[NodeId]) -> Self {
         let first = translator.model.inputs.len();
         let graph = &mut translator.graph;
@@ -153,7 +153,7 @@ impl Steps {
                 _ if !is_step(graph, id) => {}
                 Operation::Select { a, b, .. } => values.push(vec![graph.subtract(a, b)]),
                 Operation::Call(function, arguments) => {
-                    values.push(surfaces(graph, function, &arguments).all().collect());
+                    values.push(find_surfaces(graph, function, &arguments).all().collect());
                 }
                 _ => {}
             }
@@ -167,7 +167,7 @@ impl Steps {
         if values.is_empty() {
             return steps;
         }
-        for guard in guards(graph, roots) {
+        for guard in find_guards(graph, roots) {
             let opposite = graph.negate(guard.value);
             let mut all = values.iter().flatten();
             if all.any(|value| *value == guard.value || *value == opposite) {
@@ -183,19 +183,19 @@ impl Steps {
             }
             steps.calls.push(call);
         }
-        let side = |place: usize| Operation::Input(InputId::new(first + place));
+        let side = |index: usize| Operation::Input(InputId::new(first + index));
         let given = (&mut *graph, &steps.guards[..]);
-        steps.known = Sides::replace_jumps(given, roots, &|place| Some(side(place))).known;
+        steps.known = Sides::replace_jumps(given, roots, &|index| Some(side(index))).known;
         let places = 0..steps.guards.len();
-        steps.sides = places.map(|place| graph.intern(side(place))).collect();
+        steps.sides = places.map(|index| graph.intern(side(index))).collect();
         steps
     }
 
     /// Returns the value of a node above a surface minus that below it.
-    fn jump(&self, graph: &mut Graph, node: NodeId, place: usize) -> NodeId {
+    fn derive_jump(&self, graph: &mut Graph, node: NodeId, index: usize) -> NodeId {
         let mut known = self.known.clone();
         let sided = substitute(graph, node, &|_, _| None, &mut known);
-        let own = self.sides[place];
+        let own = self.sides[index];
         let at = |graph: &mut Graph, side: NodeId| {
             let replacement = |_: &mut Graph, id: NodeId| (id == own).then_some(side);
             substitute(graph, sided, &replacement, &mut HashMap::new())
@@ -206,12 +206,12 @@ impl Steps {
     }
 
     /// Returns the surfaces with a jump, and the other surfaces of the same functions.
-    fn chosen(self, found: &[Option<bool>]) -> Vec<Jump> {
+    fn select_jumps(self, found: &[Option<bool>]) -> Vec<Jump> {
         let mut taken = found.to_vec();
         for call in &self.calls {
-            let moves_rates = call.iter().filter_map(|place| found[*place]).max();
-            for place in call {
-                taken[*place] = taken[*place].max(moves_rates);
+            let moves_rates = call.iter().filter_map(|index| found[*index]).max();
+            for index in call {
+                taken[*index] = taken[*index].max(moves_rates);
             }
         }
         let guards = self.guards.into_iter().zip(taken);
@@ -249,7 +249,7 @@ fn vanishes_on(graph: &mut Graph, node: NodeId, value: NodeId) -> bool {
     }
     let zero = graph.zero();
     let mut solutions = vec![(value, zero)];
-    solutions.extend(solve_for_parts(graph, value));
+    solutions.extend(solve_for_leaves(graph, value));
     solutions.into_iter().any(|(part, solution)| {
         let replacement = |_: &mut Graph, id: NodeId| (id == part).then_some(solution);
         let mut rest = substitute(graph, node, &replacement, &mut HashMap::new());
@@ -271,11 +271,11 @@ fn is_zero(graph: &Graph, node: NodeId) -> bool {
 /// Returns true if `value` = 0 can be solved for a coordinate, a rate, a state or the time. Then [`vanishes_on`]
 /// covers all points of the surface.
 fn is_solvable(graph: &mut Graph, value: NodeId) -> bool {
-    !solve_for_parts(graph, value).is_empty()
+    !solve_for_leaves(graph, value).is_empty()
 }
 
 /// Solves `value` = 0 for each leaf in which it is linear, and returns pairs of leaf and solution.
-fn solve_for_parts(graph: &mut Graph, value: NodeId) -> Vec<(NodeId, NodeId)> {
+fn solve_for_leaves(graph: &mut Graph, value: NodeId) -> Vec<(NodeId, NodeId)> {
     let leaves = graph.reachable(&[value]).into_iter().filter(|leaf| {
         let operation = graph.operation(*leaf);
         matches!(
@@ -301,7 +301,7 @@ fn solve_for_parts(graph: &mut Graph, value: NodeId) -> Vec<(NodeId, NodeId)> {
 }
 
 /// Returns the location of the term that contains a function with this surface.
-fn term_of(translator: &mut Translator, surface: NodeId) -> Span {
+fn find_term(translator: &mut Translator, surface: NodeId) -> Span {
     let model = translator.model;
     let terms = model.kinetic.iter().chain(&model.potential);
     let expressions: Vec<_> = terms.map(|term| &term.value).collect();
@@ -309,7 +309,7 @@ fn term_of(translator: &mut Translator, surface: NodeId) -> Span {
         let Ok(node) = translator.node(expression) else {
             continue;
         };
-        let mut known = guards(&mut translator.graph, &[node]).into_iter();
+        let mut known = find_guards(&mut translator.graph, &[node]).into_iter();
         if known.any(|guard| guard.value == surface) {
             return expression.span;
         }

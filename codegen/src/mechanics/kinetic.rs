@@ -6,7 +6,7 @@ use crate::mechanics::lagrange::{GradientBy, Variables};
 use crate::mechanics::mass_matrix::MassMatrix;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::sweeps::{Momenta, Velocities};
-use crate::symbolic::association::shared_operations;
+use crate::symbolic::association::count_shared_operations;
 use crate::symbolic::degree::is_quadratic_in_rates;
 use crate::symbolic::factor::factor_if_cheaper;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
@@ -47,22 +47,24 @@ impl KineticRows {
         let most = match variables.coordinates > MAX_COMPARED_COORDINATES
             && swept.mass.scalars.iter().flatten().any(moves)
         {
-            true => MAX_RELATIVE_OPERATIONS * swept.operations(graph, &beside.scalars),
+            true => MAX_RELATIVE_OPERATIONS * swept.count_operations(graph, &beside.scalars),
             false => usize::MAX,
         };
-        let Some(mass) = variables.mass_matrix_below(graph, &momenta, most) else {
+        let Some(mass) = variables.derive_mass_matrix_within(graph, &momenta, most) else {
             return swept;
         };
         let differentiated = Self::with_mass_matrix(graph, variables, kinetic, (momenta, mass));
         let mut forms = vec![differentiated, swept];
         if is_quadratic_in_rates(graph, kinetic) {
             let entries = &forms[1].mass.scalars.clone();
-            if let Some(other) = quadratic_form(graph, entries).filter(|other| *other != kinetic) {
+            if let Some(other) =
+                expand_quadratic_form(graph, entries).filter(|other| *other != kinetic)
+            {
                 forms.push(Self::derive_by_differentiation(graph, variables, other));
                 forms.extend(Self::derive_by_sweep(graph, variables, other));
             }
         }
-        let operations = |form: &Self| form.operations(graph, &beside.scalars);
+        let operations = |form: &Self| form.count_operations(graph, &beside.scalars);
         let counts: Vec<usize> = forms.iter().map(operations).collect();
         let fewest = (0..forms.len()).min_by_key(|place| counts[*place]);
         let mut best = forms.swap_remove(fewest.unwrap_or(0));
@@ -131,13 +133,13 @@ impl KineticRows {
     }
 
     /// Counts the operations of these rows and of the nodes `other`; shared nodes count once.
-    fn operations(&self, graph: &Graph, beside: &[NodeId]) -> usize {
+    fn count_operations(&self, graph: &Graph, other: &[NodeId]) -> usize {
         let mut nodes = self.velocity_terms.nodes();
-        nodes.extend(beside);
+        nodes.extend(other);
         for (row, entries) in self.mass.scalars.iter().enumerate() {
             nodes.extend(&entries[row..]);
         }
-        shared_operations(graph, &nodes)
+        count_shared_operations(graph, &nodes)
     }
 }
 
@@ -148,12 +150,12 @@ const MAX_COMPARED_COORDINATES: usize = 12;
 const MAX_RELATIVE_OPERATIONS: usize = 2;
 
 /// Largest number of coordinates for which the quadratic form is expanded.
-const MAX_COORDINATES: usize = 4;
+const MAX_EXPANDED_COORDINATES: usize = 4;
 
 /// Returns 1/2 q' M q', in which products of sines and cosines in M are written with sums of angles. Returns `None`
 /// for too many coordinates or too long entries.
-fn quadratic_form(graph: &mut Graph, mass: &[Vec<NodeId>]) -> Option<NodeId> {
-    if mass.len() > MAX_COORDINATES {
+fn expand_quadratic_form(graph: &mut Graph, mass: &[Vec<NodeId>]) -> Option<NodeId> {
+    if mass.len() > MAX_EXPANDED_COORDINATES {
         return None;
     }
     let rates: Vec<NodeId> = CoordinateId::first(mass.len())

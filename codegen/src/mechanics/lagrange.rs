@@ -6,7 +6,7 @@ use eomgen_model_spec::model::Model;
 use crate::mechanics::mass_matrix::MassMatrix;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::translate::along_motion;
-use crate::symbolic::association::shared_operations;
+use crate::symbolic::association::count_shared_operations;
 use crate::symbolic::differentiate::derive_by_scalar;
 use crate::symbolic::expand::{MAX_EXPANSIONS, expand_once};
 use crate::symbolic::factor::factor_if_cheaper;
@@ -23,7 +23,7 @@ pub(crate) enum GradientBy {
 
 /// Returns the nonzero derivatives of a scalar by coordinates or by rates, with their indices. The work grows
 /// with the number of nodes of the scalar.
-pub(crate) fn nonzero_gradient(
+pub(crate) fn derive_nonzero_gradient(
     graph: &mut Graph,
     scalar: NodeId,
     by: &GradientBy,
@@ -86,25 +86,30 @@ impl Variables {
     }
 
     pub(crate) fn mass_matrix(&self, graph: &mut Graph, momenta: &RowNodes) -> MassMatrix {
-        let scalars = self.mass_rows(graph, momenta, usize::MAX);
+        let scalars = self.derive_mass_rows(graph, momenta, usize::MAX);
         self.with_modes(graph, momenta, scalars)
     }
 
     /// Returns the mass matrix; `None` if the rows of the coordinates take more operations than `most`.
-    pub(crate) fn mass_matrix_below(
+    pub(crate) fn derive_mass_matrix_within(
         &self,
         graph: &mut Graph,
         momenta: &RowNodes,
         most: usize,
     ) -> Option<MassMatrix> {
-        let scalars = self.mass_rows(graph, momenta, most);
+        let scalars = self.derive_mass_rows(graph, momenta, most);
         let is_whole = scalars.len() == self.coordinates;
         is_whole.then(|| self.with_modes(graph, momenta, scalars))
     }
 
     /// Returns the rows of the mass matrix for the coordinates, without the modes. If the rows take more operations
     /// than `most`, the remaining rows are missing.
-    fn mass_rows(&self, graph: &mut Graph, momenta: &RowNodes, most: usize) -> Vec<Vec<NodeId>> {
+    fn derive_mass_rows(
+        &self,
+        graph: &mut Graph,
+        momenta: &RowNodes,
+        most: usize,
+    ) -> Vec<Vec<NodeId>> {
         let rates: Vec<NodeId> = CoordinateId::first(self.coordinates)
             .map(|index| graph.intern(Operation::Rate(index)))
             .collect();
@@ -147,7 +152,7 @@ impl Variables {
             for (row, blocks) in FieldId::first(self.fields).zip(&mut modal) {
                 let rows = Space::Modes(row);
                 let momentum = momenta.modal[row];
-                blocks.push(derivative.element_jacobian(graph, momentum, rows));
+                blocks.push(derivative.derive_element_jacobian(graph, momentum, rows));
             }
         }
         MassMatrix {
@@ -198,7 +203,7 @@ impl Variables {
         self.combine(graph, &[(1.0, applied.clone()), (-1.0, gradient)])
     }
 
-    pub(crate) fn difference(&self, graph: &mut Graph, a: &RowNodes, b: &RowNodes) -> RowNodes {
+    pub(crate) fn subtract_rows(&self, graph: &mut Graph, a: &RowNodes, b: &RowNodes) -> RowNodes {
         self.combine(graph, &[(1.0, a.clone()), (-1.0, b.clone())])
     }
 
@@ -221,7 +226,7 @@ impl Variables {
     }
 
     /// Returns the scalar product of the rows with the rates.
-    pub(crate) fn dot_rates(&self, graph: &mut Graph, rows: &RowNodes) -> NodeId {
+    pub(crate) fn multiply_by_rates(&self, graph: &mut Graph, rows: &RowNodes) -> NodeId {
         let mut terms = Vec::new();
         for (index, &row) in CoordinateId::first(rows.scalars.len()).zip(&rows.scalars) {
             let rate = graph.intern(Operation::Rate(index));
@@ -230,7 +235,7 @@ impl Variables {
         for (field, &row) in FieldId::first(rows.modal.len()).zip(&rows.modal) {
             let rates = graph.intern(Operation::ModeRates(field));
             let product = graph.multiply(row, rates);
-            terms.push((1.0, graph.total_over(Space::Modes(field), product)));
+            terms.push((1.0, graph.sum_over_space(Space::Modes(field), product)));
         }
         graph.combine(&terms)
     }
@@ -244,7 +249,7 @@ fn choose_cheapest_slopes(graph: &mut Graph, slopes: Vec<NodeId>) -> Vec<NodeId>
         .map(|slope| with_sums_of_angles(graph, *slope).unwrap_or(*slope))
         .collect();
     let slopes = factor_if_cheaper(graph, slopes);
-    if shared_operations(graph, &apart) < shared_operations(graph, &slopes) {
+    if count_shared_operations(graph, &apart) < count_shared_operations(graph, &slopes) {
         apart
     } else {
         slopes

@@ -64,7 +64,7 @@ pub fn linearity(equations: &Equations) -> Linearity {
     let surfaces = equations.guards.iter().map(|guard| guard.value);
     let state_rates = equations.state_rates.iter().copied();
     for node in rows.into_iter().chain(state_rates).chain(surfaces) {
-        match degrees.degree(node) {
+        match degrees.find_degree(node) {
             Ok(0 | 1) => {}
             Ok(_) => return Linearity::Nonlinear(node),
             Err(culprit) => return Linearity::Nonlinear(culprit),
@@ -84,7 +84,7 @@ struct Degrees<'g> {
 
 impl Degrees<'_> {
     /// Returns the degree of a node in the motion for given sides. Errors: the first nonlinear node.
-    fn degree(&mut self, id: NodeId) -> Result<u32, NodeId> {
+    fn find_degree(&mut self, id: NodeId) -> Result<u32, NodeId> {
         if self.graph.dependence(id).is_parameter_only() {
             return Ok(0);
         }
@@ -105,11 +105,11 @@ impl Degrees<'_> {
             | Operation::ModeRates(_)
             | Operation::State(_)
             | Operation::Input(_) => Ok(1),
-            Operation::Sum(terms) => self.highest_degree(terms.iter().map(|(_, term)| *term)),
+            Operation::Sum(terms) => self.find_highest_degree(terms.iter().map(|(_, term)| *term)),
             Operation::Product(factors) => {
                 let mut total = 0;
                 for &(factor, exponent) in factors {
-                    let degree = self.degree(factor)?;
+                    let degree = self.find_degree(factor)?;
                     let power = u32::try_from(exponent).ok().filter(|_| degree < 2);
                     match (degree, power) {
                         (0, _) => {}
@@ -127,11 +127,11 @@ impl Degrees<'_> {
                 otherwise,
                 ..
             } => {
-                self.highest_degree([*a, *b])?;
-                self.highest_degree([*then, *otherwise])
+                self.find_highest_degree([*a, *b])?;
+                self.find_highest_degree([*then, *otherwise])
             }
-            Operation::Total(a) | Operation::CholeskySolve(_, a) => self.degree(*a),
-            Operation::Apply { vector, .. } => self.degree(*vector),
+            Operation::Total(a) | Operation::CholeskySolve(_, a) => self.find_degree(*a),
+            Operation::Apply { vector, .. } => self.find_degree(*vector),
             _ => Err(id),
         }
     }
@@ -146,20 +146,23 @@ impl Degrees<'_> {
         match (function, arguments) {
             (Function::Sin | Function::Cos, &[a]) if self.is_phase(a) => Ok(1),
             (Function::Contact | Function::Sign | Function::Above, _) if scalar => {
-                self.highest_degree(arguments.iter().copied())?;
+                self.find_highest_degree(arguments.iter().copied())?;
                 Ok(0)
             }
             (Function::Deadzone | Function::Abs | Function::Min | Function::Max, _) if scalar => {
-                self.highest_degree(arguments.iter().copied())
+                self.find_highest_degree(arguments.iter().copied())
             }
             _ => Err(id),
         }
     }
 
-    fn highest_degree(&mut self, parts: impl IntoIterator<Item = NodeId>) -> Result<u32, NodeId> {
+    fn find_highest_degree(
+        &mut self,
+        parts: impl IntoIterator<Item = NodeId>,
+    ) -> Result<u32, NodeId> {
         parts
             .into_iter()
-            .try_fold(0, |highest, part| Ok(self.degree(part)?.max(highest)))
+            .try_fold(0, |highest, part| Ok(self.find_degree(part)?.max(highest)))
     }
 
     /// Returns true for a phase omega t + phi.

@@ -28,7 +28,7 @@ pub struct ModalMassBlock {
 
 impl MassMatrix {
     /// Returns the nonzero modal blocks on and above the diagonal.
-    pub(crate) fn assembled_blocks(&self, graph: &mut Graph) -> Vec<ModalMassBlock> {
+    pub(crate) fn assemble_blocks(&self, graph: &mut Graph) -> Vec<ModalMassBlock> {
         let mut blocks = Vec::new();
         let fields = FieldId::first(self.modal.len());
         for (row, columns) in fields.clone().zip(&self.modal) {

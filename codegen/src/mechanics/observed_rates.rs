@@ -49,7 +49,7 @@ pub(crate) fn derive_observable(
                 "add `rates = 2` to the entry of the input to provide its rates",
             );
         }
-        node = translator.rate_along_motion(node, accelerations)?;
+        node = translator.derive_rate_along_motion(node, accelerations)?;
     }
     Ok(node)
 }

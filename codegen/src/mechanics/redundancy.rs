@@ -66,7 +66,7 @@ impl Redundancy {
 fn join_names(model: &Model, constraints: &[usize]) -> String {
     let names = constraints.iter();
     let names: Vec<String> = names
-        .map(|place| format!("`{}`", model.constraints[*place].name))
+        .map(|index| format!("`{}`", model.constraints[*index].name))
         .collect();
     names.join(", ")
 }

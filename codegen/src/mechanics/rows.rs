@@ -28,7 +28,7 @@ impl RowNodes {
         let fields = FieldId::first(self.modal.len());
         for (field, (a, b)) in fields.zip(self.modal.iter().zip(&other.modal)) {
             let product = graph.multiply(*a, *b);
-            terms.push((1.0, graph.total_over(Space::Modes(field), product)));
+            terms.push((1.0, graph.sum_over_space(Space::Modes(field), product)));
         }
         graph.combine(&terms)
     }

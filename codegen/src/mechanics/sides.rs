@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use eomgen_model_spec::model::Function;
 
-use crate::mechanics::forces::{Surfaces, surfaces};
+use crate::mechanics::forces::{Surfaces, find_surfaces};
 use crate::mechanics::guard::Guard;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 use crate::symbolic::substitute::substitute;
@@ -95,7 +95,7 @@ impl Sides {
                     None => {
                         let turned = graph.subtract(b, a);
                         let side = parameter(graph, turned)?;
-                        opposite_side(graph, side)
+                        build_opposite_side(graph, side)
                     }
                 };
                 let (then, otherwise) = (
@@ -115,7 +115,7 @@ impl Sides {
         arguments: &[NodeId],
         parameter: &dyn Fn(&mut Graph, NodeId) -> Option<NodeId>,
     ) -> Option<NodeId> {
-        let surfaces = surfaces(graph, function, arguments);
+        let surfaces = find_surfaces(graph, function, arguments);
         let sides = surfaces
             .all()
             .map(|surface| parameter(graph, surface))
@@ -135,18 +135,18 @@ impl Sides {
             };
         }
         if let (Surfaces::Negated(_), &[side]) = (surfaces, sides.as_slice()) {
-            return Some(opposite_side(graph, side));
+            return Some(build_opposite_side(graph, side));
         }
         Some(match (function, sides.as_slice(), inner.as_slice()) {
             (Function::Deadzone, &[above, beyond], &[p, b]) => {
                 self.half_widths.push(b);
                 let (upper, lower) = (graph.subtract(p, b), graph.add(p, b));
-                let below = opposite_side(graph, beyond);
+                let below = build_opposite_side(graph, beyond);
                 let (upper, lower) = (graph.multiply(above, upper), graph.multiply(below, lower));
                 graph.add(upper, lower)
             }
             (Function::Contact, &[above, beyond], _) => {
-                let below = opposite_side(graph, beyond);
+                let below = build_opposite_side(graph, beyond);
                 graph.add(above, below)
             }
             (Function::Sign, &[side], _) => sign(graph, side),
@@ -166,7 +166,7 @@ impl Sides {
     }
 }
 
-fn opposite_side(graph: &mut Graph, side: NodeId) -> NodeId {
+fn build_opposite_side(graph: &mut Graph, side: NodeId) -> NodeId {
     let one = graph.one();
     graph.subtract(one, side)
 }
@@ -179,7 +179,7 @@ fn sign(graph: &mut Graph, side: NodeId) -> NodeId {
 
 /// Returns side * a + (1 - side) * b, which is exactly a or b if the side is 1 or 0.
 fn blend_sides(graph: &mut Graph, side: NodeId, a: NodeId, b: NodeId) -> NodeId {
-    let other = opposite_side(graph, side);
+    let other = build_opposite_side(graph, side);
     let (a, b) = (graph.multiply(side, a), graph.multiply(other, b));
     graph.add(a, b)
 }

@@ -25,7 +25,7 @@ use eomgen_model_spec::model::Function;
 use crate::mechanics::discs::{divides_by_speed, find_discs};
 use crate::mechanics::equations::Equations;
 use crate::mechanics::forces::{can_be_constant, depends_on_motion, jumps_with_time};
-use crate::mechanics::function_rates::{Column, derive_along, guard_rate};
+use crate::mechanics::function_rates::{Column, derive_along, derive_guard_rate};
 use crate::mechanics::guard::Guard;
 use crate::mechanics::outputs::{Side, SlidingSurface};
 use crate::mechanics::rows::RowNodes;
@@ -37,7 +37,7 @@ use crate::symbolic::substitute::substitute;
 /// Returns true if the model may have surfaces that hold the motion. The test needs no derivatives and can return
 /// true for a model without such surfaces.
 pub(crate) fn can_hold_motion(equations: &Equations) -> bool {
-    !guards_that_may_hold(equations).is_empty()
+    !find_holding_guards(equations).is_empty()
         || divides_by_speed(&equations.graph, &equations.rate_nodes())
 }
 
@@ -55,21 +55,21 @@ pub(crate) struct SideInputs {
 /// true and no surface can hold the motion, returns `None`; the equations are then unusable.
 pub(crate) fn add_side_inputs(equations: &mut Equations, may_hold: bool) -> Option<SideInputs> {
     let mut sliding = match may_hold {
-        true => guards_that_may_hold(equations),
+        true => find_holding_guards(equations),
         false => Vec::new(),
     };
     if !sliding.is_empty() {
-        let jumping = jumping_guards(equations);
+        let jumping = find_jumping_guards(equations);
         sliding.retain(|(guard, _)| jumping.contains(guard));
     }
-    let all = scalar_guards(equations);
+    let all = find_scalar_guards(equations);
     let is_sliding = |guard: usize| sliding.iter().any(|(own, _)| *own == guard);
     let others: Vec<(usize, usize)> = (all.into_iter())
         .filter(|(guard, _)| !is_sliding(*guard))
         .collect();
     let first = equations.inputs + others.len();
     let leaf = |side: usize| Operation::Input(InputId::new(side));
-    let roots = roots(equations);
+    let roots = collect_roots(equations);
     let place =
         |list: &[(usize, usize)], guard: usize| list.iter().position(|(own, _)| *own == guard);
     let inputs = equations.inputs;
@@ -83,7 +83,7 @@ pub(crate) fn add_side_inputs(equations: &mut Equations, may_hold: bool) -> Opti
         (None, None) => None,
     })
     .known;
-    replace(equations, &mut known);
+    replace_sides(equations, &mut known);
     let is_odd = |function: Function| matches!(function, Function::Sign | Function::Abs);
     let others = others.into_iter().map(|(guard, place)| Side {
         guard: place,
@@ -115,7 +115,7 @@ pub(crate) fn add_side_inputs(equations: &mut Equations, may_hold: bool) -> Opti
             // Piecewise functions of time also use their sides.
             let graph = &mut equations.graph;
             let value = substitute(graph, function.value, &|_, _| None, &mut known);
-            guard_rate(equations, value)
+            derive_guard_rate(equations, value)
         })
         .collect();
     let graph = &mut equations.graph;
@@ -163,7 +163,7 @@ pub(crate) fn add_side_inputs(equations: &mut Equations, may_hold: bool) -> Opti
 }
 
 /// Rates with the sides of frictions as an argument.
-pub(crate) struct HeldRates {
+pub(crate) struct RatesWithSides {
     pub accelerations: RowNodes,
     pub first_order_rates: Vec<NodeId>,
     /// Switching function of each friction.
@@ -173,9 +173,9 @@ pub(crate) struct HeldRates {
 }
 
 /// Returns the rates with the sides of all frictions that can stick as an argument.
-pub(crate) fn hold_frictions(equations: &mut Equations) -> HeldRates {
-    let jumping = jumping_guards(equations);
-    let candidates = guards_that_may_hold(equations).into_iter();
+pub(crate) fn derive_friction_rates(equations: &mut Equations) -> RatesWithSides {
+    let jumping = find_jumping_guards(equations);
+    let candidates = find_holding_guards(equations).into_iter();
     let mut guards: Vec<usize> = (candidates.map(|(guard, _)| guard))
         .filter(|guard| jumping.contains(guard))
         .collect();
@@ -194,7 +194,7 @@ pub(crate) fn hold_frictions(equations: &mut Equations) -> HeldRates {
     }
 }
 
-fn rates_with_sides(equations: &mut Equations, guards: &[usize]) -> HeldRates {
+fn rates_with_sides(equations: &mut Equations, guards: &[usize]) -> RatesWithSides {
     let leaf =
         |side: usize| Operation::Argument(Argument::Sides, Variable::Input(InputId::new(side)));
     let roots = equations.rate_nodes();
@@ -234,7 +234,7 @@ fn rates_with_sides(equations: &mut Equations, guards: &[usize]) -> HeldRates {
         };
         (rates, by_sign(graph, side, &first_order_rates))
     });
-    HeldRates {
+    RatesWithSides {
         columns: columns.collect(),
         functions: guards
             .iter()
@@ -281,12 +281,12 @@ fn add_unit_vectors(
         let unit: Vec<NodeId> = (0..disc.components.len())
             .map(|component| graph.intern(Operation::Input(InputId::new(first + component))))
             .collect();
-        let nodes = (&equations.rate_nodes()[..], &roots(equations)[..]);
+        let nodes = (&equations.rate_nodes()[..], &collect_roots(equations)[..]);
         let mut known = HashMap::new();
         if !disc.replace_unit_vector(&mut equations.graph, nodes, &unit, &mut known) {
             continue;
         }
-        replace(equations, &mut known);
+        replace_sides(equations, &mut known);
         for value in disc.components {
             equations.guards.push(Guard {
                 value,
@@ -305,10 +305,10 @@ fn add_unit_vectors(
 }
 
 /// Returns the guards that depend on rates or on first-order states, each with its index among all guard values.
-fn guards_that_may_hold(equations: &Equations) -> Vec<(usize, usize)> {
+fn find_holding_guards(equations: &Equations) -> Vec<(usize, usize)> {
     let graph = &equations.graph;
     let moves = Dependence::RATE.join(Dependence::STATE);
-    let mut found = scalar_guards(equations);
+    let mut found = find_scalar_guards(equations);
     found.retain(|(index, _)| {
         let guard = &equations.guards[*index];
         let is_single = matches!(
@@ -324,7 +324,7 @@ fn guards_that_may_hold(equations: &Equations) -> Vec<(usize, usize)> {
 }
 
 /// Returns the scalar guards that depend on the motion, each with its index among all guard values.
-fn scalar_guards(equations: &Equations) -> Vec<(usize, usize)> {
+fn find_scalar_guards(equations: &Equations) -> Vec<(usize, usize)> {
     let graph = &equations.graph;
     let mut found = Vec::new();
     let mut place = 0;
@@ -343,9 +343,9 @@ fn scalar_guards(equations: &Equations) -> Vec<(usize, usize)> {
 }
 
 /// Returns the guards at which a function jumps.
-fn jumping_guards(equations: &mut Equations) -> HashSet<usize> {
+fn find_jumping_guards(equations: &mut Equations) -> HashSet<usize> {
     let found = RefCell::new(HashSet::new());
-    let roots = roots(equations);
+    let roots = collect_roots(equations);
     let first = InputId::new(equations.inputs);
     let given = (&mut equations.graph, &equations.guards[..]);
     Sides::replace(given, &roots, &|guard, jumps| {
@@ -358,7 +358,7 @@ fn jumping_guards(equations: &mut Equations) -> HashSet<usize> {
 }
 
 /// Returns the nodes that are evaluated with sides.
-fn roots(equations: &Equations) -> Vec<NodeId> {
+fn collect_roots(equations: &Equations) -> Vec<NodeId> {
     let mut roots = equations.rate_nodes();
     roots.extend(equations.forces.nodes());
     roots.extend(&equations.observables);
@@ -372,7 +372,7 @@ fn roots(equations: &Equations) -> Vec<NodeId> {
 }
 
 /// Inserts the sides into all nodes of [`roots`].
-fn replace(equations: &mut Equations, known: &mut HashMap<NodeId, NodeId>) {
+fn replace_sides(equations: &mut Equations, known: &mut HashMap<NodeId, NodeId>) {
     let graph = &mut equations.graph;
     let rows = &mut equations.accelerations.rows;
     let nodes = rows.scalars.iter_mut().chain(&mut rows.modal);

@@ -23,13 +23,13 @@ use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 /// Velocities (rate-dependent nodes) of a kinetic energy, with their derivatives by their operands.
 pub(crate) struct Velocities {
     /// Units, the energy first; each unit precedes its operands.
-    units: Vec<Unit>,
+    units: Vec<VelocityNode>,
     /// Contributions to the derivative of the energy by each rate.
     received: HashMap<NodeId, Vec<(f64, NodeId)>>,
 }
 
 /// Rate-dependent node, with the factors of the products in its sum as operands.
-struct Unit {
+struct VelocityNode {
     node: NodeId,
     operands: Vec<NodeId>,
     /// Derivative of the node by each operand.
@@ -84,7 +84,7 @@ impl Velocities {
         let mut waiting = BTreeSet::from([kinetic]);
         // An operand is older than its uses.
         while let Some(node) = waiting.pop_last() {
-            let operands = rate_dependent_parts(graph, node);
+            let operands = find_rate_dependent_operands(graph, node);
             if operands.is_empty() {
                 continue;
             }
@@ -100,12 +100,12 @@ impl Velocities {
         let adjoint = graph.combine(&received);
         let mut partials = Vec::with_capacity(operands.len());
         for &operand in &operands {
-            let partial = partial_derivative(graph, node, &operands, operand);
+            let partial = differentiate_partially(graph, node, &operands, operand);
             let part = graph.multiply(partial, adjoint);
             self.received.entry(operand).or_default().push((1.0, part));
             partials.push(partial);
         }
-        self.units.push(Unit {
+        self.units.push(VelocityNode {
             node,
             operands,
             partials,
@@ -117,7 +117,7 @@ impl Velocities {
     pub(crate) fn momenta(&self, graph: &mut Graph, coordinates: usize) -> Momenta {
         let mut slopes: Vec<Vec<(f64, NodeId)>> = vec![Vec::new(); coordinates];
         for unit in &self.units {
-            for (index, slope) in unit.slopes(graph, coordinates) {
+            for (index, slope) in unit.derive_slopes(graph, coordinates) {
                 slopes[index].push((1.0, graph.multiply(slope, unit.adjoint)));
             }
         }
@@ -164,17 +164,17 @@ impl Velocities {
     }
 }
 
-impl Unit {
+impl VelocityNode {
     /// Returns the derivatives of the node by coordinates, with constant operands.
-    fn slopes(&self, graph: &mut Graph, coordinates: usize) -> Vec<(usize, NodeId)> {
-        let moving = self.leaves(graph, self.node);
+    fn derive_slopes(&self, graph: &mut Graph, coordinates: usize) -> Vec<(usize, NodeId)> {
+        let moving = self.find_leaves(graph, self.node);
         let mut found = Vec::new();
         for (place, index) in CoordinateId::first(coordinates).enumerate() {
             let variable = graph.intern(Operation::Coordinate(index));
             if moving.contains(&variable) {
                 found.push((
                     place,
-                    partial_derivative(graph, self.node, &self.operands, variable),
+                    differentiate_partially(graph, self.node, &self.operands, variable),
                 ));
             }
         }
@@ -182,7 +182,7 @@ impl Unit {
     }
 
     /// Returns the leaves of a node; the unit's operands count as leaves.
-    fn leaves(&self, graph: &Graph, node: NodeId) -> BTreeSet<NodeId> {
+    fn find_leaves(&self, graph: &Graph, node: NodeId) -> BTreeSet<NodeId> {
         let mut found = BTreeSet::new();
         let mut seen = HashSet::new();
         let mut waiting = vec![node];
@@ -210,7 +210,7 @@ impl Unit {
                 continue;
             }
             // The slope has nonzero derivatives only by operands that it contains.
-            let within = self.leaves(graph, slope);
+            let within = self.find_leaves(graph, slope);
             let (earlier, held) = (&self.operands[..=place], &self.operands);
             let held: Vec<NodeId> = held
                 .iter()
@@ -218,7 +218,7 @@ impl Unit {
                 .filter(|o| within.contains(o))
                 .collect();
             for &second in earlier.iter().filter(|second| within.contains(second)) {
-                let curvature = partial_derivative(graph, slope, &held, second);
+                let curvature = differentiate_partially(graph, slope, &held, second);
                 let value = graph.multiply(curvature, self.adjoint);
                 if is_velocity(graph, value) {
                     return None;
@@ -258,7 +258,7 @@ impl Inertia {
     }
 
     /// Eliminates a velocity: adds its Hessian entries to those of its operands.
-    fn push(&mut self, graph: &mut Graph, unit: &Unit) {
+    fn push(&mut self, graph: &mut Graph, unit: &VelocityNode) {
         let Some(row) = self.terms.remove(&unit.node) else {
             return;
         };
@@ -297,7 +297,7 @@ fn is_velocity(graph: &Graph, node: NodeId) -> bool {
 }
 
 /// Returns the rate-dependent operands of a node; a product in a sum is replaced by its factors.
-fn rate_dependent_parts(graph: &Graph, node: NodeId) -> Vec<NodeId> {
+fn find_rate_dependent_operands(graph: &Graph, node: NodeId) -> Vec<NodeId> {
     let mut parts = BTreeSet::new();
     for operand in graph.operands(graph.operation(node)) {
         match (graph.operation(node), graph.operation(operand)) {
@@ -316,7 +316,7 @@ fn rate_dependent_parts(graph: &Graph, node: NodeId) -> Vec<NodeId> {
 }
 
 /// Returns the derivative of a node by one operand or by a coordinate, with the other operands `held` constant.
-fn partial_derivative(graph: &mut Graph, node: NodeId, held: &[NodeId], by: NodeId) -> NodeId {
+fn differentiate_partially(graph: &mut Graph, node: NodeId, held: &[NodeId], by: NodeId) -> NodeId {
     let (zero, one) = (graph.zero(), graph.one());
     let mut direction = Direction::default();
     // Operands without a seed have derivative 0.

@@ -1,4 +1,4 @@
-//! Translation of the model's expressions to graph nodes. `field_function` translates functions of the
+//! Translation of the model's expressions to graph nodes. `translate_field_function` translates functions of the
 //! position along a field.
 
 use std::collections::HashMap;
@@ -107,7 +107,7 @@ impl<'m> Translator<'m> {
     }
 
     /// Stores the nodes of the multipliers, which observables can contain.
-    pub fn known_multipliers(&mut self, nodes: &[NodeId]) {
+    pub fn set_multipliers(&mut self, nodes: &[NodeId]) {
         self.multipliers = nodes.to_vec();
     }
 
@@ -183,7 +183,7 @@ impl<'m> Translator<'m> {
             } => self.translate_field_value(*field, value, position),
             ExprKind::Sum { field, summand } => {
                 let inner = self.node(summand)?;
-                Ok(self.graph.total_over(Space::Modes(*field), inner))
+                Ok(self.graph.sum_over_space(Space::Modes(*field), inner))
             }
             ExprKind::Position(_)
             | ExprKind::Field(_)
@@ -216,7 +216,7 @@ impl<'m> Translator<'m> {
             .table(&mut self.graph, TableKind::Indicator(mode));
         let modes = self.graph.intern(Operation::ModeCoordinates(field));
         let selected = self.graph.multiply(indicator, modes);
-        Ok(self.graph.total_over(Space::Modes(field), selected))
+        Ok(self.graph.sum_over_space(Space::Modes(field), selected))
     }
 
     fn nodes(&mut self, expressions: &[Expr]) -> Derived<Vec<NodeId>> {
@@ -264,8 +264,8 @@ impl<'m> Translator<'m> {
                     return Err(error(operand, "the rate of an input is unknown"));
                 }
                 self.positions.push((operand.span, node));
-                let rates = self.rates_within(node)?;
-                let rate = self.rate_along(node, &rates);
+                let rates = self.collect_state_rates(node)?;
+                let rate = self.find_rate_along(node, &rates);
                 if let ExprKind::Definition(index) = operand.kind {
                     let name = format!("{}_dot", self.model.definitions[index].name);
                     self.graph.set_name(rate, &name);
@@ -277,8 +277,8 @@ impl<'m> Translator<'m> {
 
     /// Returns the rate of a node. Known rates are reused only if `rates` is empty, because `rates` differs between
     /// nodes.
-    fn rate_along(&mut self, node: NodeId, rates: &HashMap<StateId, NodeId>) -> NodeId {
-        let tangent = |graph: &mut Graph, leaf: NodeId| rate_of_leaf(graph, leaf, rates);
+    fn find_rate_along(&mut self, node: NodeId, rates: &HashMap<StateId, NodeId>) -> NodeId {
+        let tangent = |graph: &mut Graph, leaf: NodeId| find_leaf_rate(graph, leaf, rates);
         if !rates.is_empty() {
             return Direction::new(&tangent).derivative(&mut self.graph, node);
         }
@@ -289,16 +289,16 @@ impl<'m> Translator<'m> {
     }
 
     /// Returns the time derivative of a node along the motion with these accelerations.
-    pub(crate) fn rate_along_motion(
+    pub(crate) fn derive_rate_along_motion(
         &mut self,
         node: NodeId,
         accelerations: &RowNodes,
     ) -> Derived<NodeId> {
-        let rates = self.rates_within(node)?;
+        let rates = self.collect_state_rates(node)?;
         let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
             Operation::Rate(index) => accelerations.scalars[index],
             Operation::ModeRates(field) => accelerations.modal[field],
-            _ => rate_of_leaf(graph, leaf, &rates),
+            _ => find_leaf_rate(graph, leaf, &rates),
         };
         Ok(Direction::new(&tangent).derivative(&mut self.graph, node))
     }
@@ -326,7 +326,7 @@ impl<'m> Translator<'m> {
         Ok(node)
     }
 
-    fn rates_within(&mut self, node: NodeId) -> Derived<HashMap<StateId, NodeId>> {
+    fn collect_state_rates(&mut self, node: NodeId) -> Derived<HashMap<StateId, NodeId>> {
         if !self.graph.dependence(node).has(Dependence::STATE) {
             return Ok(HashMap::new());
         }
@@ -345,7 +345,7 @@ impl<'m> Translator<'m> {
         value: &Expr,
         position: &Expr,
     ) -> Derived<NodeId> {
-        let function = self.field_function(field, value)?;
+        let function = self.translate_field_function(field, value)?;
         let position = self.node(position)?;
         let domain = self.domain(field)?;
         function
@@ -354,7 +354,7 @@ impl<'m> Translator<'m> {
     }
 
     fn integral(&mut self, field: FieldId, integrand: &Expr) -> Derived<NodeId> {
-        let function = self.field_function(field, integrand)?;
+        let function = self.translate_field_function(field, integrand)?;
         let domain = self.domain(field)?;
         function
             .integral(&mut self.graph, &domain)
@@ -376,14 +376,14 @@ impl<'m> Translator<'m> {
         })
     }
 
-    fn field_function(&mut self, field: FieldId, expr: &Expr) -> Derived<FieldFunction> {
+    fn translate_field_function(&mut self, field: FieldId, expr: &Expr) -> Derived<FieldFunction> {
         match &expr.kind {
             ExprKind::Position(_) => {
                 let domain = self.domain(field)?;
                 Ok(FieldFunction::position(&mut self.graph, &domain))
             }
             ExprKind::Field(_) | ExprKind::ModeShape(_) | ExprKind::Dot(_) | ExprKind::Diff(..) => {
-                match field_atom(expr) {
+                match read_field_atom(expr) {
                     Some(atom) => {
                         let domain = self.domain(field)?;
                         domain.check_derivative(atom).map_err(|m| error(expr, m))?;
@@ -393,12 +393,12 @@ impl<'m> Translator<'m> {
                 }
             }
             ExprKind::Negate(operand) => {
-                let inner = self.field_function(field, operand)?;
+                let inner = self.translate_field_function(field, operand)?;
                 Ok(inner.scale(&mut self.graph, -1.0))
             }
             ExprKind::Binary(operator, left, right) => {
-                let left_function = self.field_function(field, left)?;
-                let right_function = self.field_function(field, right)?;
+                let left_function = self.translate_field_function(field, left)?;
+                let right_function = self.translate_field_function(field, right)?;
                 let domain = self.domain(field)?;
                 left_function
                     .binary(&mut self.graph, &domain, *operator, &right_function)
@@ -407,7 +407,7 @@ impl<'m> Translator<'m> {
             ExprKind::Call(function, arguments) => {
                 let arguments = arguments
                     .iter()
-                    .map(|a| self.field_function(field, a))
+                    .map(|a| self.translate_field_function(field, a))
                     .collect::<Derived<Vec<_>>>()?;
                 let domain = self.domain(field)?;
                 FieldFunction::call(&mut self.graph, &domain, *function, &arguments)
@@ -419,15 +419,15 @@ impl<'m> Translator<'m> {
 }
 
 /// Returns the atom of `w`, `dot(w)`, `phi[i]` or a derivative of these by the position.
-fn field_atom(expr: &Expr) -> Option<Atom> {
+fn read_field_atom(expr: &Expr) -> Option<Atom> {
     match &expr.kind {
         ExprKind::Field(_) => Some(Atom::Coordinates(0)),
         ExprKind::ModeShape(_) => Some(Atom::Shapes(0)),
-        ExprKind::Dot(inner) => match field_atom(inner)? {
+        ExprKind::Dot(inner) => match read_field_atom(inner)? {
             Atom::Coordinates(derivative) => Some(Atom::Rates(derivative)),
             _ => None,
         },
-        ExprKind::Diff(inner, times) => Some(field_atom(inner)?.derivative_of_order(*times)),
+        ExprKind::Diff(inner, times) => Some(read_field_atom(inner)?.derivative_of_order(*times)),
         _ => None,
     }
 }
@@ -436,17 +436,17 @@ fn field_atom(expr: &Expr) -> Option<Atom> {
 /// rates change at these rates, time changes at rate 1, and other inputs are constant.
 pub fn along_motion(graph: &mut Graph, node: NodeId) -> NodeId {
     let still = HashMap::new();
-    let tangent = |graph: &mut Graph, leaf: NodeId| rate_of_leaf(graph, leaf, &still);
+    let tangent = |graph: &mut Graph, leaf: NodeId| find_leaf_rate(graph, leaf, &still);
     Direction::new(&tangent).derivative(graph, node)
 }
 
 /// Returns the rate of a leaf; `rates` has the rates of first-order states, and missing rates are 0.
-fn rate_of_leaf(graph: &mut Graph, leaf: NodeId, rates: &HashMap<StateId, NodeId>) -> NodeId {
+fn find_leaf_rate(graph: &mut Graph, leaf: NodeId, rates: &HashMap<StateId, NodeId>) -> NodeId {
     match *graph.operation(leaf) {
         Operation::Coordinate(index) => graph.intern(Operation::Rate(index)),
         Operation::ModeCoordinates(field) => graph.intern(Operation::ModeRates(field)),
         Operation::Time => graph.one(),
-        Operation::Input(index) => rate_of_input(graph, index),
+        Operation::Input(index) => find_input_rate(graph, index),
         Operation::State(index) => rates.get(&index).copied().unwrap_or_else(|| graph.zero()),
         _ => graph.zero(),
     }
@@ -460,13 +460,13 @@ pub fn explicit_rate(graph: &mut Graph, node: NodeId) -> NodeId {
     }
     let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
         Operation::Time => graph.one(),
-        Operation::Input(index) => rate_of_input(graph, index),
+        Operation::Input(index) => find_input_rate(graph, index),
         _ => graph.zero(),
     };
     Direction::new(&tangent).derivative(graph, node)
 }
 
-fn rate_of_input(graph: &mut Graph, input: InputId) -> NodeId {
+fn find_input_rate(graph: &mut Graph, input: InputId) -> NodeId {
     match graph.input_rate(input) {
         Some(rate) => graph.intern(Operation::Input(rate)),
         None => graph.zero(),

@@ -5,13 +5,13 @@
 use eomgen_model_spec::ids::{ConstraintId, StateId};
 use eomgen_model_spec::model::{CoefficientKind, Model};
 
-use crate::mechanics::coefficients::row_of;
+use crate::mechanics::coefficients::find_equation_row;
 use crate::mechanics::constraints::nonlinear_error;
 use crate::mechanics::equations::{derived_parameters, sum_terms};
 use crate::mechanics::forces::translate_force;
-use crate::mechanics::impacts::{immovable_distance_error, nonlinear_slip_error};
+use crate::mechanics::impacts::{describe_constant_distance, describe_nonlinear_slip};
 use crate::mechanics::jumps::{Energies, find_jumps};
-use crate::mechanics::lagrange::{GradientBy, nonzero_gradient};
+use crate::mechanics::lagrange::{GradientBy, derive_nonzero_gradient};
 use crate::mechanics::translate::{Derived, Translator, along_motion};
 use crate::symbolic::graph::{Argument, Dependence, Graph, NodeId, Operation, Variable};
 
@@ -83,7 +83,7 @@ fn translate_constraints(translator: &mut Translator) -> Derived<Vec<ConstraintN
             true => (GradientBy::Rates, residual),
             false => (GradientBy::Coordinates, along_motion(graph, residual)),
         };
-        let derivatives = nonzero_gradient(graph, residual, &by);
+        let derivatives = derive_nonzero_gradient(graph, residual, &by);
         let moves = |entry: &(usize, NodeId)| graph.dependence(entry.1).has(Dependence::RATE);
         if derivatives.iter().any(moves) {
             return Err(nonlinear_error(constraint));
@@ -95,7 +95,7 @@ fn translate_constraints(translator: &mut Translator) -> Derived<Vec<ConstraintN
         multipliers.push(multiplier);
     }
     // Observables can contain multipliers. The placeholders depend on rates, like the multipliers.
-    translator.known_multipliers(&multipliers);
+    translator.set_multipliers(&multipliers);
     Ok(found)
 }
 
@@ -104,7 +104,7 @@ fn translate_coefficients(translator: &mut Translator) -> Derived<()> {
         let node = match &coefficient.kind {
             CoefficientKind::Value(expression) => translator.node(expression)?,
             CoefficientKind::Factor { of, by, times } => {
-                row_of(of)?;
+                find_equation_row(of)?;
                 translator.node(by)?;
                 if let Some(times) = times {
                     translator.node(times)?;
@@ -132,17 +132,18 @@ pub(crate) fn translate_impacts(translator: &mut Translator) -> Derived<()> {
         let graph = &mut translator.graph;
         // At order 0, a distance of a field depends on no mode.
         let is_rigid = model.fields.is_empty();
-        if is_rigid && nonzero_gradient(graph, distance, &GradientBy::Coordinates).is_empty() {
-            return Err(immovable_distance_error(impact));
+        if is_rigid && derive_nonzero_gradient(graph, distance, &GradientBy::Coordinates).is_empty()
+        {
+            return Err(describe_constant_distance(impact));
         }
         if let Some(friction) = &impact.friction {
             translator.node(&friction.coefficient)?;
             let slip = translator.node(&friction.slip)?;
             let graph = &mut translator.graph;
-            let derivatives = nonzero_gradient(graph, slip, &GradientBy::Rates);
+            let derivatives = derive_nonzero_gradient(graph, slip, &GradientBy::Rates);
             let moves = |entry: &(usize, NodeId)| graph.dependence(entry.1).has(Dependence::RATE);
             if derivatives.iter().any(moves) {
-                return Err(nonlinear_slip_error(impact, friction));
+                return Err(describe_nonlinear_slip(impact, friction));
             }
         }
     }

@@ -43,14 +43,14 @@ impl RestTerms {
         let momenta = (!is_quadratic_in_rates(graph, kinetic)).then(|| {
             let mut momenta = variables.gradient(graph, kinetic, GradientBy::Rates);
             for entry in momenta.scalars.iter_mut().chain(&mut momenta.modal) {
-                *entry = at_zero_rates(graph, *entry);
+                *entry = set_rates_to_zero(graph, *entry);
             }
             momenta
         });
         let residuals = model.constraints.iter().zip(&constraints.residuals);
         let constraint_rates = residuals
             .map(|(constraint, zero)| match constraint.is_nonholonomic {
-                true => at_zero_rates(graph, *zero),
+                true => set_rates_to_zero(graph, *zero),
                 false => explicit_rate(graph, *zero),
             })
             .collect();
@@ -80,7 +80,7 @@ impl RestTerms {
 }
 
 /// Returns a node with the rates of all coordinates replaced by 0.
-pub(crate) fn at_zero_rates(graph: &mut Graph, node: NodeId) -> NodeId {
+pub(crate) fn set_rates_to_zero(graph: &mut Graph, node: NodeId) -> NodeId {
     let zero = |graph: &mut Graph, id: NodeId| {
         let operation = graph.operation(id);
         matches!(operation, Operation::Rate(_) | Operation::ModeRates(_)).then(|| graph.zero())

@@ -187,7 +187,7 @@ impl AffineEvaluator {
     }
 
     /// Returns true if no half-width of a dead zone was negative in the last computation.
-    pub fn half_widths_are_right(&self) -> bool {
+    pub fn half_widths_are_nonnegative(&self) -> bool {
         let mut widths = self.layout.half_widths.iter();
         widths.all(|id| self.evaluator.slice(*id)[0] >= 0.0)
     }
@@ -196,7 +196,7 @@ impl AffineEvaluator {
         let program = self.evaluator.program();
         let degrees = program.degrees_of_freedom();
         let states = self.model_states();
-        let mut rows = self.zero_rows(states);
+        let mut rows = self.create_zero_rows(states);
         for row in 0..degrees {
             rows.state[row * states + degrees + row] = 1.0;
         }
@@ -216,7 +216,7 @@ impl AffineEvaluator {
     }
 
     fn guards(&self) -> AffineRows {
-        let mut rows = self.zero_rows(self.guard_count());
+        let mut rows = self.create_zero_rows(self.guard_count());
         for (row, values) in self.layout.guards.iter().enumerate() {
             self.fill(&mut rows, row, values, 0);
         }
@@ -260,7 +260,7 @@ impl AffineEvaluator {
         rows
     }
 
-    fn zero_rows(&self, rows: usize) -> AffineRows {
+    fn create_zero_rows(&self, rows: usize) -> AffineRows {
         let phases = self.layout.phases.len();
         AffineRows {
             rows,

@@ -41,7 +41,7 @@ impl Contents {
         let hash = self.hashes[id.index()];
         let digit = move |place: usize| DIGITS[(hash >> (5 * place)) as usize % 32] as char;
         let hashed = (HASH_LENGTH..=12).map(move |count| (0..count).map(digit).collect());
-        spell_formula(program, id).into_iter().chain(hashed)
+        write_formula_name(program, id).into_iter().chain(hashed)
     }
 }
 
@@ -160,7 +160,7 @@ pub(super) fn leaf_name(program: &Program, op: &Op) -> Option<String> {
 }
 
 /// Writes a short formula as part of a name: `3*k_sp` becomes `3_k_sp`, and `l/r_s` becomes `l_per_r_s`.
-fn spell_formula(program: &Program, id: ValueId) -> Option<String> {
+fn write_formula_name(program: &Program, id: ValueId) -> Option<String> {
     let mut operands = 0;
     let text = spell(program, id, true, &mut operands)?;
     let fits = text.len() <= MAX_SPELLED_LENGTH && operands > 1;

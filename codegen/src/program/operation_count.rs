@@ -8,12 +8,12 @@ impl Program {
     pub fn operations(&self, roots: &[ValueId]) -> usize {
         self.per_call(roots)
             .into_iter()
-            .map(|id| self.operations_of(id))
+            .map(|id| self.count_value_operations(id))
             .sum()
     }
 
     /// Counts the operations of a call of each emitted function, see [`Self::operations`].
-    pub fn operations_by_function(&self) -> Vec<(&'static str, usize)> {
+    pub fn count_operations_by_function(&self) -> Vec<(&'static str, usize)> {
         let observables = &self.observable_values;
         let (energy, power) = match observables[..] {
             [.., energy, power] => (vec![energy], vec![power]),
@@ -48,7 +48,7 @@ impl Program {
             .collect()
     }
 
-    fn operations_of(&self, id: ValueId) -> usize {
+    fn count_value_operations(&self, id: ValueId) -> usize {
         let value = self.value(id);
         let length = |id: ValueId| self.value(id).extent.length();
         match &value.op {

@@ -47,7 +47,7 @@ impl Report {
         section(
             out,
             "Mass matrix $M$, by entries (symmetric)",
-            &self.mass_lines(),
+            &self.write_mass_matrix(),
         )?;
         section(out, "Pivots, which must be positive", &lines(&self.pivots))?;
         section(out, "Velocity terms $c$", &rows("c", &self.velocity_terms))?;
@@ -85,7 +85,7 @@ impl Report {
         writeln!(out, "\\end{{document}}")
     }
 
-    fn mass_lines(&self) -> Vec<String> {
+    fn write_mass_matrix(&self) -> Vec<String> {
         let entries = self.mass_matrix.iter();
         entries
             .map(|entry| {
@@ -97,13 +97,13 @@ impl Report {
 
     fn write_sentences(&self, out: &mut String) -> std::fmt::Result {
         let linearity = match &self.linearity.formula {
-            Some(formula) => format!("{} {}.", self.linearity.text, in_text(&formula.latex())),
+            Some(formula) => format!("{} {}.", self.linearity.text, inline_math(&formula.latex())),
             None => self.linearity.to_string(),
         };
         write!(
             out,
             "{linearity}\n\n{}\n\n",
-            prose(&self.solution_sentence())
+            prose(&self.describe_solution())
         )
     }
 
@@ -195,11 +195,11 @@ fn section(out: &mut String, title: &str, formulas: &[String]) -> std::fmt::Resu
     }
     write!(out, "\\subsection*{{{title}}}\n\n")?;
     for formula in formulas {
-        write!(out, "{}\n\n", in_text(formula))?;
+        write!(out, "{}\n\n", inline_math(formula))?;
     }
     Ok(())
 }
 
-fn in_text(formula: &str) -> String {
+fn inline_math(formula: &str) -> String {
     format!("${formula}$")
 }

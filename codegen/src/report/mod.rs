@@ -44,7 +44,7 @@ impl Report {
             potential: writer.sum_of_terms("V", &model.potential),
             shared: writer.shared(),
             mass_matrix: writer.mass_matrix(),
-            pivots: writer.named_lines(&equations.accelerations.pivots),
+            pivots: writer.write_named_nodes(&equations.accelerations.pivots),
             velocity_terms: writer.lines(&outline.velocity_terms),
             forces: writer.lines(&outline.forces),
             state_rates: writer.lines(&outline.state_rates),

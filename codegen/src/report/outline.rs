@@ -11,23 +11,23 @@ use crate::mechanics::rows::RowNodes;
 use crate::symbolic::formula::{Formula, Index, Symbol};
 use crate::symbolic::graph::{Graph, NodeId, Space};
 
-pub(super) type Shown = (Formula, NodeId);
+pub(super) type NamedNode = (Formula, NodeId);
 
 pub(super) struct Outline<'a> {
     model: &'a Model,
     equations: &'a Equations,
     /// Definitions of the specification that are used.
-    pub definitions: Vec<Shown>,
+    pub definitions: Vec<NamedNode>,
     /// Named terms of the specification.
-    pub terms: Vec<Shown>,
+    pub terms: Vec<NamedNode>,
     /// Nonzero entries of the mass matrix: row, column, node.
     pub mass_matrix: Vec<(Formula, Formula, NodeId)>,
-    pub velocity_terms: Vec<Shown>,
-    pub forces: Vec<Shown>,
+    pub velocity_terms: Vec<NamedNode>,
+    pub forces: Vec<NamedNode>,
     /// Rates of first-order states.
-    pub state_rates: Vec<Shown>,
-    pub constraints: Vec<Shown>,
-    pub multipliers: Vec<Shown>,
+    pub state_rates: Vec<NamedNode>,
+    pub constraints: Vec<NamedNode>,
+    pub multipliers: Vec<NamedNode>,
     pub linearity: Linearity,
 }
 
@@ -52,8 +52,8 @@ impl<'a> Outline<'a> {
         outline.velocity_terms = outline.rows(&equations.velocity_terms);
         outline.forces = outline.rows(&equations.forces);
         outline.state_rates = outline.state_rates();
-        outline.constraints = outline.of_constraints("", &equations.residuals);
-        outline.multipliers = outline.of_constraints(MULTIPLIER, &equations.multipliers);
+        outline.constraints = outline.list_constraints("", &equations.residuals);
+        outline.multipliers = outline.list_constraints(MULTIPLIER, &equations.multipliers);
         outline
     }
 
@@ -103,7 +103,7 @@ impl<'a> Outline<'a> {
         &self.equations.graph
     }
 
-    fn definitions(&self) -> Vec<Shown> {
+    fn definitions(&self) -> Vec<NamedNode> {
         let definitions = self.model.definitions.iter();
         definitions
             .zip(&self.equations.definitions)
@@ -111,7 +111,7 @@ impl<'a> Outline<'a> {
             .collect()
     }
 
-    fn terms(&self) -> Vec<Shown> {
+    fn terms(&self) -> Vec<NamedNode> {
         let model = self.model;
         let named = |symbol: &'static str, terms: &'a [Term]| {
             terms.iter().map(move |term| term_symbol(symbol, term))
@@ -129,7 +129,7 @@ impl<'a> Outline<'a> {
             .collect()
     }
 
-    fn rows(&self, rows: &RowNodes) -> Vec<Shown> {
+    fn rows(&self, rows: &RowNodes) -> Vec<NamedNode> {
         let scalars = CoordinateId::first(rows.scalars.len()).zip(&rows.scalars);
         let modal = FieldId::first(rows.modal.len()).zip(&rows.modal);
         scalars
@@ -140,7 +140,7 @@ impl<'a> Outline<'a> {
             .collect()
     }
 
-    fn state_rates(&self) -> Vec<Shown> {
+    fn state_rates(&self) -> Vec<NamedNode> {
         let states = self.model.states.iter();
         states
             .map(|state| Formula::Symbol(Symbol::plain(&state.name).with_dots(1)))
@@ -148,7 +148,7 @@ impl<'a> Outline<'a> {
             .collect()
     }
 
-    fn of_constraints(&self, prefix: &str, nodes: &[NodeId]) -> Vec<Shown> {
+    fn list_constraints(&self, prefix: &str, nodes: &[NodeId]) -> Vec<NamedNode> {
         let constraints = self.model.constraints.iter();
         constraints
             .map(|constraint| Formula::from_name(&format!("{prefix}{}", constraint.name)))

@@ -57,7 +57,7 @@ impl Report {
                 if !line.values.is_empty() {
                     let unit = line.unit.as_deref().filter(|unit| *unit != "1");
                     let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
-                    writeln!(out, "      = {}{unit}", values_text(&line.values))?;
+                    writeln!(out, "      = {}{unit}", format_values(&line.values))?;
                 }
             }
         }
@@ -72,10 +72,10 @@ impl Report {
             }
         }
         writeln!(out, "\n{}", self.linearity)?;
-        writeln!(out, "{}", self.solution_sentence())
+        writeln!(out, "{}", self.describe_solution())
     }
 
-    pub(super) fn solution_sentence(&self) -> String {
+    pub(super) fn describe_solution(&self) -> String {
         let solution = &self.solution;
         let modes = match (self.orders.iter().sum::<usize>(), solution.dense_modes) {
             (0, _) => String::new(),
@@ -107,7 +107,7 @@ fn section(out: &mut String, title: &str, lines: &[Line]) -> std::fmt::Result {
     Ok(())
 }
 
-fn values_text(values: &[f64]) -> String {
+fn format_values(values: &[f64]) -> String {
     let shown: Vec<String> = values.iter().take(8).map(|v| format!("{v:.10e}")).collect();
     let rest = if values.len() > 8 {
         format!(", ... ({} values)", values.len())

@@ -2,7 +2,7 @@
 
 use eomgen_model_spec::model::Term;
 
-use super::outline::{Outline, Shown, term_symbol};
+use super::outline::{NamedNode, Outline, term_symbol};
 use super::types::{CoefficientLine, Line, MassMatrixEntry, Sentence};
 use crate::mechanics::coefficients::EquationRow;
 use crate::mechanics::equations::Equations;
@@ -19,7 +19,7 @@ pub(super) struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    pub fn lines(&self, shown: &[Shown]) -> Vec<Line> {
+    pub fn lines(&self, shown: &[NamedNode]) -> Vec<Line> {
         shown
             .iter()
             .map(|(name, node)| Line {
@@ -68,7 +68,7 @@ impl Writer<'_> {
     }
 
     /// Returns one line for each node that has a name.
-    pub fn named_lines(&self, nodes: &[NodeId]) -> Vec<Line> {
+    pub fn write_named_nodes(&self, nodes: &[NodeId]) -> Vec<Line> {
         let mut lines: Vec<Line> = Vec::new();
         for &node in nodes {
             let Some(name) = self.equations.graph.name(node) else {
@@ -143,7 +143,7 @@ impl Writer<'_> {
             if !self.outline.is_present(factor.row) {
                 continue;
             }
-            let term = self.named_term(&coefficient.name, coefficient.value, factor.by);
+            let term = self.write_named_term(&coefficient.name, coefficient.value, factor.by);
             match rows.iter_mut().find(|(row, ..)| *row == factor.row) {
                 Some((_, _, terms)) => terms.push(term),
                 None => {
@@ -165,7 +165,7 @@ impl Writer<'_> {
     }
 
     /// Returns the formula of a named coefficient times its operand.
-    fn named_term(&self, name: &str, value: NodeId, by: NodeId) -> Formula {
+    fn write_named_term(&self, name: &str, value: NodeId, by: NodeId) -> Formula {
         let graph = &self.equations.graph;
         let multiplied = self.reader.expression(by);
         let indexed =

@@ -10,8 +10,8 @@ use super::format::above;
 use super::obstacle::{Cause, Obstacle};
 use super::scalars::{ScalarOp, Scalars};
 use super::slopes::{
-    POWER_LAST_PLACES, find_obstacle, find_power_obstacle, last_places, number, power_slopes,
-    raise, slopes,
+    POWER_LAST_PLACES, bound_power_slopes, error_in_last_places, find_obstacle,
+    find_power_obstacle, number, raise, slopes,
 };
 
 /// Bounds of a number and of its rounding error.
@@ -38,7 +38,7 @@ impl Bounded {
     }
 
     /// Returns an interval that contains the exact and the computed value.
-    fn wide(&self) -> Interval {
+    fn hull_of_values(&self) -> Interval {
         widen(self.value, self.error)
     }
 
@@ -99,10 +99,12 @@ fn bound_number(
         let rounding = match rounding {
             Rounding::Exact => 0.0,
             Rounding::Nearest => format.rounding(exact),
-            Rounding::Scaling if smallest(exact) >= format.smallest_normal() => 0.0,
+            Rounding::Scaling if smallest_magnitude(exact) >= format.smallest_normal() => 0.0,
             Rounding::Scaling => format.smallest_half(),
             Rounding::LastPlaces(0.0) => 0.0,
-            Rounding::LastPlaces(count) => 2.0 * count * format.half_last_place(magnitude(exact)),
+            Rounding::LastPlaces(count) => {
+                2.0 * count * format.half_unit_in_last_place(magnitude(exact))
+            }
         };
         let error = above(propagated + rounding);
         match magnitude(value) + error <= format.largest() {
@@ -175,9 +177,9 @@ fn bound_number(
         }
         ScalarOp::Divide(a, b) => {
             let (a, b) = (&known[a], &known[b]);
-            let least = smallest(b.value) * (1.0 - 1e-15) - b.error;
+            let least = smallest_magnitude(b.value) * (1.0 - 1e-15) - b.error;
             if least <= 0.0 {
-                return blocked(Cause::Divisor, b.wide());
+                return blocked(Cause::Divisor, b.hull_of_values());
             }
             let value = a.value.multiply(b.value.reciprocal());
             let propagated = (a.error + magnitude(value) * b.error) / least;
@@ -189,27 +191,27 @@ fn bound_number(
         }
         ScalarOp::Power(a, b) => {
             let (a, b) = (&known[a], &known[b]);
-            let (x, y) = (a.wide(), b.wide());
+            let (x, y) = (a.hull_of_values(), b.hull_of_values());
             if let Some(cause) = find_power_obstacle(x, y) {
                 return blocked(cause, x);
             }
-            let [by_base, by_exponent] = power_slopes(x, y);
-            let propagated = scaled(by_base, a.error) + scaled(by_exponent, b.error);
+            let [by_base, by_exponent] = bound_power_slopes(x, y);
+            let propagated = scale_error(by_base, a.error) + scale_error(by_exponent, b.error);
             let rounding = Rounding::LastPlaces(POWER_LAST_PLACES);
             result(raise(a.value, b.value), propagated, rounding)
         }
         ScalarOp::Call(function, a, b) => {
             let (a, b) = (&known[a], &known[b]);
-            let (x, y) = (a.wide(), b.wide());
+            let (x, y) = (a.hull_of_values(), b.hull_of_values());
             if let Some(cause) = find_obstacle(function, format, x, y) {
                 return blocked(cause, x);
             }
             let [by_first, by_second] = slopes(function, x, y);
-            let mut propagated = scaled(by_first, a.error) + scaled(by_second, b.error);
+            let mut propagated = scale_error(by_first, a.error) + scale_error(by_second, b.error);
             if function == Function::Sqrt {
                 propagated = propagated.min(above(a.error.sqrt()));
             }
-            let rounding = match last_places(function, format) {
+            let rounding = match error_in_last_places(function, format) {
                 None => Rounding::Nearest,
                 Some(count) => Rounding::LastPlaces(count),
             };
@@ -221,8 +223,8 @@ fn bound_number(
         }
         ScalarOp::Select([a, b, then, otherwise]) => match chosen(known, a, b) {
             Side::Unknown(obstacle) => Bounded::without(obstacle),
-            Side::Then => passed(&known[then]),
-            Side::Otherwise => passed(&known[otherwise]),
+            Side::Then => select_branch(&known[then]),
+            Side::Otherwise => select_branch(&known[otherwise]),
             Side::Both => {
                 let (then, otherwise) = (&known[then], &known[otherwise]);
                 Bounded {
@@ -235,9 +237,9 @@ fn bound_number(
         },
         ScalarOp::Positive(a) => {
             let a = &known[a];
-            match a.wide().low > 0.0 {
-                true => passed(a),
-                false => blocked(Cause::Pivot, a.wide()),
+            match a.hull_of_values().low > 0.0 {
+                true => select_branch(a),
+                false => blocked(Cause::Pivot, a.hull_of_values()),
             }
         }
     }
@@ -254,7 +256,7 @@ enum Side {
 
 fn chosen(known: &[Bounded], a: usize, b: usize) -> Side {
     let (a, b) = (&known[a], &known[b]);
-    let (x, y) = (a.wide(), b.wide());
+    let (x, y) = (a.hull_of_values(), b.hull_of_values());
     match a.obstacle.or(b.obstacle) {
         Some(obstacle) => Side::Unknown(obstacle),
         None if x.low > y.high => Side::Then,
@@ -263,7 +265,7 @@ fn chosen(known: &[Bounded], a: usize, b: usize) -> Side {
     }
 }
 
-fn passed(operand: &Bounded) -> Bounded {
+fn select_branch(operand: &Bounded) -> Bounded {
     Bounded {
         rounding: 0.0,
         ..*operand
@@ -291,7 +293,7 @@ pub fn bound_by_sensitivities(scalars: &Scalars, needed: &[usize], known: &[Boun
             has_rounding = true;
             sum += magnitude(own) * known[*index].rounding;
         }
-        for (operand, slope) in partials(&scalars.list[*index].op, *index, known) {
+        for (operand, slope) in bound_partials(&scalars.list[*index].op, *index, known) {
             let part = own.multiply(slope);
             sensitivities[operand] = sensitivities[operand].add_interval(part);
         }
@@ -308,12 +310,12 @@ pub fn bound_by_sensitivities(scalars: &Scalars, needed: &[usize], known: &[Boun
 }
 
 /// Returns the derivatives of an operation by its operands.
-fn partials(
+fn bound_partials(
     op: &ScalarOp,
     index: usize,
     known: &[Bounded],
 ) -> impl Iterator<Item = (usize, Interval)> + use<> {
-    let wide = |operand: usize| known[operand].wide();
+    let wide = |operand: usize| known[operand].hull_of_values();
     let one = number(1.0);
     let parts = match *op {
         ScalarOp::Constant(_) | ScalarOp::Variable(_) => [None; 2],
@@ -328,7 +330,7 @@ fn partials(
             [Some((a, reciprocal)), Some((b, by_divisor))]
         }
         ScalarOp::Power(a, b) => {
-            let [by_base, by_exponent] = power_slopes(wide(a), wide(b));
+            let [by_base, by_exponent] = bound_power_slopes(wide(a), wide(b));
             [Some((a, by_base)), Some((b, by_exponent))]
         }
         ScalarOp::Call(function, a, b) => {
@@ -361,7 +363,7 @@ fn magnitude(interval: Interval) -> f64 {
 }
 
 /// Returns the smallest magnitude in an interval.
-fn smallest(interval: Interval) -> f64 {
+fn smallest_magnitude(interval: Interval) -> f64 {
     match interval.contains(0.0) {
         true => 0.0,
         false => interval.low.abs().min(interval.high.abs()),
@@ -369,7 +371,7 @@ fn smallest(interval: Interval) -> f64 {
 }
 
 /// Returns the largest magnitude of an error after multiplication by a slope.
-fn scaled(slope: Interval, error: f64) -> f64 {
+fn scale_error(slope: Interval, error: f64) -> f64 {
     match error == 0.0 {
         true => 0.0,
         false => magnitude(slope) * error,

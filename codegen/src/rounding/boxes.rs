@@ -46,10 +46,10 @@ impl Ord for Part {
 }
 
 /// Largest number of divisions of a box.
-const DIVISIONS: usize = 64;
+const MAX_DIVISIONS: usize = 64;
 
 /// Largest number of operations that the search evaluates, not counting those of the whole box.
-const WORK: usize = 4_000_000;
+const MAX_OPERATIONS: usize = 4_000_000;
 
 /// Returns a bound of the rounding error of the number `root` at all points in `ranges`. The bound is the largest
 /// bound of all boxes; the box with the largest bound is divided repeatedly.
@@ -69,14 +69,14 @@ pub fn bound_root(scalars: &Scalars, root: usize, ranges: &Ranges) -> Result<f64
     if variables.iter().any(|place| ranges[*place].is_none()) {
         return whole.bound;
     }
-    let divisions = WORK / (2 * needed.len() * variables.len()).max(1);
+    let divisions = MAX_OPERATIONS / (2 * needed.len() * variables.len()).max(1);
     let mut parts = BinaryHeap::from([whole]);
-    for _ in 0..divisions.min(DIVISIONS) {
+    for _ in 0..divisions.min(MAX_DIVISIONS) {
         let Some(worst) = parts.pop() else { break };
         let halves = variables.iter().filter_map(|place| {
             let halves = divide(&worst.ranges, *place)?;
             let halves = halves.map(|ranges| evaluate(scalars, &needed, ranges));
-            Some((halves, share(&worst.ranges, ranges, *place)))
+            Some((halves, relative_width(&worst.ranges, ranges, *place)))
         });
         let best = halves.min_by(compare_halves);
         match best {
@@ -101,7 +101,7 @@ fn compare_halves((a, a_share): &([Part; 2], f64), (b, b_share): &([Part; 2], f6
 }
 
 /// Returns the width of a box relative to the whole range of a variable.
-fn share(part: &Ranges, whole: &Ranges, place: usize) -> f64 {
+fn relative_width(part: &Ranges, whole: &Ranges, place: usize) -> f64 {
     let width = |ranges: &Ranges| ranges[place].map_or(0.0, |range| range.high - range.low);
     width(part) / width(whole)
 }

@@ -65,7 +65,7 @@ impl Format {
     }
 
     /// Returns half a unit in the last place of numbers up to `magnitude`.
-    pub(super) fn half_last_place(self, magnitude: f64) -> f64 {
+    pub(super) fn half_unit_in_last_place(self, magnitude: f64) -> f64 {
         match magnitude < self.smallest_normal() {
             true => self.smallest_half(),
             // The largest power of two that is at most the magnitude.
@@ -79,7 +79,7 @@ impl Format {
         let magnitude = exact.low.abs().max(exact.high.abs());
         let general = match magnitude == 0.0 {
             true => 0.0,
-            false => self.half_last_place(magnitude),
+            false => self.half_unit_in_last_place(magnitude),
         };
         // All numbers of the interval have the same rounded value.
         let common = (low - exact.low).abs().max((high - exact.high).abs());

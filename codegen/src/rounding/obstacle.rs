@@ -45,8 +45,8 @@ impl Obstacle {
         let origin = program.trace.note(scalars.list[self.scalar].value);
         let origin = origin.map_or(String::new(), |note| format!(" of {note}"));
         match self.cause {
-            Cause::NoRange(place) => {
-                let name = &point_names(program)[place];
+            Cause::NoRange(index) => {
+                let name = &point_names(program)[index];
                 format!("`{name}` has no range; declare it with `--range {name}=LOW:HIGH`")
             }
             Cause::Divisor => {

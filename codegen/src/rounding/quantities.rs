@@ -116,7 +116,7 @@ impl Rows {
         let mut all = Vec::new();
         for row in 0..self.names.len() {
             for column in row..self.names.len() {
-                let Some((value, index)) = self.mass_entry(program, row, column) else {
+                let Some((value, index)) = self.find_mass_entry(program, row, column) else {
                     continue;
                 };
                 let unit = || {
@@ -136,7 +136,12 @@ impl Rows {
     }
 
     /// Returns value and index of an entry of the mass matrix; `None` if it is always 0.
-    fn mass_entry(&self, program: &Program, row: usize, column: usize) -> Option<(ValueId, usize)> {
+    fn find_mass_entry(
+        &self,
+        program: &Program,
+        row: usize,
+        column: usize,
+    ) -> Option<(ValueId, usize)> {
         let mass = &program.mass;
         let mode = |place: usize| Some(self.modes[place.checked_sub(self.scalars)?]);
         match (mode(row), mode(column)) {

@@ -24,7 +24,7 @@ const ACCURATE_SINGLE_ANGLE: f64 = 1e5;
 
 /// Returns the error of a function for exact arguments, in units in the last place, as asserted by the tests of the
 /// elementary functions; `None` if only its last operation rounds.
-pub(super) fn last_places(function: Function, format: Format) -> Option<f64> {
+pub(super) fn error_in_last_places(function: Function, format: Format) -> Option<f64> {
     let (double, single) = match function {
         Function::Sin => (0.76, 1.72),
         Function::Cos => (0.77, 1.77),
@@ -93,14 +93,14 @@ pub(super) fn slopes(function: Function, x: Interval, y: Interval) -> [Interval;
         Function::Abs if x.high <= 0.0 => [ONE.negate(), ZERO],
         Function::Abs => [ONE.negate().hull(ONE), ZERO],
         Function::Atan2 | Function::Min | Function::Max | Function::Deadzone => {
-            slopes_of_two(function, x, y)
+            bound_slopes_of_two(function, x, y)
         }
         // Functions that jump have slope 0 on each side.
         _ => [ZERO, ZERO],
     }
 }
 
-fn slopes_of_two(function: Function, x: Interval, y: Interval) -> [Interval; 2] {
+fn bound_slopes_of_two(function: Function, x: Interval, y: Interval) -> [Interval; 2] {
     let part = ZERO.hull(ONE);
     match function {
         Function::Atan2 => {
@@ -157,7 +157,7 @@ pub(super) fn find_power_obstacle(a: Interval, b: Interval) -> Option<Cause> {
 }
 
 /// Returns the derivatives of a^b by a and b.
-pub(super) fn power_slopes(a: Interval, b: Interval) -> [Interval; 2] {
+pub(super) fn bound_power_slopes(a: Interval, b: Interval) -> [Interval; 2] {
     let is_constant = b.low == b.high;
     let by_base = match is_constant {
         true if b.low == 0.0 => ZERO,

@@ -2,7 +2,7 @@
 
 use super::expression::array;
 use super::literals::number;
-use crate::identity::unsealed;
+use crate::identity::write_unsealed_identity;
 use crate::statements::layout::block;
 use crate::statements::{
     DataElements, File, Indices, list_data_arrays, list_indices, reaction_constants,
@@ -64,7 +64,7 @@ fn write_index_modules(file: &File<'_>) -> String {
 }
 
 fn write_identity(file: &File<'_>) -> String {
-    let text = unsealed(file.program);
+    let text = write_unsealed_identity(file.program);
     format!(
         "/// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.\n\
          pub static IDENTITY: [u8; {}] = *b\"{text}\";\n",

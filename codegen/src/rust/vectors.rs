@@ -7,7 +7,7 @@ use super::words::WORDS;
 use crate::program::Program;
 use crate::statements::layout;
 use crate::statements::{EmitError, File};
-use crate::vectors::{TestVector, TestVectors, default_coefficients};
+use crate::vectors::{TestVector, TestVectors, compute_default_coefficients};
 
 /// Writes `baked.rs`: the coefficients of the default parameters, prepared in double precision, as constants for
 /// read-only memory. The file refers to the emitted module as `model`.
@@ -17,7 +17,7 @@ use crate::vectors::{TestVector, TestVectors, default_coefficients};
 pub fn baked(program: &Program) -> Result<String, EmitError> {
     let file = File::new(program, &WORDS)?;
     let constant = |name: &str, argument: &str, convert: fn(f64) -> f64| {
-        let found = default_coefficients(&file, |value| number(convert(value)), array)?;
+        let found = compute_default_coefficients(&file, |value| number(convert(value)), array)?;
         let fields = found.fields.iter();
         let fields: String = fields
             .map(|(field, text)| format!("    {field}: {text},\n"))

@@ -40,7 +40,7 @@ type ProductPowers = (u64, Vec<(NodeId, i32)>);
 pub(crate) const MAX_FACTORS: usize = 12;
 
 /// Largest exponent of a reordered factor; higher powers are computed by repeated squaring.
-const LARGEST_EXPONENT: i32 = 3;
+const MAX_EXPONENT: i32 = 3;
 
 impl Association {
     /// Returns the factors of a product if it shares a pair with another product.
@@ -58,7 +58,7 @@ impl Association {
     }
 
     /// Counts the multiplications per call in all products, with each shared pair counted once.
-    fn multiplications(&self, graph: &Graph) -> usize {
+    fn count_multiplications(&self, graph: &Graph) -> usize {
         let own = self.seen.iter().map(|&(bits, product)| {
             if let Some(factors) = self.products.get(&(bits, product)) {
                 return factors.len() - 1;
@@ -82,7 +82,7 @@ impl Association {
 
     /// Determines the multiplication orders of all new products that `roots` depend on.
     pub(crate) fn extend(&mut self, graph: &Graph, roots: &[NodeId]) {
-        let keys = product_keys(graph, roots);
+        let keys = collect_product_keys(graph, roots);
         let mut found: Vec<(ProductKey, Vec<Factor>)> = Vec::new();
         for key in keys {
             if self.seen.insert(key)
@@ -135,9 +135,7 @@ impl Association {
                 graph.operation(id),
                 Operation::Total(_) | Operation::Call(Function::Contact, _)
             );
-            if stays
-                || graph.shape(id) != Shape::Scalar
-                || !(1..=LARGEST_EXPONENT).contains(&exponent)
+            if stays || graph.shape(id) != Shape::Scalar || !(1..=MAX_EXPONENT).contains(&exponent)
             {
                 return None;
             }
@@ -154,7 +152,7 @@ impl Association {
 const TRIG_COST: usize = 20;
 
 /// Counts the operations of scalar nodes per call with shared products, for the selection between two forms.
-pub(crate) fn shared_operations(graph: &Graph, roots: &[NodeId]) -> usize {
+pub(crate) fn count_shared_operations(graph: &Graph, roots: &[NodeId]) -> usize {
     let mut association = Association::default();
     association.extend(graph, roots);
     let others = graph.reachable(roots).into_iter().map(|id| {
@@ -173,11 +171,11 @@ pub(crate) fn shared_operations(graph: &Graph, roots: &[NodeId]) -> usize {
             _ => 0,
         }
     });
-    others.sum::<usize>() + association.multiplications(graph)
+    others.sum::<usize>() + association.count_multiplications(graph)
 }
 
 /// Returns the products that are terms of sums, with their numeric factors, and all other products.
-fn product_keys(graph: &Graph, roots: &[NodeId]) -> Vec<ProductKey> {
+fn collect_product_keys(graph: &Graph, roots: &[NodeId]) -> Vec<ProductKey> {
     let one = 1.0_f64.to_bits();
     let mut keys = BTreeSet::new();
     let is_product = |id: NodeId| matches!(graph.operation(id), Operation::Product(_));
@@ -224,7 +222,7 @@ impl Sharing {
             holders: HashMap::new(),
         };
         for place in 0..sharing.products.len() {
-            for pair in product_pairs(&sharing.products[place]) {
+            for pair in collect_product_pairs(&sharing.products[place]) {
                 sharing.holders.entry(pair).or_default().insert(place);
             }
         }
@@ -265,7 +263,7 @@ impl Sharing {
 
     /// Replaces two factors of a product by their pair; returns the pairs that the product now contains.
     fn replace(&mut self, place: usize, pair: Pair, made: Factor) -> BTreeSet<Pair> {
-        for held in product_pairs(&self.products[place]) {
+        for held in collect_product_pairs(&self.products[place]) {
             if let Some(holders) = self.holders.get_mut(&held) {
                 holders.remove(&place);
             }
@@ -277,7 +275,7 @@ impl Sharing {
             }
         }
         product.push(made);
-        let now = product_pairs(product);
+        let now = collect_product_pairs(product);
         for held in &now {
             self.holders.entry(*held).or_default().insert(place);
         }
@@ -286,7 +284,7 @@ impl Sharing {
 }
 
 /// Returns every pair of factors in a product.
-fn product_pairs(product: &[Factor]) -> BTreeSet<Pair> {
+fn collect_product_pairs(product: &[Factor]) -> BTreeSet<Pair> {
     let mut pairs = BTreeSet::new();
     for (place, &a) in product.iter().enumerate() {
         for &b in &product[..place] {

@@ -12,7 +12,7 @@ use eomgen_model_spec::model::Function;
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 use crate::symbolic::limits::{
-    EXPONENT_ROUNDING, held_times, sorted, take, vanishes_with_argument,
+    EXPONENT_ROUNDING, count_divisions, sorted, take, vanishes_with_argument,
 };
 
 impl Graph {
@@ -36,13 +36,13 @@ impl Graph {
             return self.cofactor(arguments, guard.inner);
         }
         match self.operation(id).clone() {
-            Operation::Product(factors) => self.cofactor_of_product(arguments, &factors),
+            Operation::Product(factors) => self.find_product_cofactor(arguments, &factors),
             Operation::Sum(terms) => {
                 let terms: Vec<NodeId> = terms.iter().map(|(_, term)| *term).collect();
-                self.cofactor_of_sum(arguments, &terms)
+                self.find_sum_cofactor(arguments, &terms)
             }
             Operation::Call(Function::Max | Function::Min, operands) => {
-                self.cofactor_of_sum(arguments, &operands)
+                self.find_sum_cofactor(arguments, &operands)
             }
             Operation::Call(function, operands)
                 if function == Function::Sqrt || vanishes_with_argument(function) =>
@@ -58,7 +58,7 @@ impl Graph {
     }
 
     /// Returns the cofactor of a sum: the sum of the squares of the cofactors of its terms.
-    fn cofactor_of_sum(
+    fn find_sum_cofactor(
         &mut self,
         arguments: &Arc<Vec<NodeId>>,
         terms: &[NodeId],
@@ -77,7 +77,7 @@ impl Graph {
         Some(self.combine(&squares))
     }
 
-    fn cofactor_of_product(
+    fn find_product_cofactor(
         &mut self,
         arguments: &Arc<Vec<NodeId>>,
         factors: &[(NodeId, i32)],
@@ -141,7 +141,7 @@ impl Graph {
     ) -> Option<()> {
         let bounds = self.bounds(argument)?;
         for (monomial, order) in bounds.iter() {
-            let times = held_times(monomial, left).min(power / order);
+            let times = count_divisions(monomial, left).min(power / order);
             take(monomial, times, left);
             power -= times * order;
         }

@@ -149,7 +149,7 @@ impl<'a> Direction<'a> {
             Operation::Total(a) => {
                 let inner = self.derivative(graph, a);
                 match graph.shape(a) {
-                    Shape::Vector(space) => graph.total_over(space, inner),
+                    Shape::Vector(space) => graph.sum_over_space(space, inner),
                     _ => inner,
                 }
             }
@@ -165,18 +165,18 @@ impl<'a> Direction<'a> {
                 left,
                 weight,
                 right,
-            } => self.gram_diagonal(graph, left, weight, right),
+            } => self.differentiate_gram_diagonal(graph, left, weight, right),
             _ if choice(graph, id).is_some() => {
                 choose(graph, id, |graph, branch| self.derivative(graph, branch))
             }
             _ => {
                 let partials =
-                    partial_derivatives(graph, id, |graph, operand| self.is_moving(graph, operand));
+                    derive_partials(graph, id, |graph, operand| self.is_moving(graph, operand));
                 let mut terms = Vec::with_capacity(partials.len());
                 for (operand, partial) in partials {
                     let inner = self.derivative(graph, operand);
                     if !graph.is_zero(inner) {
-                        terms.push((1.0, graph.chain_rule_term(operand, partial, inner)));
+                        terms.push((1.0, graph.build_chain_rule_term(operand, partial, inner)));
                     }
                 }
                 graph.combine(&terms)
@@ -214,13 +214,13 @@ pub(super) fn choose(
 /// Returns the varying operands of an elementwise operation with their partial derivatives (for functions, all
 /// operands). Matrix operations have no partial derivatives; `matrix_derivatives` differentiates them along a
 /// direction.
-pub(crate) fn partial_derivatives(
+pub(crate) fn derive_partials(
     graph: &mut Graph,
     id: NodeId,
     mut moves: impl FnMut(&Graph, NodeId) -> bool,
 ) -> Vec<(NodeId, NodeId)> {
     if let Some(guard) = graph.flat_guard(id) {
-        let mut partials = partial_derivatives(
+        let mut partials = derive_partials(
             graph,
             guard.inner,
             &mut moves as &mut dyn FnMut(&Graph, NodeId) -> bool,
@@ -239,7 +239,7 @@ pub(crate) fn partial_derivatives(
     }
     if let Some((base, exponent)) = graph.guarded_power(id) {
         let plain = graph.integer_power(base, exponent);
-        return partial_derivatives(graph, plain, moves);
+        return derive_partials(graph, plain, moves);
     }
     match graph.operation(id).clone() {
         Operation::Sum(terms) => terms
@@ -266,7 +266,7 @@ pub(crate) fn partial_derivatives(
             })
             .collect(),
         Operation::Power(base, exponent) => {
-            let mut partials = power_derivatives(graph, id, base, exponent);
+            let mut partials = differentiate_power(graph, id, base, exponent);
             if graph
                 .as_constant(exponent)
                 .is_none_or(|number| number < 1.0)
@@ -276,7 +276,7 @@ pub(crate) fn partial_derivatives(
             partials.into()
         }
         Operation::Call(function, arguments) => {
-            let mut partials = function_derivatives(graph, id, function, arguments);
+            let mut partials = differentiate_function_call(graph, id, function, arguments);
             if let ([(argument, partial)], true) = (&mut partials[..], has_singular_slope(function))
             {
                 *partial = guard_partial(graph, *partial, *argument, &mut moves);
@@ -302,7 +302,7 @@ fn remove_guards(graph: &Graph, factors: &[(NodeId, i32)]) -> Vec<(NodeId, i32)>
     collected.into_iter().collect()
 }
 
-fn power_derivatives(
+fn differentiate_power(
     graph: &mut Graph,
     id: NodeId,
     base: NodeId,
@@ -328,7 +328,7 @@ fn derive_by_exponent(graph: &mut Graph, power: NodeId, base: NodeId, exponent: 
     graph.select(base, zero, then, otherwise)
 }
 
-fn function_derivatives(
+fn differentiate_function_call(
     graph: &mut Graph,
     id: NodeId,
     function: Function,
@@ -348,7 +348,7 @@ fn function_derivatives(
             let by_b = graph.multiply(contact, side);
             vec![(p, contact), (b, graph.negate(by_b))]
         }
-        (_, &[a]) => match derivative_of_function(graph, id, function, a) {
+        (_, &[a]) => match differentiate_function(graph, id, function, a) {
             Some(derivative) => vec![(a, derivative)],
             None => Vec::new(),
         },
@@ -366,7 +366,7 @@ fn has_singular_slope(function: Function) -> bool {
 }
 
 /// Returns the derivative of a function of one argument; `None` if the derivative is 0 almost everywhere.
-fn derivative_of_function(
+fn differentiate_function(
     graph: &mut Graph,
     id: NodeId,
     function: Function,

@@ -20,7 +20,7 @@ pub fn expand_once(graph: &mut Graph, id: NodeId) -> Option<NodeId> {
     let mut result = Vec::new();
     let mut changed = false;
     for (factor, term) in terms {
-        match expanded_product(graph, term) {
+        match expand_product(graph, term) {
             Some(parts) => {
                 changed = true;
                 result.extend(parts.into_iter().map(|(c, part)| (factor * c, part)));
@@ -39,14 +39,14 @@ pub fn is_expanded(graph: &Graph, id: NodeId) -> bool {
     match graph.operation(id) {
         Operation::Sum(terms) => {
             let mut terms = terms.iter();
-            terms.all(|(_, term)| expandable_factor(graph, *term).is_none())
+            terms.all(|(_, term)| find_expandable_factor(graph, *term).is_none())
         }
-        _ => expandable_factor(graph, id).is_none(),
+        _ => find_expandable_factor(graph, id).is_none(),
     }
 }
 
 /// Returns the index of the first sum among the factors of a product; its exponent must be 1 or 2.
-fn expandable_factor(graph: &Graph, id: NodeId) -> Option<usize> {
+fn find_expandable_factor(graph: &Graph, id: NodeId) -> Option<usize> {
     let Operation::Product(factors) = graph.operation(id) else {
         return None;
     };
@@ -56,13 +56,13 @@ fn expandable_factor(graph: &Graph, id: NodeId) -> Option<usize> {
 }
 
 /// Expands one sum in a product and returns the terms.
-fn expanded_product(graph: &mut Graph, id: NodeId) -> Option<Vec<(f64, NodeId)>> {
-    let place = expandable_factor(graph, id)?;
+fn expand_product(graph: &mut Graph, id: NodeId) -> Option<Vec<(f64, NodeId)>> {
+    let index = find_expandable_factor(graph, id)?;
     let Operation::Product(factors) = graph.operation(id) else {
         return None;
     };
     let mut rest = factors.to_vec();
-    let (sum, exponent) = rest.remove(place);
+    let (sum, exponent) = rest.remove(index);
     if exponent == 2 {
         rest.push((sum, 1));
     }

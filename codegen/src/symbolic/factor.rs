@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use eomgen_model_spec::model::Function;
 
-use crate::symbolic::association::{MAX_FACTORS, shared_operations};
+use crate::symbolic::association::{MAX_FACTORS, count_shared_operations};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 use crate::symbolic::substitute::substitute;
 
@@ -14,7 +14,7 @@ type Terms = Vec<(f64, NodeId)>;
 /// Extracts common factors of sums if this saves operations.
 pub(crate) fn factor_if_cheaper(graph: &mut Graph, roots: Vec<NodeId>) -> Vec<NodeId> {
     let other = factor_common(graph, &roots);
-    if shared_operations(graph, &other) < shared_operations(graph, &roots) {
+    if count_shared_operations(graph, &other) < count_shared_operations(graph, &roots) {
         other
     } else {
         roots
@@ -98,11 +98,11 @@ fn sum(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
         Operation::Sum(terms) => terms.iter().map(|(c, term)| (c.value(), *term)).collect(),
         _ => return combined,
     };
-    while let Some(factor) = most_common_factor(graph, &terms) {
+    while let Some(factor) = find_most_common_factor(graph, &terms) {
         let mut rests = Terms::new();
         let mut others = Terms::new();
         for (c, term) in terms {
-            if live_factors(graph, term).contains(&factor) {
+            if find_live_factors(graph, term).contains(&factor) {
                 rests.push((c, graph.divide(term, factor)));
             } else {
                 others.push((c, term));
@@ -118,10 +118,10 @@ fn sum(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
 
 /// Returns the most frequent factor of at least two terms. Among equally frequent factors, sines and cosines are
 /// preferred, because then both rows of a rotation contain the same sums.
-fn most_common_factor(graph: &Graph, terms: &[(f64, NodeId)]) -> Option<NodeId> {
+fn find_most_common_factor(graph: &Graph, terms: &[(f64, NodeId)]) -> Option<NodeId> {
     let mut counts: BTreeMap<NodeId, usize> = BTreeMap::new();
     for (_, term) in terms {
-        for factor in live_factors(graph, *term) {
+        for factor in find_live_factors(graph, *term) {
             *counts.entry(factor).or_insert(0) += 1;
         }
     }
@@ -140,7 +140,7 @@ fn most_common_factor(graph: &Graph, terms: &[(f64, NodeId)]) -> Option<NodeId> 
 
 /// Returns the scalar, state-dependent factors of a term with positive exponents; empty for a product with too many
 /// factors.
-fn live_factors(graph: &Graph, term: NodeId) -> Vec<NodeId> {
+fn find_live_factors(graph: &Graph, term: NodeId) -> Vec<NodeId> {
     let live =
         |id: NodeId| graph.shape(id) == Shape::Scalar && !graph.dependence(id).is_parameter_only();
     match graph.operation(term) {

@@ -44,7 +44,7 @@ impl Graph {
     }
 
     /// Returns a factor without its guards, and adds these to `guards`, outermost first.
-    pub(super) fn without_flat_guards(
+    pub(super) fn remove_flat_guards(
         &mut self,
         mut id: NodeId,
         guards: &mut Vec<FlatGuard>,
@@ -60,7 +60,7 @@ impl Graph {
                 && let &[(factor, term)] = &**terms
                 && self.flat_guard(term).is_some()
             {
-                let inner = self.without_flat_guards(term, guards);
+                let inner = self.remove_flat_guards(term, guards);
                 return self.scale(factor.value(), inner);
             } else {
                 return id;
@@ -130,12 +130,12 @@ impl<'m> Activities<'m> {
         }
         if let Some([a, b, then, otherwise]) = choice(graph, id) {
             let branches = [then, otherwise].map(|branch| self.activity(graph, branch));
-            return strict_select(graph, a, b, branches);
+            return build_strict_selection(graph, a, b, branches);
         }
         match operation {
-            Operation::Sum(_) | Operation::Power(..) => self.any_activity(graph, &operands),
+            Operation::Sum(_) | Operation::Power(..) => self.derive_any_activity(graph, &operands),
             Operation::Product(_) => {
-                let activity = self.any_activity(graph, &operands);
+                let activity = self.derive_any_activity(graph, &operands);
                 match self.support(graph, id) {
                     support if support == activity => activity,
                     support => graph.multiply(activity, support),
@@ -143,9 +143,9 @@ impl<'m> Activities<'m> {
             }
             Operation::Call(Function::Contact | Function::Above, _) => graph.zero(),
             Operation::Call(Function::Deadzone, arguments) => {
-                outside_play(graph, arguments[0], arguments[1])
+                build_outside_play(graph, arguments[0], arguments[1])
             }
-            Operation::Call(..) => self.any_activity(graph, &operands),
+            Operation::Call(..) => self.derive_any_activity(graph, &operands),
             Operation::Total(vector) => {
                 let activity = self.activity(graph, vector);
                 total(graph, vector, activity)
@@ -155,12 +155,12 @@ impl<'m> Activities<'m> {
     }
 
     /// Returns a node that is positive if any of the operands is active.
-    fn any_activity(&mut self, graph: &mut Graph, operands: &[NodeId]) -> NodeId {
+    fn derive_any_activity(&mut self, graph: &mut Graph, operands: &[NodeId]) -> NodeId {
         let found = operands
             .iter()
             .map(|operand| self.activity(graph, *operand));
         let found: Vec<NodeId> = found.collect();
-        any_positive(graph, &found)
+        build_any_positive(graph, &found)
     }
 
     fn support(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
@@ -181,13 +181,13 @@ impl<'m> Activities<'m> {
         }
         if let Some([a, b, then, otherwise]) = choice(graph, id) {
             let branches = [then, otherwise].map(|branch| self.support(graph, branch));
-            return strict_select(graph, a, b, branches);
+            return build_strict_selection(graph, a, b, branches);
         }
         match graph.operation(id).clone() {
             Operation::Sum(terms) => {
                 let found = terms.iter().map(|(_, term)| self.support(graph, *term));
                 let found: Vec<NodeId> = found.collect();
-                any_positive(graph, &found)
+                build_any_positive(graph, &found)
             }
             Operation::Product(factors) => {
                 let mut product = graph.one();
@@ -200,7 +200,7 @@ impl<'m> Activities<'m> {
                 product
             }
             Operation::Call(Function::Deadzone | Function::Contact, arguments) => {
-                outside_play(graph, arguments[0], arguments[1])
+                build_outside_play(graph, arguments[0], arguments[1])
             }
             Operation::Call(Function::Above, arguments) => {
                 let (zero, one) = (graph.zero(), graph.one());
@@ -219,7 +219,12 @@ impl<'m> Activities<'m> {
 }
 
 /// Selects the first branch if a > b and the second if b > a; if a = b, a branch that is not 0.
-fn strict_select(graph: &mut Graph, a: NodeId, b: NodeId, branches: [NodeId; 2]) -> NodeId {
+fn build_strict_selection(
+    graph: &mut Graph,
+    a: NodeId,
+    b: NodeId,
+    branches: [NodeId; 2],
+) -> NodeId {
     let [then, otherwise] = branches;
     if graph.is_zero(otherwise) {
         return graph.select(b, a, otherwise, then);
@@ -228,14 +233,14 @@ fn strict_select(graph: &mut Graph, a: NodeId, b: NodeId, branches: [NodeId; 2])
 }
 
 /// Returns a node that is 0 if |p| < b, else 1.
-fn outside_play(graph: &mut Graph, p: NodeId, b: NodeId) -> NodeId {
+fn build_outside_play(graph: &mut Graph, p: NodeId, b: NodeId) -> NodeId {
     let magnitude = graph.call(Function::Abs, &[p]);
     let (zero, one) = (graph.zero(), graph.one());
     graph.select(b, magnitude, zero, one)
 }
 
 /// Returns a node that is positive if at least one of the nodes is positive; no node may be negative.
-fn any_positive(graph: &mut Graph, nodes: &[NodeId]) -> NodeId {
+fn build_any_positive(graph: &mut Graph, nodes: &[NodeId]) -> NodeId {
     let is_positive = |id: &NodeId| graph.as_constant(*id).is_some_and(|value| value > 0.0);
     if nodes.iter().any(is_positive) {
         return graph.one();
@@ -247,7 +252,7 @@ fn any_positive(graph: &mut Graph, nodes: &[NodeId]) -> NodeId {
 /// Returns the sum of `summand` over the index space of `vector`.
 fn total(graph: &mut Graph, vector: NodeId, summand: NodeId) -> NodeId {
     match graph.shape(vector) {
-        Shape::Vector(space) => graph.total_over(space, summand),
+        Shape::Vector(space) => graph.sum_over_space(space, summand),
         _ => summand,
     }
 }

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::branches::choice;
-use crate::symbolic::differentiate::{derive_by_scalar, partial_derivatives};
+use crate::symbolic::differentiate::{derive_by_scalar, derive_partials};
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape};
 use crate::symbolic::node_map::NodeMap;
 
@@ -44,7 +44,10 @@ impl Gradients {
                 }
             } else {
                 for (variable, derivative) in self.derive_stop(graph, node) {
-                    parts.add(variable, graph.chain_rule_term(node, adjoint, derivative));
+                    parts.add(
+                        variable,
+                        graph.build_chain_rule_term(node, adjoint, derivative),
+                    );
                 }
             }
         }
@@ -62,7 +65,7 @@ impl Gradients {
                 for (variable, derivative) in self.derive(graph, operand) {
                     parts.add(
                         variable,
-                        graph.chain_rule_term(operand, partial, derivative),
+                        graph.build_chain_rule_term(operand, partial, derivative),
                     );
                 }
             }
@@ -82,7 +85,7 @@ impl Gradients {
     fn partials(&self, graph: &mut Graph, node: NodeId) -> Derivatives {
         let by = self.by;
         let moves = |graph: &Graph, operand: NodeId| graph.dependence(operand).has(by);
-        let mut partials = partial_derivatives(graph, node, moves);
+        let mut partials = derive_partials(graph, node, moves);
         partials.retain(|(operand, _)| moves(graph, *operand));
         partials
     }
@@ -113,7 +116,7 @@ impl Gradients {
     }
 }
 
-/// Returns true if a node and its operands are scalars and [`partial_derivatives`] covers its operation.
+/// Returns true if a node and its operands are scalars and [`derive_partials`] covers its operation.
 fn is_scalar_function(graph: &Graph, node: NodeId) -> bool {
     let has_partials = matches!(
         graph.operation(node),
@@ -189,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn derivatives_by_all_variables_are_those_by_each() {
+    fn derivatives_by_all_variables_match_single_derivatives() {
         let [all, separate] = derive_both(&[0.3, -0.7, 1.1], |graph, variables| {
             let &[x, y, z] = variables else {
                 unreachable!("three variables")

@@ -180,11 +180,11 @@ impl Graph {
         if let Some(&id) = self.known.get(&operation) {
             return id;
         }
-        let shape = self.shape_of(&operation);
-        let dependence = self.dependence_of(&operation);
-        let critical_path = self.critical_path_of(&operation, dependence);
+        let shape = self.compute_shape(&operation);
+        let dependence = self.compute_dependence(&operation);
+        let critical_path = self.compute_critical_path(&operation, dependence);
         let has_reciprocal_root = self.holds_reciprocal_root(&operation);
-        let variables = self.variables_of(&operation, dependence);
+        let variables = self.compute_variables(&operation, dependence);
         let operands = self.operands(&operation);
         let holds_switch =
             is_switch(&operation) || operands.iter().any(|id| self.holds_switch(*id));
@@ -227,7 +227,7 @@ impl Graph {
         self.intern(Operation::Table(index))
     }
 
-    fn shape_of(&self, operation: &Operation) -> Shape {
+    fn compute_shape(&self, operation: &Operation) -> Shape {
         match operation {
             Operation::Constant(_)
             | Operation::Parameter(_)
@@ -285,7 +285,7 @@ impl Graph {
         }
     }
 
-    fn dependence_of(&self, operation: &Operation) -> Dependence {
+    fn compute_dependence(&self, operation: &Operation) -> Dependence {
         match operation {
             Operation::Parameter(_) => Dependence::PARAMETER,
             Operation::Coordinate(_) | Operation::ModeCoordinates(_) => Dependence::COORDINATE,
@@ -308,7 +308,7 @@ impl Graph {
         own & needed == needed
     }
 
-    fn variables_of(&self, operation: &Operation, dependence: Dependence) -> u64 {
+    fn compute_variables(&self, operation: &Operation, dependence: Dependence) -> u64 {
         let operands = self.operands(operation);
         if operands.is_empty() && dependence != Dependence::NONE {
             return 1 << (self.nodes.len() % 64);
@@ -317,7 +317,7 @@ impl Graph {
         operands.iter().fold(0, |bits, id| bits | of(id))
     }
 
-    fn critical_path_of(&self, operation: &Operation, dependence: Dependence) -> u32 {
+    fn compute_critical_path(&self, operation: &Operation, dependence: Dependence) -> u32 {
         if dependence.is_parameter_only() {
             return 0;
         }

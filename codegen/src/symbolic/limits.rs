@@ -21,32 +21,37 @@ pub(super) const EXPONENT_ROUNDING: f64 = 1e-9;
 impl Graph {
     /// Returns `partial` times `inner` as a term of a derivative. The term is 0 on the flat side of a switch, and it
     /// equals its limit at zeros of roots.
-    pub(crate) fn derivative_term(&mut self, partial: NodeId, inner: NodeId) -> NodeId {
-        self.guarded_term(None, partial, inner)
+    pub(crate) fn build_derivative_term(&mut self, partial: NodeId, inner: NodeId) -> NodeId {
+        self.build_guarded_term(None, partial, inner)
     }
 
     /// Returns the derivative `partial` by an operand times `inner`, the derivative of the operand, like
-    /// [`Graph::derivative_term`]. In addition, the term is 0 at [zeros of a smooth
+    /// [`Graph::build_derivative_term`]. In addition, the term is 0 at [zeros of a smooth
     /// factor](super::vanishing_products).
-    pub(crate) fn chain_rule_term(
+    pub(crate) fn build_chain_rule_term(
         &mut self,
         operand: NodeId,
         partial: NodeId,
         inner: NodeId,
     ) -> NodeId {
-        self.guarded_term(Some(operand), partial, inner)
+        self.build_guarded_term(Some(operand), partial, inner)
     }
 
-    fn guarded_term(&mut self, operand: Option<NodeId>, partial: NodeId, inner: NodeId) -> NodeId {
+    fn build_guarded_term(
+        &mut self,
+        operand: Option<NodeId>,
+        partial: NodeId,
+        inner: NodeId,
+    ) -> NodeId {
         let mut guards = Vec::new();
-        let partial = self.without_flat_guards(partial, &mut guards);
-        let inner = self.without_flat_guards(inner, &mut guards);
-        let term = self.term_with_limits(operand, partial, inner);
+        let partial = self.remove_flat_guards(partial, &mut guards);
+        let inner = self.remove_flat_guards(inner, &mut guards);
+        let term = self.build_term_with_limits(operand, partial, inner);
         let guards = guards.into_iter().rev();
         guards.fold(term, |term, guard| self.guard_flat(guard, term))
     }
 
-    fn term_with_limits(
+    fn build_term_with_limits(
         &mut self,
         operand: Option<NodeId>,
         partial: NodeId,
@@ -56,16 +61,16 @@ impl Graph {
         if !self.has_reciprocal_root(term) {
             return term;
         }
-        let arguments = self.reciprocal_arguments(term);
+        let arguments = self.find_reciprocal_arguments(term);
         for &argument in arguments.iter() {
             if self.order(argument, term) > 0.0 {
                 term = guard(self, term, argument, None);
             }
         }
-        let arguments = self.reciprocal_arguments(term);
+        let arguments = self.find_reciprocal_arguments(term);
         let cofactor = self
             .cofactor(&arguments, term)
-            .or_else(|| self.vanishing_factor(operand?, partial));
+            .or_else(|| self.find_vanishing_factor(operand?, partial));
         match cofactor {
             Some(cofactor) if self.as_constant(cofactor).is_none() => {
                 let square = self.integer_power(cofactor, 2);
@@ -78,10 +83,10 @@ impl Graph {
 
     /// Returns base and exponent of the power that a guarded power equals if the base is not 0.
     pub(crate) fn guarded_power(&self, id: NodeId) -> Option<(NodeId, i32)> {
-        self.guarded_power_of(self.operation(id))
+        self.read_guarded_power(self.operation(id))
     }
 
-    fn guarded_power_of(&self, operation: &Operation) -> Option<(NodeId, i32)> {
+    fn read_guarded_power(&self, operation: &Operation) -> Option<(NodeId, i32)> {
         let &Operation::Select {
             a,
             b,
@@ -98,11 +103,11 @@ impl Graph {
         if !self.is_zero(otherwise) {
             return self.is_guard_of(otherwise, then);
         }
-        let is_root = self.root_argument(a).is_some();
+        let is_root = self.find_root_argument(a).is_some();
         match self.operation(then) {
             Operation::Product(factors) if is_root && **factors == [(a, -1)] => Some((a, -1)),
             Operation::Power(..) => {
-                let (base, _) = self.negative_power(then)?;
+                let (base, _) = self.read_negative_power(then)?;
                 (base == a).then_some((then, 1))
             }
             _ => None,
@@ -125,7 +130,7 @@ impl Graph {
         let is_reciprocal = match operation {
             Operation::Product(factors) => factors
                 .iter()
-                .any(|factor| self.reciprocal_argument(*factor).is_some()),
+                .any(|factor| self.find_reciprocal_argument(*factor).is_some()),
             Operation::Power(_, exponent) => {
                 let exponent = self.as_constant(*exponent);
                 exponent.is_some_and(|value| value < 0.0)
@@ -134,7 +139,7 @@ impl Graph {
         };
         match operation {
             Operation::Select { a, otherwise, .. }
-                if self.is_zero(*otherwise) && self.guarded_power_of(operation).is_some() =>
+                if self.is_zero(*otherwise) && self.read_guarded_power(operation).is_some() =>
             {
                 held(&[*a])
             }
@@ -143,7 +148,7 @@ impl Graph {
     }
 
     /// Returns base s and exponent p of a node c |s|^p with a constant c; nested roots and powers are resolved.
-    pub(super) fn base_power(&self, id: NodeId) -> (NodeId, f64) {
+    pub(super) fn read_base_power(&self, id: NodeId) -> (NodeId, f64) {
         let (inner, exponent) = match self.operation(id) {
             Operation::Call(Function::Sqrt, a) => (a[0], 0.5),
             Operation::Call(Function::Abs, a) => (a[0], 1.0),
@@ -165,11 +170,11 @@ impl Graph {
             }
             _ => return (id, 1.0),
         };
-        let (base, power) = self.base_power(inner);
+        let (base, power) = self.read_base_power(inner);
         (base, power * exponent)
     }
 
-    fn root_argument(&self, id: NodeId) -> Option<NodeId> {
+    fn find_root_argument(&self, id: NodeId) -> Option<NodeId> {
         match self.operation(id) {
             Operation::Call(Function::Sqrt, arguments) => arguments.first().copied(),
             _ => None,
@@ -177,7 +182,7 @@ impl Graph {
     }
 
     /// Returns base and exponent of a power with a negative constant exponent.
-    pub(super) fn negative_power(&self, id: NodeId) -> Option<(NodeId, f64)> {
+    pub(super) fn read_negative_power(&self, id: NodeId) -> Option<(NodeId, f64)> {
         let Operation::Power(base, exponent) = *self.operation(id) else {
             return None;
         };
@@ -189,24 +194,24 @@ impl Graph {
     pub(super) fn reciprocal(&self, (factor, exponent): (NodeId, i32)) -> Option<(NodeId, f64)> {
         let (inner, power) = match exponent < 0 {
             true => (
-                self.root_argument(factor).map(|_| factor)?,
+                self.find_root_argument(factor).map(|_| factor)?,
                 -f64::from(exponent),
             ),
             false => {
-                let (base, power) = self.negative_power(factor)?;
+                let (base, power) = self.read_negative_power(factor)?;
                 (base, -power * f64::from(exponent))
             }
         };
-        let (base, own) = self.base_power(inner);
+        let (base, own) = self.read_base_power(inner);
         Some((base, own * power))
     }
 
-    fn reciprocal_argument(&self, factor: (NodeId, i32)) -> Option<NodeId> {
+    fn find_reciprocal_argument(&self, factor: (NodeId, i32)) -> Option<NodeId> {
         self.reciprocal(factor).map(|(base, _)| base)
     }
 
     /// Returns the arguments of all roots with unguarded reciprocals in a node.
-    fn reciprocal_arguments(&mut self, id: NodeId) -> Arc<Vec<NodeId>> {
+    fn find_reciprocal_arguments(&mut self, id: NodeId) -> Arc<Vec<NodeId>> {
         if let Some(known) = self.orders_at_zeros.arguments.get(&id) {
             return known.clone();
         }
@@ -215,13 +220,13 @@ impl Graph {
         if let Operation::Product(factors) = &operation {
             let arguments = factors
                 .iter()
-                .filter_map(|factor| self.reciprocal_argument(*factor));
+                .filter_map(|factor| self.find_reciprocal_argument(*factor));
             found.extend(arguments);
         }
-        found.extend(self.reciprocal_argument((id, 1)));
+        found.extend(self.find_reciprocal_argument((id, 1)));
         for operand in self.operands(&operation) {
             if self.has_reciprocal_root(operand) {
-                found.extend(self.reciprocal_arguments(operand).iter());
+                found.extend(self.find_reciprocal_arguments(operand).iter());
             }
         }
         found.sort_unstable();
@@ -245,7 +250,7 @@ impl Graph {
     }
 
     fn order_by(&mut self, argument: NodeId, bounds: &Bounds, id: NodeId) -> f64 {
-        let (base, power) = self.base_power(id);
+        let (base, power) = self.read_base_power(id);
         if base == argument {
             return power;
         }
@@ -258,12 +263,12 @@ impl Graph {
         }
         match self.operation(id).clone() {
             Operation::Product(factors) => {
-                self.product_order(argument, bounds, &as_real(&factors), None)
+                self.find_product_order(argument, bounds, &as_real(&factors), None)
             }
             Operation::Sum(terms) => {
                 let orders = terms.iter().map(|(_, term)| self.order(argument, *term));
                 let least = orders.fold(f64::INFINITY, f64::min);
-                least.max(self.product_order(argument, bounds, &[(id, 1.0)], Some(id)))
+                least.max(self.find_product_order(argument, bounds, &[(id, 1.0)], Some(id)))
             }
             Operation::Call(Function::Sqrt, a) => 0.5 * self.order(argument, a[0]),
             Operation::Call(function, a) if vanishes_with_argument(function) => {
@@ -278,28 +283,28 @@ impl Graph {
                 .order(argument, then)
                 .min(self.order(argument, otherwise)),
             Operation::Power(base, exponent) => match self.as_constant(exponent) {
-                Some(exponent) if exponent > 0.0 || self.base_power(base).0 == argument => {
+                Some(exponent) if exponent > 0.0 || self.read_base_power(base).0 == argument => {
                     exponent * self.order(argument, base)
                 }
                 Some(_) if self.order(argument, base) != 0.0 => f64::NEG_INFINITY,
-                _ => self.bounded_order(argument, &[base, exponent]),
+                _ => self.find_bounded_order(argument, &[base, exponent]),
             },
             Operation::Total(vector)
             | Operation::Apply { vector, .. }
             | Operation::CholeskySolve(_, vector) => {
-                let of_node = self.product_order(argument, bounds, &[(id, 1.0)], Some(id));
+                let of_node = self.find_product_order(argument, bounds, &[(id, 1.0)], Some(id));
                 of_node.max(self.order(argument, vector))
             }
             operation => {
                 let operands = self.operands(&operation);
-                let bounded = self.bounded_order(argument, &operands);
-                bounded.max(self.product_order(argument, bounds, &[(id, 1.0)], Some(id)))
+                let bounded = self.find_bounded_order(argument, &operands);
+                bounded.max(self.find_product_order(argument, bounds, &[(id, 1.0)], Some(id)))
             }
         }
     }
 
     /// Returns the order 0 if all operands are bounded, else negative infinity.
-    fn bounded_order(&mut self, argument: NodeId, operands: &[NodeId]) -> f64 {
+    fn find_bounded_order(&mut self, argument: NodeId, operands: &[NodeId]) -> f64 {
         let unbounded = operands.iter().any(|operand| {
             self.has_reciprocal_root(*operand) && self.order(argument, *operand) < 0.0
         });
@@ -307,7 +312,7 @@ impl Graph {
     }
 
     /// Returns the order of a product: the sum of the orders of the monomials and of the other factors in it.
-    fn product_order(
+    fn find_product_order(
         &mut self,
         argument: NodeId,
         bounds: &Bounds,
@@ -320,7 +325,7 @@ impl Graph {
         }
         let mut order = 0.0;
         for (monomial, each) in bounds.iter() {
-            let times = held_times(monomial, &left);
+            let times = count_divisions(monomial, &left);
             take(monomial, times, &mut left);
             order += times * each;
         }
@@ -337,7 +342,7 @@ impl Graph {
     /// Returns the order of a factor. The order of a reciprocal is known only for powers of the argument and for
     /// factors of order 0.
     fn factor_order(&mut self, argument: NodeId, factor: NodeId, exponent: f64) -> f64 {
-        let (base, power) = self.base_power(factor);
+        let (base, power) = self.read_base_power(factor);
         if base == argument {
             return power;
         }
@@ -456,11 +461,12 @@ pub(super) fn vanishes_with_argument(function: Function) -> bool {
 /// Returns the node with guards on all reciprocals of roots of `argument`. If `condition` is given, the guards act
 /// only where it is 0.
 fn guard(graph: &mut Graph, id: NodeId, argument: NodeId, condition: Option<NodeId>) -> NodeId {
-    let replacement = |graph: &mut Graph, node: NodeId| guarded(graph, node, argument, condition);
+    let replacement =
+        |graph: &mut Graph, node: NodeId| is_guarded(graph, node, argument, condition);
     substitute(graph, id, &replacement, &mut HashMap::new())
 }
 
-fn guarded(
+fn is_guarded(
     graph: &mut Graph,
     id: NodeId,
     argument: NodeId,
@@ -471,32 +477,32 @@ fn guarded(
     }
     if let Some((base, exponent)) = graph.guarded_power(id) {
         let power = graph.integer_power(base, exponent);
-        return match guarded(graph, power, argument, condition) {
+        return match is_guarded(graph, power, argument, condition) {
             Some(anew) if anew != power => Some(anew),
             _ => Some(id),
         };
     }
-    if let Some((base, _)) = graph.negative_power(id)
-        && graph.base_power(base).0 == argument
+    if let Some((base, _)) = graph.read_negative_power(id)
+        && graph.read_base_power(base).0 == argument
     {
-        return Some(guarded_reciprocal(graph, base, id, condition));
+        return Some(build_guarded_reciprocal(graph, base, id, condition));
     }
     let Operation::Product(factors) = graph.operation(id).clone() else {
         return None;
     };
     if !factors
         .iter()
-        .any(|factor| graph.reciprocal_argument(*factor) == Some(argument))
+        .any(|factor| graph.find_reciprocal_argument(*factor) == Some(argument))
     {
         return None;
     }
     let mut rebuilt = Vec::with_capacity(factors.len());
     for &(factor, exponent) in &factors {
-        let is_reciprocal = graph.reciprocal_argument((factor, exponent)) == Some(argument);
+        let is_reciprocal = graph.find_reciprocal_argument((factor, exponent)) == Some(argument);
         rebuilt.push(match exponent < 0 && is_reciprocal {
             true => {
                 let reciprocal = graph.integer_power(factor, -1);
-                let reciprocal = guarded_reciprocal(graph, factor, reciprocal, condition);
+                let reciprocal = build_guarded_reciprocal(graph, factor, reciprocal, condition);
                 (reciprocal, -exponent)
             }
             false => (guard(graph, factor, argument, condition), exponent),
@@ -506,7 +512,7 @@ fn guarded(
 }
 
 /// Returns a node that is 0 if the root and the condition are 0, else the reciprocal of the root.
-fn guarded_reciprocal(
+fn build_guarded_reciprocal(
     graph: &mut Graph,
     root: NodeId,
     reciprocal: NodeId,
@@ -521,7 +527,7 @@ fn guarded_reciprocal(
 }
 
 /// Returns the largest exponent with which a power of the monomial divides a product.
-pub(super) fn held_times(monomial: &Monomial, product: &HashMap<NodeId, f64>) -> f64 {
+pub(super) fn count_divisions(monomial: &Monomial, product: &HashMap<NodeId, f64>) -> f64 {
     let held = |(node, exponent): &(NodeId, f64)| product.get(node).map_or(0.0, |n| n / exponent);
     let times = monomial.iter().map(held);
     times.fold(f64::INFINITY, f64::min).max(0.0)

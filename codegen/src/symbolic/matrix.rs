@@ -13,7 +13,7 @@ impl Assembly {
         }
         for &(u, v) in &self.outer {
             let product = graph.multiply(v, vector);
-            let total = graph.total_over(self.columns, product);
+            let total = graph.sum_over_space(self.columns, product);
             parts.push(graph.multiply(u, total));
         }
         for part in &self.matrices {
@@ -94,21 +94,21 @@ impl StructuredMatrix {
             return;
         }
         if let Some(diagonal) = other.diagonal {
-            let scaled = graph.derivative_term(scale, diagonal);
+            let scaled = graph.build_derivative_term(scale, diagonal);
             self.add_to_diagonal(graph, scaled);
         }
         for &(u, v) in &other.outer {
-            let scaled = graph.derivative_term(scale, u);
+            let scaled = graph.build_derivative_term(scale, u);
             self.add_outer(graph, scaled, v);
         }
         for matrix in &other.matrices {
-            let row = graph.derivative_term(scale, matrix.row);
+            let row = graph.build_derivative_term(scale, matrix.row);
             self.matrices.push(ScaledMatrix { row, ..*matrix });
         }
     }
 
     /// Returns `matrix`, or its transpose, times this matrix.
-    pub fn left_multiply(&self, graph: &mut Graph, matrix: NodeId, transposed: bool) -> Self {
+    pub fn multiply_from_left(&self, graph: &mut Graph, matrix: NodeId, transposed: bool) -> Self {
         let rows = match (graph.shape(matrix), transposed) {
             (Shape::Matrix(rows, _), false) => rows,
             (Shape::Matrix(_, columns), true) => columns,
@@ -171,13 +171,13 @@ impl StructuredMatrix {
 
     /// Returns the column sums as a vector. If this matrix is the Jacobian of a vector, they are the gradient of the
     /// sum of its elements.
-    pub fn column_totals(&self, graph: &mut Graph) -> NodeId {
+    pub fn sum_columns(&self, graph: &mut Graph) -> NodeId {
         let mut terms = Vec::new();
         if let Some(diagonal) = self.diagonal {
             terms.push((1.0, diagonal));
         }
         for &(u, v) in &self.outer {
-            let total = graph.total_over(self.rows, u);
+            let total = graph.sum_over_space(self.rows, u);
             terms.push((1.0, graph.multiply(total, v)));
         }
         for matrix in &self.matrices {

@@ -2,7 +2,7 @@
 //! products and tables) for a vector.
 
 use crate::symbolic::branches::choice;
-use crate::symbolic::differentiate::{VariationTest, choose, partial_derivatives};
+use crate::symbolic::differentiate::{VariationTest, choose, derive_partials};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape, Space};
 use crate::symbolic::matrix::StructuredMatrix;
 use crate::symbolic::node_map::NodeMap;
@@ -57,19 +57,19 @@ impl ModalDerivative {
         let result = match graph.operation(id).clone() {
             Operation::Total(a) => {
                 let jacobian = self.jacobian(graph, a);
-                jacobian.column_totals(graph)
+                jacobian.sum_columns(graph)
             }
             _ if choice(graph, id).is_some() => {
                 choose(graph, id, |graph, branch| self.gradient(graph, branch))
             }
             _ => {
                 let partials =
-                    partial_derivatives(graph, id, |graph, operand| self.is_moving(graph, operand));
+                    derive_partials(graph, id, |graph, operand| self.is_moving(graph, operand));
                 let mut terms = Vec::with_capacity(partials.len());
                 for (operand, partial) in partials {
                     let inner = self.gradient(graph, operand);
                     if !graph.is_zero(inner) {
-                        terms.push((1.0, graph.chain_rule_term(operand, partial, inner)));
+                        terms.push((1.0, graph.build_chain_rule_term(operand, partial, inner)));
                     }
                 }
                 graph.combine(&terms)
@@ -90,7 +90,7 @@ impl ModalDerivative {
     }
 
     /// Returns the Jacobian of a vector, or of a scalar that is repeated for each element.
-    pub fn element_jacobian(
+    pub fn derive_element_jacobian(
         &mut self,
         graph: &mut Graph,
         id: NodeId,
@@ -106,7 +106,7 @@ impl ModalDerivative {
     }
 
     /// Returns the Jacobian of M x for constant x, where x solves M x = right and M depends on the modes.
-    fn matrix_product_jacobian(
+    fn derive_product_jacobian(
         &mut self,
         graph: &mut Graph,
         factor: NodeId,
@@ -134,7 +134,7 @@ impl ModalDerivative {
             jacobians: NodeMap::default(),
         };
         held.moving.known.insert(solution, false);
-        held.element_jacobian(graph, product, rows)
+        held.derive_element_jacobian(graph, product, rows)
     }
 
     fn compute_jacobian(&mut self, graph: &mut Graph, id: NodeId) -> StructuredMatrix {
@@ -158,17 +158,16 @@ impl ModalDerivative {
         {
             return self
                 .jacobian(graph, vector)
-                .left_multiply(graph, matrix, transposed);
+                .multiply_from_left(graph, matrix, transposed);
         }
         if let Operation::CholeskySolve(factor, right) = *graph.operation(id) {
-            let mut rest = self.element_jacobian(graph, right, rows);
-            let moved = self.matrix_product_jacobian(graph, factor, id, rows);
+            let mut rest = self.derive_element_jacobian(graph, right, rows);
+            let moved = self.derive_product_jacobian(graph, factor, id, rows);
             let minus_one = graph.constant(-1.0);
             rest.add_scaled(graph, minus_one, &moved);
             return rest.solve_with_factor(graph, factor);
         }
-        let partials =
-            partial_derivatives(graph, id, |graph, operand| self.is_moving(graph, operand));
+        let partials = derive_partials(graph, id, |graph, operand| self.is_moving(graph, operand));
         for (operand, partial) in partials {
             match graph.shape(operand) {
                 Shape::Scalar => {

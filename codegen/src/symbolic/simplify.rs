@@ -18,15 +18,15 @@ impl Graph {
 
     /// Returns the constant 0.
     pub fn zero(&mut self) -> NodeId {
-        self.small_number(0)
+        self.read_small_number(0)
     }
 
     /// Returns the constant 1.
     pub fn one(&mut self) -> NodeId {
-        self.small_number(1)
+        self.read_small_number(1)
     }
 
-    fn small_number(&mut self, number: u8) -> NodeId {
+    fn read_small_number(&mut self, number: u8) -> NodeId {
         if let Some(known) = self.zero_and_one[usize::from(number)] {
             return known;
         }
@@ -131,7 +131,7 @@ impl Graph {
             let Some(&factor) = terms.get(&id) else {
                 continue;
             };
-            let Some((rest, partner)) = self.squared_sine_partner(id) else {
+            let Some((rest, partner)) = self.find_squared_cosine(id) else {
                 continue;
             };
             if terms.get(&partner) == Some(&factor) {
@@ -144,7 +144,7 @@ impl Graph {
     }
 
     /// Returns X and X cos(a)^2 for X sin(a)^2.
-    fn squared_sine_partner(&mut self, id: NodeId) -> Option<(NodeId, NodeId)> {
+    fn find_squared_cosine(&mut self, id: NodeId) -> Option<(NodeId, NodeId)> {
         let Operation::Product(factors) = self.operation(id) else {
             return None;
         };
@@ -233,10 +233,10 @@ impl Graph {
             return None;
         }
         match self.operation(id) {
-            Operation::Constant(bits) => *number *= power_of_number(bits.value(), exponent),
+            Operation::Constant(bits) => *number *= compute_power(bits.value(), exponent),
             Operation::Sum(terms) if terms.len() == 1 => {
                 let (factor, inner) = terms[0];
-                *number *= power_of_number(factor.value(), exponent);
+                *number *= compute_power(factor.value(), exponent);
                 self.collect_factor(number, into, inner, exponent)?;
             }
             Operation::Product(factors) => {
@@ -302,10 +302,13 @@ impl Graph {
             return *a;
         }
         if let Arguments::One([a]) = arguments {
-            if let Some(value) = self.as_constant(a).and_then(|x| exact_value(function, x)) {
+            if let Some(value) = self
+                .as_constant(a)
+                .and_then(|x| find_exact_value(function, x))
+            {
                 return self.constant(value);
             }
-            if let Some(positive) = self.without_minus(a) {
+            if let Some(positive) = self.remove_minus(a) {
                 if function.is_even() {
                     return self.call(function, &[positive]);
                 } else if function.is_odd() {
@@ -318,7 +321,7 @@ impl Graph {
     }
 
     /// Returns a for a node -a; `None` for other nodes.
-    fn without_minus(&mut self, id: NodeId) -> Option<NodeId> {
+    fn remove_minus(&mut self, id: NodeId) -> Option<NodeId> {
         match self.operation(id).clone() {
             Operation::Sum(terms) if terms.iter().all(|(factor, _)| factor.value() < 0.0) => {
                 Some(self.negate_all(&terms))
@@ -369,7 +372,7 @@ impl Graph {
     }
 
     /// Splits the factors of a product into scalars and others.
-    pub(crate) fn scalar_factors(&self, factors: &[(NodeId, i32)]) -> (Factors, Factors) {
+    pub(crate) fn split_scalar_factors(&self, factors: &[(NodeId, i32)]) -> (Factors, Factors) {
         factors
             .iter()
             .partition(|(id, _)| self.shape(*id) == Shape::Scalar)
@@ -389,7 +392,7 @@ impl Graph {
                 self.scale(terms[0].0.value(), inner)
             }
             Operation::Product(factors) => {
-                let (scalars, vectors) = self.scalar_factors(&factors);
+                let (scalars, vectors) = self.split_scalar_factors(&factors);
                 if scalars.is_empty() {
                     return self.intern(Operation::Total(vector));
                 }
@@ -403,7 +406,11 @@ impl Graph {
     }
 
     /// Returns the sum over `space`; a scalar is multiplied by the size.
-    pub fn total_over(&mut self, space: crate::symbolic::graph::Space, summand: NodeId) -> NodeId {
+    pub fn sum_over_space(
+        &mut self,
+        space: crate::symbolic::graph::Space,
+        summand: NodeId,
+    ) -> NodeId {
         match self.shape(summand) {
             Shape::Scalar => {
                 let size = self.size(space) as f64;
@@ -446,7 +453,7 @@ impl Graph {
                 self.scale(terms[0].0.value(), inner)
             }
             Operation::Product(factors) => {
-                let (scalars, vectors) = self.scalar_factors(&factors);
+                let (scalars, vectors) = self.split_scalar_factors(&factors);
                 if scalars.is_empty() {
                     return self.intern_apply(matrix, transposed, vector);
                 }
@@ -490,7 +497,7 @@ fn collect_equal_factors(factors: &[(NodeId, i32)]) -> BTreeMap<NodeId, i32> {
 }
 
 /// Computes value^exponent by repeated multiplication, because `powi` may round differently on other machines.
-fn power_of_number(value: f64, exponent: i32) -> f64 {
+fn compute_power(value: f64, exponent: i32) -> f64 {
     let magnitude = (0..exponent.unsigned_abs()).fold(1.0, |product, _| product * value);
     if exponent < 0 {
         1.0 / magnitude
@@ -499,7 +506,7 @@ fn power_of_number(value: f64, exponent: i32) -> f64 {
     }
 }
 
-fn exact_value(function: Function, x: f64) -> Option<f64> {
+fn find_exact_value(function: Function, x: f64) -> Option<f64> {
     match function {
         _ if x == 0.0 && function.is_odd() => Some(0.0),
         Function::Cos | Function::Cosh | Function::Exp if x == 0.0 => Some(1.0),

@@ -68,7 +68,7 @@ fn rebuild(
         Operation::Total(a) => {
             let vector = inner(graph, a);
             match graph.shape(a) {
-                crate::symbolic::graph::Shape::Vector(space) => graph.total_over(space, vector),
+                crate::symbolic::graph::Shape::Vector(space) => graph.sum_over_space(space, vector),
                 _ => vector,
             }
         }

@@ -3,11 +3,11 @@
 
 use crate::symbolic::tables::{Table, TableKind};
 
-fn primes(derivative: u8) -> String {
+fn prime_marks(derivative: u8) -> String {
     "'".repeat(usize::from(derivative))
 }
 
-fn power_of_s(power: u32) -> String {
+fn write_power_of_s(power: u32) -> String {
     match power {
         0 => String::new(),
         1 => "s ".to_owned(),
@@ -23,37 +23,45 @@ pub fn plain(kind: TableKind) -> String {
         TableKind::GrowingAmplitude => "((1 + xi_i)*exp(betal_i))".to_owned(),
         TableKind::FallingAmplitude => "falling_i".to_owned(),
         TableKind::RisingAmplitude => "rising_i".to_owned(),
-        TableKind::ShapeAtStart(d) => format!("phi_i{}(0)", primes(d)),
-        TableKind::ShapeAtEnd(d) => format!("phi_i{}(1)", primes(d)),
+        TableKind::ShapeAtStart(d) => format!("phi_i{}(0)", prime_marks(d)),
+        TableKind::ShapeAtEnd(d) => format!("phi_i{}(1)", prime_marks(d)),
         TableKind::ShapeAtPlace { bits, derivative } => {
-            format!("phi_i{}({})", primes(derivative), f64::from_bits(bits))
+            format!("phi_i{}({})", prime_marks(derivative), f64::from_bits(bits))
         }
         TableKind::Moment { power, derivative } => {
-            format!("int[{}phi_i{}]", power_of_s(power), primes(derivative))
+            format!(
+                "int[{}phi_i{}]",
+                write_power_of_s(power),
+                prime_marks(derivative)
+            )
         }
         TableKind::OwnMoment { power, left, right } if left == right => {
-            format!("int[{}phi_i{}^2]", power_of_s(power), primes(left))
+            format!(
+                "int[{}phi_i{}^2]",
+                write_power_of_s(power),
+                prime_marks(left)
+            )
         }
         TableKind::OwnMoment { power, left, right } => {
             format!(
                 "int[{}phi_i{} phi_i{}]",
-                power_of_s(power),
-                primes(left),
-                primes(right)
+                write_power_of_s(power),
+                prime_marks(left),
+                prime_marks(right)
             )
         }
         TableKind::PairMoment { power, left, right } => {
             format!(
                 "int[{}phi_i{} phi_j{}]",
-                power_of_s(power),
-                primes(left),
-                primes(right)
+                write_power_of_s(power),
+                prime_marks(left),
+                prime_marks(right)
             )
         }
         TableKind::Indicator(mode) => format!("[i = {mode}]"),
         TableKind::NodePosition => "s_g".to_owned(),
         TableKind::NodeWeight => "weight_g".to_owned(),
-        TableKind::ShapeAtNodes(d) => format!("phi_i{}(s_g)", primes(d)),
+        TableKind::ShapeAtNodes(d) => format!("phi_i{}(s_g)", prime_marks(d)),
     }
 }
 
@@ -65,7 +73,7 @@ pub fn latex(kind: TableKind) -> String {
         1 => "s\\,".to_owned(),
         n => format!("s^{{{n}}}\\,"),
     };
-    let phi = |index: &str, d: u8| format!("\\varphi_{index}{}", primes(d));
+    let phi = |index: &str, d: u8| format!("\\varphi_{index}{}", prime_marks(d));
     match kind {
         TableKind::Wavenumber => "(\\beta l)_i".to_owned(),
         TableKind::Mixing => "\\xi_i".to_owned(),
@@ -112,7 +120,7 @@ pub fn doc(table: &Table) -> String {
 }
 
 /// Returns the name of the constant for a table in emitted code.
-pub fn constant_name(table: &Table) -> String {
+pub fn write_constant_name(table: &Table) -> String {
     let derivative = |d: u8| {
         if d == 0 {
             String::new()

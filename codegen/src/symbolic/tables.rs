@@ -94,6 +94,6 @@ impl Table {
 /// A product of p shapes with wave numbers beta l < pi (order + 1/2) has phases up to p pi order/2 on [-1, 1]. A rule
 /// of n nodes is exact up to the degree 2 n - 1. The Legendre coefficients of such a wave are negligible from a few
 /// dozen degrees above p pi order/2. This is less than 2 n = 2 p order + 64.
-pub fn quadrature_size(order: usize, degree: u32) -> usize {
+pub fn count_quadrature_nodes(order: usize, degree: u32) -> usize {
     degree.max(2) as usize * order + 32
 }

@@ -29,7 +29,7 @@ pub(crate) fn with_sums_of_angles(graph: &mut Graph, node: NodeId) -> Option<Nod
         Operation::Sum(terms) => terms.iter().map(|(c, term)| (*term, c.value())).collect(),
         _ => return Some(node),
     };
-    while let Some((first, second, merged)) = merging_pair(graph, &terms) {
+    while let Some((first, second, merged)) = find_merging_pair(graph, &terms) {
         terms.remove(&first);
         terms.remove(&second);
         let mut all: Vec<(f64, NodeId)> = terms.iter().map(|(term, c)| (*c, *term)).collect();
@@ -45,7 +45,7 @@ pub(crate) fn with_sums_of_angles(graph: &mut Graph, node: NodeId) -> Option<Nod
 }
 
 /// Returns two terms that an addition theorem combines, with the result.
-fn merging_pair(
+fn find_merging_pair(
     graph: &mut Graph,
     terms: &BTreeMap<NodeId, f64>,
 ) -> Option<(NodeId, NodeId, (f64, NodeId))> {
@@ -63,13 +63,13 @@ fn merging_pair(
                 _ => None,
             })
             .collect();
-        for (place, &first) in turns.iter().enumerate() {
-            for &second in &turns[place + 1..] {
+        for (index, &first) in turns.iter().enumerate() {
+            for &second in &turns[index + 1..] {
                 if first.2 == second.2 {
                     continue;
                 }
                 let rest = graph.product(&[(term, 1), (first.0, -1), (second.0, -1)]);
-                let partners = [partner(graph, first), partner(graph, second)];
+                let partners = [find_partner(graph, first), find_partner(graph, second)];
                 let partner = graph.product(&[(rest, 1), (partners[0], 1), (partners[1], 1)]);
                 let Some(&other) = terms.get(&partner) else {
                     continue;
@@ -87,7 +87,7 @@ fn merging_pair(
 }
 
 /// Returns the cosine for a sine, and the sine for a cosine.
-fn partner(graph: &mut Graph, (_, function, angle): (NodeId, Function, NodeId)) -> NodeId {
+fn find_partner(graph: &mut Graph, (_, function, angle): (NodeId, Function, NodeId)) -> NodeId {
     let other = match function {
         Function::Sin => Function::Cos,
         _ => Function::Sin,
@@ -126,7 +126,7 @@ mod tests {
     fn coordinates(graph: &mut Graph, count: usize) -> Vec<NodeId> {
         let places = CoordinateId::first(count);
         places
-            .map(|place| graph.intern(Operation::Coordinate(place)))
+            .map(|index| graph.intern(Operation::Coordinate(index)))
             .collect()
     }
 
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn product_of_long_sums_is_not_expanded_in_part() {
+    fn product_of_long_sums_is_not_partially_expanded() {
         let mut graph = Graph::new(&[], &[]);
         let all = coordinates(&mut graph, 21);
         let factors: Vec<(NodeId, i32)> = all

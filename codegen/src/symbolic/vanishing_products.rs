@@ -12,7 +12,11 @@ use crate::symbolic::graph::{Graph, NodeId, Operation};
 impl Graph {
     /// Returns a factor of `partial`, the derivative of a node by its `operand`. Where this factor is zero, `partial`
     /// times the derivative of `operand` is zero. Returns `None` if no such factor is known.
-    pub(super) fn vanishing_factor(&mut self, operand: NodeId, partial: NodeId) -> Option<NodeId> {
+    pub(super) fn find_vanishing_factor(
+        &mut self,
+        operand: NodeId,
+        partial: NodeId,
+    ) -> Option<NodeId> {
         if self.has_reciprocal_root(operand)
             || self.has_reciprocal_root(partial)
             || !self.is_continuous(operand)

@@ -1,6 +1,6 @@
 //! Integrals over a field: coefficients that the quadrature resolves are accepted, all others are rejected.
 
-use eomgen_codegen::mechanics::fields::resolution::{State, worst_at_state};
+use eomgen_codegen::mechanics::fields::resolution::{State, find_largest_error_at_state};
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::source::Source;
@@ -186,7 +186,7 @@ fn the_error_of_an_integrand_that_is_no_polynomial_is_found_at_a_state() {
             state: &state,
             inputs: &[],
         };
-        worst_at_state(&model, &[2], at).unwrap().error
+        find_largest_error_at_state(&model, &[2], at).unwrap().error
     };
     assert!(error(0.1) < 1e-12, "{}", error(0.1));
     assert!(error(10.0) > 1e-6, "{}", error(10.0));

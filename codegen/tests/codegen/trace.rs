@@ -7,7 +7,7 @@ use eomgen_codegen::program::units::{ValueUnit, infer_units};
 use eomgen_codegen::program::{Op, Output, Program, ValueId};
 use eomgen_codegen::rust::{Packaging, emit};
 use eomgen_codegen::statements::collect_coefficients;
-use eomgen_codegen::trace::{TracedLine, traced_lines};
+use eomgen_codegen::trace::{TracedLine, find_traced_lines};
 use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::model::Model;
@@ -128,7 +128,7 @@ fn no_formula_is_cut() {
 fn lines_of_both(program: &Program) -> [Vec<TracedLine>; 2] {
     let rust = emit(program, Packaging::Crate).expect("Rust");
     let source = c::emit(program).expect("C").source;
-    [rust, source].map(|text| traced_lines(&text, &program.trace))
+    [rust, source].map(|text| find_traced_lines(&text, &program.trace))
 }
 
 #[test]
@@ -168,7 +168,7 @@ fn every_definition_of_a_function_is_traced() {
     for name in ["planetary_arm", "two_link_arm", "hub_beam_tip_mass"] {
         let program = derive(&shipped(name), 2, &[]);
         let source = emit(&program, Packaging::Crate).expect("Rust");
-        let traced: BTreeSet<usize> = traced_lines(&source, &program.trace)
+        let traced: BTreeSet<usize> = find_traced_lines(&source, &program.trace)
             .iter()
             .map(|line| line.line)
             .collect();
@@ -296,7 +296,7 @@ fn programs_without_a_trace_have_no_notes() {
     let orders = [2];
     let variant = Variant::derive(&shipped("planetary_arm"), &orders).expect("derived");
     let text = emit(&variant.program, Packaging::Crate).expect("Rust");
-    assert!(traced_lines(&text, &variant.program.trace).is_empty());
+    assert!(find_traced_lines(&text, &variant.program.trace).is_empty());
     let is_constant = |op: &Op| matches!(op, Op::Constant(_));
     assert!(
         variant

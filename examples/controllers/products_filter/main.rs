@@ -28,7 +28,7 @@ const JUDGED: [(usize, &str, &str); 3] = [
 ];
 
 /// Runs a filter and prints its RMS errors. Returns its final estimates and variances.
-fn filtered(
+fn run_filter(
     name: &str,
     arm: &Coefficients,
     motion: &[(State, [f64; 3])],
@@ -37,10 +37,10 @@ fn filtered(
     let begun = Instant::now();
     let mut squares = [0.0; JUDGED.len()];
     for (period, (state, record)) in motion.iter().enumerate() {
-        filter.carried(arm, STEP * (period * STEPS) as f64);
+        filter.propagate(arm, STEP * (period * STEPS) as f64);
         let t = STEP * ((period + 1) * STEPS) as f64;
         for ((which, deviation), value) in MEASURED.iter().zip(record) {
-            filter.taken(arm, t, *which, *value, *deviation);
+            filter.update(arm, t, *which, *value, *deviation);
         }
         assert!(
             filter.estimate().iter().all(|x| x.is_finite()),
@@ -84,14 +84,14 @@ fn main() {
         .map(|i| {
             columns
                 .iter()
-                .fold([0.0; STATES], |row, column| moved(&row, column[i], column))
+                .fold([0.0; STATES], |row, column| add_scaled(&row, column[i], column))
         })
         .collect();
     let textbook = Textbook {
         estimate: expected(),
         covariance,
     };
-    let [estimate, variance] = filtered("Jacobian, whole covariance", arm, &motion, textbook);
+    let [estimate, variance] = run_filter("Jacobian, whole covariance", arm, &motion, textbook);
     for rank in [STATES, 12, 6] {
         let products = Products {
             estimate: expected(),
@@ -99,7 +99,7 @@ fn main() {
             rank,
         };
         let name = format!("products, {rank} columns");
-        let [same, claimed] = filtered(&name, arm, &motion, products);
+        let [same, claimed] = run_filter(&name, arm, &motion, products);
         let away = difference(&same, &estimate, |i| variance[i].sqrt());
         let claims = difference(&claimed, &variance, |i| variance[i]);
         println!("    difference from the first filter: {away:.0e} standard deviations, {claims:.0e} of the variances");

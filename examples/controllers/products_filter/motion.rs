@@ -46,13 +46,13 @@ impl Noise {
     }
 }
 
-pub fn moved(state: &State, by: f64, rate: &State) -> State {
+pub fn add_scaled(state: &State, by: f64, rate: &State) -> State {
     std::array::from_fn(|i| state[i] + by * rate[i])
 }
 
 /// Computes a Runge-Kutta step of a state and of columns. The columns follow the equations linearised at the state of
 /// each stage. `times` multiplies columns by the Jacobian.
-pub fn stepped(
+pub fn runge_kutta_step(
     arm: &Coefficients,
     t: f64,
     disturbance: f64,
@@ -66,20 +66,20 @@ pub fn stepped(
     let (mut rate, mut rates) = ([0.0; STATES], vec![[0.0; STATES]; columns.len()]);
     for (along, weight) in ALONG.iter().zip(WEIGHT) {
         let (t, by) = (t + along * STEP, along * STEP);
-        let at = moved(&begin, by, &rate);
+        let at = add_scaled(&begin, by, &rate);
         let inputs = Inputs {
             u: TORQUE + disturbance,
         };
         let carried: Vec<State> = first
             .iter()
             .zip(&rates)
-            .map(|(column, rate)| moved(column, by, rate))
+            .map(|(column, rate)| add_scaled(column, by, rate))
             .collect();
         rate = arm::rates(t, &at, &inputs, arm);
         rates = times(t, &at, &inputs, &carried);
-        *state = moved(state, weight * STEP, &rate);
+        *state = add_scaled(state, weight * STEP, &rate);
         for (column, rate) in columns.iter_mut().zip(&rates) {
-            *column = moved(column, weight * STEP, rate);
+            *column = add_scaled(column, weight * STEP, rate);
         }
     }
 }
@@ -118,7 +118,7 @@ pub fn motion(arm: &Coefficients) -> Vec<(State, [f64; MEASURED.len()])> {
         let disturbance = DISTURBANCE * noise.next();
         for count in period * STEPS..(period + 1) * STEPS {
             let t = STEP * count as f64;
-            stepped(arm, t, disturbance, &mut state, &mut [], |_, _, _, _| {
+            runge_kutta_step(arm, t, disturbance, &mut state, &mut [], |_, _, _, _| {
                 Vec::new()
             });
         }

@@ -31,11 +31,11 @@ pub struct Products {
 }
 
 impl Filter for Products {
-    fn carried(&mut self, arm: &Coefficients, t: f64) {
+    fn propagate(&mut self, arm: &Coefficients, t: f64) {
         self.columns.push([0.0; STATES]);
         for count in 0..STEPS {
             let t = t + STEP * count as f64;
-            stepped(
+            runge_kutta_step(
                 arm,
                 t,
                 0.0,
@@ -47,7 +47,7 @@ impl Filter for Products {
         self.columns = largest(&self.columns, self.rank);
     }
 
-    fn taken(&mut self, arm: &Coefficients, t: f64, which: usize, value: f64, deviation: f64) {
+    fn update(&mut self, arm: &Coefficients, t: f64, which: usize, value: f64, deviation: f64) {
         let seen: Vec<f64> = self
             .columns
             .iter()
@@ -57,12 +57,12 @@ impl Filter for Products {
         let missed = value - measured(arm, t, &self.estimate, which);
         let mut direction = [0.0; STATES];
         for (column, seen) in self.columns.iter().zip(&seen) {
-            direction = moved(&direction, *seen, column);
+            direction = add_scaled(&direction, *seen, column);
         }
-        self.estimate = moved(&self.estimate, missed / variance, &direction);
+        self.estimate = add_scaled(&self.estimate, missed / variance, &direction);
         let shrink = 1.0 / (variance + deviation * variance.sqrt());
         for (column, seen) in self.columns.iter_mut().zip(&seen) {
-            *column = moved(column, -shrink * seen, &direction);
+            *column = add_scaled(column, -shrink * seen, &direction);
         }
     }
 

@@ -34,7 +34,7 @@ pub struct Textbook {
 }
 
 impl Filter for Textbook {
-    fn carried(&mut self, arm: &Coefficients, t: f64) {
+    fn propagate(&mut self, arm: &Coefficients, t: f64) {
         // Columns of the transition matrix; the last column is the effect of the disturbance.
         let mut flow = vec![[0.0; STATES]; STATES + 1];
         for (k, column) in flow.iter_mut().take(STATES).enumerate() {
@@ -42,7 +42,7 @@ impl Filter for Textbook {
         }
         for count in 0..STEPS {
             let t = t + STEP * count as f64;
-            stepped(
+            runge_kutta_step(
                 arm,
                 t,
                 0.0,
@@ -55,7 +55,7 @@ impl Filter for Textbook {
         let times = |rows: &[State]| -> Vec<State> {
             let carried = |row: &State| {
                 let add =
-                    |sum: State, (column, factor): (&State, &f64)| moved(&sum, *factor, column);
+                    |sum: State, (column, factor): (&State, &f64)| add_scaled(&sum, *factor, column);
                 flow.iter().zip(row).fold([0.0; STATES], add)
             };
             rows.iter().map(carried).collect()
@@ -63,18 +63,18 @@ impl Filter for Textbook {
         let half = transposed(&times(&self.covariance));
         self.covariance = times(&half);
         for (row, part) in self.covariance.iter_mut().zip(pushed) {
-            *row = moved(row, part, &pushed);
+            *row = add_scaled(row, part, &pushed);
         }
     }
 
-    fn taken(&mut self, arm: &Coefficients, t: f64, which: usize, value: f64, deviation: f64) {
+    fn update(&mut self, arm: &Coefficients, t: f64, which: usize, value: f64, deviation: f64) {
         let direction: State =
             std::array::from_fn(|i| measured(arm, t, &self.covariance[i], which));
         let variance = measured(arm, t, &direction, which) + deviation * deviation;
         let missed = value - measured(arm, t, &self.estimate, which);
-        self.estimate = moved(&self.estimate, missed / variance, &direction);
+        self.estimate = add_scaled(&self.estimate, missed / variance, &direction);
         for (row, part) in self.covariance.iter_mut().zip(direction) {
-            *row = moved(row, -part / variance, &direction);
+            *row = add_scaled(row, -part / variance, &direction);
         }
     }
 

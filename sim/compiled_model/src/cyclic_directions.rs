@@ -5,7 +5,7 @@
 //! the null space of the derivatives of the accelerations with respect to the coordinates. Finite displacements from
 //! the state and from a displaced state confirm each candidate.
 
-use eomgen_codegen::independence::vectors::max_magnitude;
+use eomgen_codegen::independence::vectors::find_max_magnitude;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::dimension::Dimension;
 
@@ -242,7 +242,7 @@ impl Instance<'_> {
 /// Returns a basis of the null space of a matrix given by rows. Each vector has a 1 at an index at which the others are
 /// 0. Rows and columns may have different units.
 fn compute_null_space_basis(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
-    let row_sizes = rows.iter().map(max_magnitude);
+    let row_sizes = rows.iter().map(find_max_magnitude);
     let mut matrix: Vec<Vec<f64>> = rows
         .iter()
         .zip(row_sizes)
@@ -251,7 +251,7 @@ fn compute_null_space_basis(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> 
         .collect();
     let units: Vec<f64> = (0..columns)
         .map(
-            |column| match max_magnitude(matrix.iter().map(|row| &row[column])) {
+            |column| match find_max_magnitude(matrix.iter().map(|row| &row[column])) {
                 0.0 => 1.0,
                 size => 1.0 / size,
             },

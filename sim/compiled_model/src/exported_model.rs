@@ -44,7 +44,7 @@ impl ExportedModel {
     /// Terms that cannot be derived.
     #[cfg(feature = "derive")]
     pub fn new(instance: &Instance<'_>) -> Result<Self, Error> {
-        use eomgen_codegen::independence::constraint_program::residual_places;
+        use eomgen_codegen::independence::constraint_program::find_residual_indices;
         use eomgen_model_spec::model::STABILISATION_RATE;
 
         let compiled = instance.model();
@@ -55,7 +55,7 @@ impl ExportedModel {
             program
         };
         let constraints = compiled.constraint_program(instance.values()).map(|known| {
-            let residuals = residual_places(compiled.model(), known);
+            let residuals = find_residual_indices(compiled.model(), known);
             (with_parameters(known), residuals)
         });
         let labels = compiled.labels().clone();

@@ -5,7 +5,7 @@ use eomgen_model_spec::argument::Argument;
 use std::borrow::Borrow;
 use std::cell::RefCell;
 
-use eomgen_codegen::independence::dependence::dependent_combinations;
+use eomgen_codegen::independence::dependence::find_dependent_combinations;
 use eomgen_codegen::independence::vectors::norm;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::inputs::HeldInputs;
@@ -271,7 +271,7 @@ impl dyn MotionModel + '_ {
         for (row, length) in all.iter_mut().zip(&lengths) {
             row.iter_mut().for_each(|entry| *entry /= length);
         }
-        let mut combinations = dependent_combinations(&all, MIN_INDEPENDENT_FRACTION);
+        let mut combinations = find_dependent_combinations(&all, MIN_INDEPENDENT_FRACTION);
         let parts = match combinations.len() > self.labels().constraint_excess {
             true => combinations.pop(),
             false => None,
@@ -329,8 +329,8 @@ impl dyn MotionModel + '_ {
         let sizes: Vec<f64> = entries
             .map(|(entry, typical)| entry.abs().max(*typical))
             .collect();
-        let [of_coordinates, of_rates] =
-            [&sizes[..degrees], &sizes[degrees..]].map(|own| rows.weighted_lengths(point, own));
+        let [of_coordinates, of_rates] = [&sizes[..degrees], &sizes[degrees..]]
+            .map(|own| rows.compute_weighted_lengths(point, own));
         let residuals = rows.residuals(point);
         let is_unsatisfied = |place: &usize| {
             let scale = match constraints[*place].is_nonholonomic {

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::ops::Deref;
 use std::sync::Arc;
 
-use eomgen_codegen::independence::constraint_program::residual_places;
+use eomgen_codegen::independence::constraint_program::find_residual_indices;
 use eomgen_codegen::independence::rows::ConstraintRows;
 use eomgen_codegen::mechanics::fields::resolution::check_coefficients;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
@@ -227,7 +227,7 @@ impl<'m> Instance<'m> {
     /// Returns the derivatives of the constraints at these parameters; `None` without constraints.
     pub(crate) fn constraint_rows(&self) -> Option<ConstraintRows> {
         let program = self.model.constraint_program(&self.values)?;
-        let residuals = residual_places(self.model.model(), program);
+        let residuals = find_residual_indices(self.model.model(), program);
         let mut rows = ConstraintRows::new(program.clone(), residuals);
         rows.prepare(&self.parameters);
         Some(rows)

@@ -3,7 +3,7 @@
 use eomgen_analysis::discretisation::{DiscreteSystem, hold_inputs};
 use eomgen_codegen::program::Variable;
 use eomgen_codegen::program::evaluator::Point;
-use eomgen_codegen::singular_terms::{SingularTerm, singular_terms};
+use eomgen_codegen::singular_terms::{SingularTerm, find_singular_terms};
 use eomgen_model_spec::argument::Argument;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::RESIDUAL;
@@ -206,7 +206,7 @@ impl Instance<'_> {
         if let Ok(Some(dependence)) = self.find_singular_position(point) {
             return self.singular_position_error(&dependence, point);
         }
-        let found = singular_terms(model, self.model().orders(), self.values(), point);
+        let found = find_singular_terms(model, self.model().orders(), self.values(), point);
         let found = match found {
             Ok(found) => found,
             Err(found) => return found.into(),

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-use eomgen_codegen::independence::constraint_program::{constraint_program, residual_places};
+use eomgen_codegen::independence::constraint_program::{constraint_program, find_residual_indices};
 use eomgen_codegen::independence::rows::ConstraintRows;
 use eomgen_codegen::mechanics::equations::Equations;
 use eomgen_codegen::mechanics::outputs::Output;
@@ -336,7 +336,7 @@ impl CompiledModel {
     pub fn constraint_rows(&self, parameters: &[f64]) -> Option<ConstraintRows> {
         let values = self.model.parameter_values().ok()?;
         let program = self.constraint_program(&values)?;
-        let residuals = residual_places(&self.model, program);
+        let residuals = find_residual_indices(&self.model, program);
         let mut rows = ConstraintRows::new(program.clone(), residuals);
         rows.prepare(parameters);
         Some(rows)

@@ -139,8 +139,12 @@ impl Tangents {
             direction[column] = 1.0;
             let parts = direction.split_at(states);
             let along = &mut self.along;
-            self.evaluator
-                .derivatives_along(along.place, point, parts, &mut along.nonzeros);
+            self.evaluator.compute_derivatives_along(
+                along.place,
+                point,
+                parts,
+                &mut along.nonzeros,
+            );
             for (row, value) in along.dense.iter().zip(&along.nonzeros) {
                 let (matrix, row) = match (*row < states, column < states) {
                     (true, true) => (&mut found.a, *row),

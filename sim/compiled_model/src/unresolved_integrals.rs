@@ -1,7 +1,7 @@
 //! Check of a motion for integrals along a field that the quadrature does not resolve.
 
 use eomgen_codegen::mechanics::fields::resolution::{
-    MAX_ERROR, QuadratureError, State, has_nonlinear_integrals, worst_at_state,
+    MAX_ERROR, QuadratureError, State, find_largest_error_at_state, has_nonlinear_integrals,
 };
 
 use crate::error::Error;
@@ -60,7 +60,7 @@ impl Instance<'_> {
                 state,
                 inputs: &motion.inputs.evaluate(t),
             };
-            let integral = worst_at_state(&model, self.model().orders(), at)?;
+            let integral = find_largest_error_at_state(&model, self.model().orders(), at)?;
             Some(UnresolvedIntegral { t, integral })
         });
         let worst = errors.max_by(|one, other| one.integral.error.total_cmp(&other.integral.error));

@@ -87,7 +87,7 @@ impl ExponentialIntegrator {
         let surfaces = Surfaces::new(&mut evaluator).ok_or(UnsupportedModel::UnsupportedTerms)?;
         let system = evaluator.system(&vec![0.0; evaluator.guard_count()]);
         if !system.phases.is_empty()
-            || !evaluator.half_widths_are_right()
+            || !evaluator.half_widths_are_nonnegative()
             || !evaluator.pivots_are_positive()
         {
             return Err(UnsupportedModel::UnsupportedTerms);

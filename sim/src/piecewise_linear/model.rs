@@ -5,7 +5,7 @@ use eomgen_codegen::mechanics::equations::{Equations, derive};
 use eomgen_codegen::mechanics::linearity::{Linearity, linearity};
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineProgram};
 use eomgen_codegen::program::lowering::lower_affine;
-use eomgen_codegen::symbolic::formula::abridged_formula;
+use eomgen_codegen::symbolic::formula::write_abridged_formula;
 use eomgen_model_spec::model::{Model, ParameterValue};
 
 use super::error::ExactError;
@@ -39,11 +39,11 @@ impl PiecewiseLinear {
             Linearity::Constrained => return Err(ExactError::Constrained),
             Linearity::Impacts => return Err(ExactError::Impacts),
             Linearity::Corners(node) => {
-                let surface = abridged_formula(&equations.graph, model, node).to_string();
+                let surface = write_abridged_formula(&equations.graph, model, node).to_string();
                 return Err(ExactError::Corners { surface });
             }
             Linearity::Nonlinear(node) => {
-                let formula = abridged_formula(&equations.graph, model, node).to_string();
+                let formula = write_abridged_formula(&equations.graph, model, node).to_string();
                 return Err(ExactError::NotLinear { formula });
             }
         }

@@ -176,7 +176,7 @@ impl Propagator {
     pub(super) fn new(mut evaluator: AffineEvaluator) -> Result<Self, ExactError> {
         let sides = vec![0.0; evaluator.guard_count()];
         let system = evaluator.system(&sides);
-        if !evaluator.half_widths_are_right() {
+        if !evaluator.half_widths_are_nonnegative() {
             return Err(ExactError::NegativeHalfWidth);
         }
         if !evaluator.pivots_are_positive() {

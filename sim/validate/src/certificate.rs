@@ -441,7 +441,7 @@ mod tests {
     }
 
     #[test]
-    fn the_worst_is_kept_with_its_place() {
+    fn largest_deviation_is_kept_with_its_location() {
         let mut worst = Worst::default();
         worst.include(Worst::from_deviation(0.5, "here"));
         worst.include(Worst::from_deviation(0.25, "there"));

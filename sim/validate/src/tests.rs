@@ -117,7 +117,7 @@ fn find_check<'c>(certificate: &'c Certificate, name: &str) -> &'c Check {
 }
 
 #[test]
-fn every_check_has_a_meaning() {
+fn every_check_has_a_description() {
     let certificates = [
         certify_pendulum(Fault::None),
         certify_beam(2, false),

@@ -71,7 +71,7 @@ fn rise_within<T: Scalar>(
         return None;
     }
     if changes == 1 || (halvings == 0 && rises) {
-        return Some(root(
+        return Some(refine_root(
             coefficients,
             T::from_f64(from),
             T::from_f64(from + width),
@@ -112,7 +112,7 @@ fn value_and_slope<T: Scalar>(coefficients: &[T], at: T) -> (T, T) {
 
 /// Returns the single root in `low..=high` of a polynomial that increases at the root. Newton's method is used, with
 /// bisection if an iterate leaves the bracket.
-fn root<T: Scalar>(coefficients: &[T], mut low: T, mut high: T) -> T {
+fn refine_root<T: Scalar>(coefficients: &[T], mut low: T, mut high: T) -> T {
     let mut at = (low + high).scaled_by(0.5);
     for _ in 0..200 {
         let (value, slope) = value_and_slope(coefficients, at);

@@ -27,7 +27,7 @@ pub struct Mode<T> {
 impl<T: Scalar> Mode<T> {
     /// Returns mode `r`, counted from 1.
     pub fn clamped_free(r: usize) -> Self {
-        let z: T = root(r);
+        let z: T = compute_root(r);
         let (sin, cos) = z.sin_cos();
         let decay = (-z).exp();
         let one = T::from_f64(1.0);
@@ -49,7 +49,7 @@ impl<T: Scalar> Mode<T> {
 
 /// Returns the r-th positive root of cos z + 1/cosh z by Newton's method. The initial value (r - 1/2) pi has an error
 /// of 0.3 at r = 1 and of 2 exp(-z) for larger r.
-fn root<T: Scalar>(r: usize) -> T {
+fn compute_root<T: Scalar>(r: usize) -> T {
     let one = T::from_f64(1.0);
     let mut z = T::PI.scaled_by(r as f64 - 0.5);
     for _ in 0..12 {

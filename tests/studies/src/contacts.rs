@@ -1,6 +1,6 @@
-//! Study `contacts`: stacks of two to five balls that fall on a floor and onto each other, and boxes of
-//! `examples/impacts`, without and with friction, dropped from random states. Every motion must reach the end without
-//! overlaps and without an increase of the energy, and the stacks must come to rest.
+//! Study `contacts`: stacks of two to five falling balls, and boxes of `examples/impacts`, without and with friction,
+//! dropped from random states. Every motion must reach the end without overlaps and without an increase of the energy,
+//! and the stacks must stop moving.
 
 use std::path::Path;
 
@@ -59,27 +59,27 @@ pub fn run(sample: &Sample) -> Result<String, String> {
     }
 }
 
-fn between(random: &mut Random, low: f64, high: f64) -> f64 {
+fn draw_between(random: &mut Random, low: f64, high: f64) -> f64 {
     low + (high - low) * random.unit()
 }
 
 fn drop_box(model: &CompiledModel, random: &mut Random, solver: Solver) -> Result<(), String> {
-    let restitution = between(random, 0.0, 0.7);
-    let half_width = between(random, 0.1, 0.4);
+    let restitution = draw_between(random, 0.0, 0.7);
+    let half_width = draw_between(random, 0.1, 0.4);
     let mut settings = vec![("e", restitution), ("b", half_width)];
     if model.model().name == "box_with_friction" {
-        settings.push(("mu", between(random, 0.0, 1.5)));
+        settings.push(("mu", draw_between(random, 0.0, 1.5)));
     }
     let run = model
         .with_parameters(&settings)
         .map_err(|e| e.to_string())?;
     let initial = [
         0.0,
-        between(random, 0.5, 1.0),
-        between(random, -3.2, 3.2),
-        between(random, -2.0, 2.0),
-        between(random, -2.0, 1.0),
-        between(random, -8.0, 8.0),
+        draw_between(random, 0.5, 1.0),
+        draw_between(random, -3.2, 3.2),
+        draw_between(random, -2.0, 2.0),
+        draw_between(random, -2.0, 1.0),
+        draw_between(random, -8.0, 8.0),
     ];
     simulate(&run, &initial, solver).map(drop)
 }
@@ -89,7 +89,7 @@ fn stack(random: &mut Random) -> String {
     let count = 2 + (4.0 * random.unit()) as usize;
     let [mut parameters, mut coordinates, mut impacts] = [const { String::new() }; 3];
     let (mut kinetic, mut weight) = (Vec::new(), Vec::new());
-    let mut height = between(random, 0.1, 0.4);
+    let mut height = draw_between(random, 0.1, 0.4);
     for ball in 0..count {
         let mass = 10_f64.powf(random.symmetric());
         parameters += &format!("m{ball} = {{ value = {mass:?}, unit = \"kg\" }}\n");
@@ -100,7 +100,7 @@ fn stack(random: &mut Random) -> String {
             0 => "y0 - r".to_owned(),
             _ => format!("y{ball} - y{} - 2*r", ball - 1),
         };
-        let restitution = between(random, 0.0, 0.7);
+        let restitution = draw_between(random, 0.0, 0.7);
         impacts +=
             &format!("c{ball} = {{ when = \"{distance}\", restitution = {restitution:?} }}\n");
         // Some balls touch at the start.

@@ -85,7 +85,7 @@ fn run_command(command: &str, specification: &Path, folder: &Path, name: &str) -
 }
 
 #[test]
-fn dry_friction_of_the_joint_is_found_with_place_and_sign() {
+fn dry_friction_of_the_joint_is_found_with_site_and_sign() {
     let folder = tempfile::tempdir().expect("a folder");
     write_records(folder.path());
     let specification = path("planetary_arm_rig");

@@ -35,7 +35,7 @@ fn fast_cases(cases: &[Case]) -> Vec<&Case> {
 }
 
 #[test]
-fn fixed_part_is_generated_run_and_scored() {
+fn fixed_part_of_blind_suite_is_generated_run_and_scored() {
     let folder = tempfile::tempdir().expect("a folder");
     let cases = plan(SEED);
     let chosen = fast_cases(&cases);

@@ -89,7 +89,7 @@ fn wrong_length_in_a_constraint_is_found() {
 }
 
 #[test]
-fn damper_on_the_turns_of_a_sleigh_is_found() {
+fn rotational_damper_of_a_sleigh_is_found() {
     let sampling = Sampling {
         samples: 400,
         window: Some(0.8),

@@ -182,7 +182,7 @@ tip = { value = "at(w, l)", unit = "m" }
     samples: 400,
 };
 
-/// Beam with longer windows. A compliant joint has a coordinate of its own. In short windows, its fitted initial state
+/// Beam with longer windows. A compliant joint has a separate coordinate. In short windows, its fitted initial state
 /// would explain the records.
 const BEAM_FOR_LONG: Machine = Machine {
     window: 1.0,
@@ -651,7 +651,7 @@ fn weights_of_a_machine_and_of_its_load_are_found() {
 
 /// In these records a hardening spring is inseparable from stops on both sides, and it closes only a part of the gap.
 #[test]
-fn approximate_effect_is_reported_as_substitute() {
+fn inseparable_effect_that_closes_part_of_the_gap_is_reported() {
     let stops = Hidden {
         by: Change::Entry(0, None, &[900.0, 0.03]),
         ..hidden("end_stop", "spring", &[])

@@ -304,7 +304,7 @@ fn bending_stiffness_is_recognised_in_all_notations() {
 }
 
 #[test]
-fn initial_place_of_a_stop_is_in_the_travel_of_its_side() {
+fn initial_position_of_a_stop_is_within_the_motion_on_its_side() {
     let model = check_model(TWO_CARRIAGES);
     let effects = load_effects(None).expect("the catalogue");
     let stops = effects.iter().filter(|effect| effect.name == "end_stop");

@@ -149,7 +149,7 @@ fn offsets_of_a_sensor_and_of_a_force_form_a_class() {
 }
 
 #[test]
-fn lag_of_a_sensor_is_noted_beside_that_of_the_input() {
+fn lag_of_a_sensor_is_noted_with_lag_of_the_input() {
     let document = answer(Faults {
         gain: 1.0,
         offset: 0.0,

@@ -96,7 +96,7 @@ fn write_case(folder: &std::path::Path, friction: f64) {
 }
 
 #[test]
-fn recorded_outputs_drive_the_machine_and_show_its_friction() {
+fn friction_is_found_if_recorded_controller_outputs_drive_the_machine() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |name: &str| folder.path().join(name).display().to_string();
     let (spec, dataset, out) = (file("cart.toml"), file("dataset.toml"), file("out"));
@@ -127,7 +127,7 @@ fn recorded_outputs_drive_the_machine_and_show_its_friction() {
 }
 
 #[test]
-fn missing_output_of_a_controller_is_refused_with_its_place() {
+fn missing_output_of_a_controller_is_rejected_with_location() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |name: &str| folder.path().join(name).display().to_string();
     write_case(folder.path(), 0.0);

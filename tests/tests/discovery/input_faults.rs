@@ -227,7 +227,7 @@ fn declared_input_uncertainty_is_refitted_within_prior() {
 }
 
 #[test]
-fn delayed_input_is_a_single_unknown() {
+fn input_delay_is_found_as_a_single_effect() {
     let lever = "\n[observables]\nlever = { value = \"0.3*sin(theta)\" }\n"
         .replace(" }", ", unit = \"rad\" }");
     let specification = format!("{PENDULUM}{lever}");

@@ -129,7 +129,7 @@ fn axis_record(command: impl Fn(f64) -> f64, seed: u64) -> String {
 }
 
 #[test]
-fn overlap_of_a_valve_is_found() {
+fn valve_overlap_is_found() {
     let records = [
         axis_record(|t| 1.2 * (9.0 * t).sin() + 0.8 * (23.0 * t + 1.0).sin(), 1),
         axis_record(|t| 0.9 * (13.0 * t).cos() + 0.7 * (31.0 * t).sin(), 2),
@@ -239,7 +239,7 @@ fn stage_records(friction: impl Fn(f64, f64) -> f64) -> [String; 2] {
 }
 
 #[test]
-fn dahl_friction_that_yields_before_it_slides_is_found() {
+fn dahl_friction_with_presliding_is_found() {
     let records = stage_records(|_, z| 1.8 * z / 1.5e-4);
     let found = discover(STAGE, STAGE_RECORDS, records);
     let sizes = [("T_b", 1.8), ("p_b", 1.5e-4)];
@@ -310,7 +310,7 @@ fn stop_record(force: impl Fn(f64) -> f64, (side, place): (f64, f64), seed: u64)
 
 /// The stop limits the motion on its side to much less than the largest distance from 0, which is on the other side.
 #[test]
-fn stop_on_one_side_is_found_in_the_shorter_travel() {
+fn one_sided_stop_is_found_on_the_side_of_the_smaller_amplitude() {
     for stop in [(-1.0, 0.03), (-1.0, 0.02), (1.0, 0.03)] {
         let (side, place) = stop;
         let train = |t: f64| 9.0 * (8.1 * t).sin() + 5.0 * (15.0 * t + 1.0).sin();

@@ -101,7 +101,7 @@ fn simulate_record(normal: &mut NormalNumbers, turn: f64) -> String {
 }
 
 #[test]
-fn hardly_determined_parameters_of_a_beam_reach_the_minimum() {
+fn weakly_determined_parameters_of_a_beam_reach_the_minimum() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut normal = NormalNumbers::new(4242);
     for (name, turn) in [("train.csv", 0.3), ("test.csv", 1.7)] {

@@ -30,7 +30,7 @@ fn run(command: &mut Command) -> String {
 }
 
 #[test]
-fn loop_in_c_has_the_bits_of_the_simulation_and_of_the_board() {
+fn loop_in_c_is_bit_identical_to_simulation_and_board() {
     if !is_available("cc") {
         skips::skip("the loop in C was not run: cc is missing (Debian: apt-get install gcc)");
         return;
@@ -258,7 +258,7 @@ fn write(folder: &Path, name: &str, contents: &str) {
 }
 
 #[test]
-fn emitted_controllers_have_the_bits_of_the_simulated_ones() {
+fn emitted_controllers_are_bit_identical_to_simulated_controllers() {
     let program = program();
     let expected = evaluated(&program);
     let folder = tempfile::tempdir().expect("a folder");

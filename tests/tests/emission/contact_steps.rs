@@ -60,7 +60,7 @@ fn build(compiler: &str, options: &[&str], emitted: &Path, out: &Path) {
 }
 
 #[test]
-fn steps_in_c_have_the_bits_of_the_simulation_and_of_the_board() {
+fn steps_in_c_are_bit_identical_to_simulation_and_board() {
     if !is_available("cc") {
         skips::skip("steps in C were not run: cc is missing (Debian: apt-get install gcc)");
         return;

@@ -266,7 +266,7 @@ fn comparison_reports_failed_certificates_and_more_operations() {
 }
 
 #[test]
-fn failed_variant_leaves_all_files() {
+fn failed_variant_leaves_all_files_unchanged() {
     let copy = copy();
     edit(&copy.path().join("beam.toml"), "value = 900", "value = 901");
     edit(&copy.path().join("family.toml"), "order = 1", "order = 500");
@@ -345,7 +345,7 @@ fn truncated_manifest_is_rejected_and_nothing_written() {
 }
 
 #[test]
-fn wrong_families_are_rejected_with_their_place() {
+fn invalid_family_files_are_rejected_with_location() {
     let variant = |more: &str| {
         format!("[family]\nname = \"f\"\n[[variant]]\nname = \"a\"\nspec = \"beam.toml\"\n{more}")
     };
@@ -545,7 +545,7 @@ fn unchanged_family_of_two_thousand_is_compared_quickly() {
 }
 
 /// Runs the program and returns exit status and output.
-fn said(arguments: &[&Path], more: &[&str]) -> (Option<i32>, String) {
+fn run_and_read(arguments: &[&Path], more: &[&str]) -> (Option<i32>, String) {
     let output = eomgen()
         .args(arguments)
         .args(more)
@@ -560,11 +560,11 @@ fn said(arguments: &[&Path], more: &[&str]) -> (Option<i32>, String) {
 
 fn verify(file: &Path, more: &[&str]) -> (Option<i32>, String) {
     let certificate = file.with_file_name("certificate.json");
-    said(&[Path::new("verify"), file, &certificate], more)
+    run_and_read(&[Path::new("verify"), file, &certificate], more)
 }
 
 #[test]
-fn embedded_files_are_verified_and_faults_are_found() {
+fn emitted_files_are_verified_and_faults_are_found() {
     let copy = copy();
     let models = copy.path().join("models");
     let rust = models.join("beam_1/mod.rs");
@@ -630,13 +630,13 @@ fn comparison_names_edited_certificate() {
 }
 
 #[test]
-fn wrong_files_are_not_verified() {
+fn invalid_files_and_certificates_are_rejected_by_verify() {
     let copy = copy();
     let models = copy.path().join("models");
     let rust = models.join("beam_1/mod.rs");
     let certificate = models.join("beam_1/certificate.json");
     let of = |file: &Path, certificate: &Path, more: &[&str]| {
-        said(&[Path::new("verify"), file, certificate], more)
+        run_and_read(&[Path::new("verify"), file, certificate], more)
     };
     let other = models.join("beam_1/beam_1.txt");
     std::fs::write(&other, "text").expect("written");
@@ -690,7 +690,7 @@ fn linked_programs_keep_the_identities() {
     let models = WRITTEN.path().join("models");
     let work = tempfile::tempdir().expect("a folder");
     let identify = |image: &Path| {
-        let (status, text) = said(
+        let (status, text) = run_and_read(
             &[
                 Path::new("identify"),
                 image,
@@ -767,7 +767,7 @@ fn linked_programs_keep_the_identities() {
     }
     run(compile.arg("-o").arg(&program));
     let search = ["--certificates", &models.display().to_string(), "--json"];
-    let (status, text) = said(&[Path::new("identify"), &program], &search);
+    let (status, text) = run_and_read(&[Path::new("identify"), &program], &search);
     assert_eq!(status, Some(0), "{text}");
     let document: Value = serde_json::from_str(&text).expect("JSON");
     let mut names: Vec<&str> = document["variants"]
@@ -788,7 +788,7 @@ fn files_in_single_precision_are_verified_by_the_certificate_of_their_variant() 
     let work = tempfile::tempdir().expect("a folder");
     let verify = |folder: &Path| {
         let file = folder.join("long_beam_f32.c");
-        said(&[Path::new("verify"), &file, &certificate], &[])
+        run_and_read(&[Path::new("verify"), &file, &certificate], &[])
     };
     let (status, text) = verify(&folder);
     assert_eq!(status, Some(0), "{text}");
@@ -816,7 +816,7 @@ fn controller_with_named_indices_serves_all_orders() {
         let out = folder.path().join(order);
         let spec = path("hub_beam_tip_mass");
         let arguments = [Path::new("generate"), &spec, Path::new("--out"), &out];
-        let (status, text) = said(&arguments, &["--target", "c99", "--order", order]);
+        let (status, text) = run_and_read(&arguments, &["--target", "c99", "--order", order]);
         assert_eq!(status, Some(0), "{text}");
         let program = folder.path().join(format!("control{order}"));
         run(Command::new("cc")

@@ -135,7 +135,7 @@ int main(void) {
 "#;
 
 #[test]
-fn one_solver_moves_all_orders_in_both_languages() {
+fn one_integrator_simulates_all_orders_in_both_languages() {
     let models = WRITTEN.path().join("models");
     let work = tempfile::tempdir().expect("a folder");
     let source = work.path().join("main.rs");

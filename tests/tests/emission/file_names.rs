@@ -75,7 +75,7 @@ fn two_files_with_one_name_are_rejected_before_any_is_written() {
 }
 
 #[test]
-fn vectors_of_both_precisions_belong_to_the_prefix_of_the_variant() {
+fn test_vectors_of_both_precisions_have_the_prefix_of_the_variant() {
     for precision in ["[\"f64\", \"f32\"]", "[\"f32\", \"f64\"]"] {
         let folder = tempfile::tempdir().expect("a folder");
         let variant = format!("name = \"a\"\nprecision = {precision}\nwith = [\"self_test\"]\n");

@@ -129,7 +129,7 @@ fn family_with_headers_is_certified_compared_verified_and_identified() {
 }
 
 #[test]
-fn header_of_two_files_is_no_source_to_verify() {
+fn declaration_header_cannot_be_verified() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let spec = path("pendulum");

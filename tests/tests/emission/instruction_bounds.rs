@@ -261,7 +261,7 @@ fn emulated_counts_never_exceed_bounds() {
 
 /// The table in docs/embedding.md must match the recorded measurement of all shipped machines.
 #[test]
-fn documented_ratios_are_those_of_the_recorded_bounds() {
+fn documented_ratios_match_recorded_bounds() {
     if std::env::var_os("EOMGEN_REFRESH").is_some() && has_tools() {
         std::fs::write(project().join(RECORDED), measure_all_machines()).expect("written");
     }
@@ -388,7 +388,7 @@ fn loop_over_data_has_no_bound() {
 
 /// The certificate contains the bounds. `verify` computes them again and rejects changed bounds.
 #[test]
-fn certificate_states_bounds_that_verify_repeats() {
+fn certificate_contains_bounds_that_verify_recomputes() {
     if !has_tools() {
         return;
     }

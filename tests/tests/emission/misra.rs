@@ -42,7 +42,7 @@ const MODELS: [(&str, &[&str]); 6] = [
 ];
 
 #[test]
-fn required_rules_that_emitted_c_breaks_are_the_listed_deviations() {
+fn violated_required_rules_equal_the_documented_deviations() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let probe = folder.join("probe.c");

@@ -16,7 +16,7 @@ fn run(arguments: &[&str]) -> (Option<i32>, String) {
 }
 
 #[test]
-fn emitted_defaults_are_those_of_set() {
+fn emitted_defaults_equal_values_of_set() {
     let folder = tempfile::tempdir().expect("a folder");
     let spec = path("pendulum");
     let spec = spec.to_str().expect("a path");

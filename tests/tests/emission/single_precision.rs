@@ -31,7 +31,7 @@ macro_rules! agrees {
 
         impl $module::Scalar for Single {
             fn number(value: f64) -> Self {
-                Self::result(value, 0.0)
+                Self::with_rounding(value, 0.0)
             }
             fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
                 if a.number > b.number { then } else { otherwise }
@@ -41,13 +41,13 @@ macro_rules! agrees {
             }
             fn function<F: $module::Function>(self) -> Self {
                 let value = F::value(self.number);
-                Self::result(value, F::slope(self.number, value).abs() * self.error + function_error(value))
+                Self::with_rounding(value, F::slope(self.number, value).abs() * self.error + function_error(value))
             }
             fn function_of_two<F: $module::FunctionOfTwo>(self, other: Self) -> Self {
                 let value = F::value(self.number, other.number);
                 let [first, second] = F::slopes(self.number, other.number, value);
                 let error = first.abs() * self.error + second.abs() * other.error;
-                Self::result(value, error + function_error(value))
+                Self::with_rounding(value, error + function_error(value))
             }
         }
 

@@ -100,7 +100,7 @@ fn all_requested_outputs_are_checked() {
 }
 
 #[test]
-fn certificate_holds_hashes_of_its_source() {
+fn certificate_contains_hashes_of_its_source() {
     let folder = tempfile::tempdir().expect("a folder");
     let spec = write_lever(folder.path());
     let out = folder.path().join("out");

@@ -2,7 +2,7 @@
 
 use eomgen_codegen::mechanics::equations::derive;
 use eomgen_codegen::mechanics::linearity::{Linearity, linearity};
-use eomgen_codegen::symbolic::formula::full_formula;
+use eomgen_codegen::symbolic::formula::write_full_formula;
 use eomgen_model_spec::check;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
@@ -22,9 +22,12 @@ fn kind(model: &Model) -> String {
         Linearity::Constrained => "with constraints".to_owned(),
         Linearity::Impacts => "with impacts".to_owned(),
         Linearity::Corners(node) => {
-            format!("corner at {}", full_formula(&equations.graph, model, node))
+            format!(
+                "corner at {}",
+                write_full_formula(&equations.graph, model, node)
+            )
         }
-        Linearity::Nonlinear(node) => full_formula(&equations.graph, model, node).to_string(),
+        Linearity::Nonlinear(node) => write_full_formula(&equations.graph, model, node).to_string(),
     }
 }
 

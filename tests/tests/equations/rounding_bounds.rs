@@ -363,7 +363,7 @@ fn pivots_must_be_proven_positive() {
 }
 
 #[test]
-fn bounds_of_single_states_are_close() {
+fn bounds_at_single_states_are_tight() {
     let model = load("puma_560");
     let program = derive(&model);
     let mut ranges = typical_ranges(&model, &program);

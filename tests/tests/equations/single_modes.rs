@@ -77,7 +77,7 @@ fn modal_feedback_adds_the_force_of_the_named_modes() {
 }
 
 #[test]
-fn feedback_of_a_mode_is_certified_at_orders_that_have_it() {
+fn feedback_of_a_mode_is_certified_at_orders_with_this_mode() {
     for order in [3, 4] {
         let model = check_model(&MACHINE.replace("order = 3", &format!("order = {order}")));
         let certificate = certify(&model, &model);
@@ -87,7 +87,7 @@ fn feedback_of_a_mode_is_certified_at_orders_that_have_it() {
 }
 
 #[test]
-fn order_without_the_named_mode_is_rejected() {
+fn order_without_the_measured_mode_is_rejected() {
     let derived = CompiledModel::from_text("hub.toml", MACHINE, Orders::Uniform(2));
     let failure = derived.err().expect("order 2 has no third mode");
     let message = failure.to_string();

@@ -1,5 +1,5 @@
-//! Test that piecewise functions and the reciprocal of a pivot at zeros, infinities, NaN and thresholds have the same
-//! results in the interpreter, machine code, WebAssembly, C and Rust, in both precisions.
+//! Test of piecewise functions and the reciprocal of a pivot at zeros, infinities, NaN and thresholds. The interpreter,
+//! machine code, WebAssembly, C and Rust must have equal results in both precisions.
 
 use std::path::Path;
 use std::process::{Command, Stdio};

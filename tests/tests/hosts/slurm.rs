@@ -62,10 +62,10 @@ impl Cluster {
             folder,
             daemons: Vec::new(),
         };
-        fs::create_dir(cluster.at("state")).expect("a folder");
-        fs::write(cluster.at("key"), [7; 1024]).expect("a key");
-        make_private(&cluster.at("key"));
-        fs::write(cluster.at("slurm.conf"), cluster.configuration()).expect("a configuration");
+        fs::create_dir(cluster.path_to("state")).expect("a folder");
+        fs::write(cluster.path_to("key"), [7; 1024]).expect("a key");
+        make_private(&cluster.path_to("key"));
+        fs::write(cluster.path_to("slurm.conf"), cluster.configuration()).expect("a configuration");
         let names = [
             ("key-file", "key"),
             ("socket", "socket"),
@@ -74,25 +74,25 @@ impl Cluster {
             ("seed-file", "seed"),
         ];
         let munge =
-            names.map(|(option, name)| format!("--{option}={}", cluster.at(name).display()));
+            names.map(|(option, name)| format!("--{option}={}", cluster.path_to(name).display()));
         cluster.spawn("munged", &["--foreground", "--force"], &munge, "none");
-        cluster.wait("munged", |cluster| cluster.at("socket").exists());
+        cluster.wait("munged", |cluster| cluster.path_to("socket").exists());
         cluster.spawn("slurmctld", &["-D"], &[], "none");
         for node in ["n1", "n2"] {
             cluster.spawn("slurmd", &["-D", "-N", node], &[], node);
         }
         cluster.wait("both nodes", |cluster| {
-            cluster.ask("sinfo", &["-h", "-o", "%T %D"]).trim() == "idle 2"
+            cluster.run_client("sinfo", &["-h", "-o", "%T %D"]).trim() == "idle 2"
         });
         cluster
     }
 
-    fn at(&self, name: &str) -> PathBuf {
+    fn path_to(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }
 
     fn configuration(&self) -> String {
-        let at = |name: &str| self.at(name).display().to_string();
+        let at = |name: &str| self.path_to(name).display().to_string();
         let [controller, first, second] = free_ports();
         let user = text(
             &Command::new("id")
@@ -124,7 +124,7 @@ impl Cluster {
 
     fn command(&self, program: &str) -> Command {
         let mut command = Command::new(program);
-        command.env("SLURM_CONF", self.at("slurm.conf"));
+        command.env("SLURM_CONF", self.path_to("slurm.conf"));
         command
     }
 
@@ -135,7 +135,7 @@ impl Cluster {
         self.daemons.push(daemon.expect("a daemon of Slurm"));
     }
 
-    fn ask(&self, program: &str, arguments: &[&str]) -> String {
+    fn run_client(&self, program: &str, arguments: &[&str]) -> String {
         let output = self.command(program).args(arguments).output();
         text(&output.expect("a command of Slurm").stdout)
     }
@@ -153,7 +153,7 @@ impl Cluster {
     }
 
     fn logs(&self) -> String {
-        let read = |name| fs::read_to_string(self.at(name)).unwrap_or_default();
+        let read = |name| fs::read_to_string(self.path_to(name)).unwrap_or_default();
         ["controller.log", "n1.log", "n2.log"]
             .map(read)
             .join("\n--\n")
@@ -161,7 +161,7 @@ impl Cluster {
 
     /// Returns the processes of this cluster that have `variable` in their environment.
     fn processes(&self, variable: &str) -> Vec<String> {
-        let configuration = format!("SLURM_CONF={}", self.at("slurm.conf").display());
+        let configuration = format!("SLURM_CONF={}", self.path_to("slurm.conf").display());
         let mut found = Vec::new();
         for entry in fs::read_dir("/proc").expect("/proc") {
             let path = entry.expect("an entry").path();
@@ -250,14 +250,14 @@ fn parts(folder: &Path) -> usize {
 }
 
 #[test]
-fn sweep_survives_a_lost_node() {
+fn sweep_completes_after_a_node_is_killed() {
     if !has_slurm() {
         skips::skip("no sweep was run on Slurm (Debian: apt-get install slurm-wlm munge)");
         return;
     }
     let cluster = Cluster::start();
     // The path needs quoting in a shell.
-    let place = cluster.at("it's a $place");
+    let place = cluster.path_to("it's a $place");
     fs::create_dir(&place).expect("a folder");
     fs::write(place.join("oscillator.toml"), OSCILLATOR).expect("a specification");
     let program = program::path().display().to_string();
@@ -283,15 +283,15 @@ fn sweep_survives_a_lost_node() {
     cluster.wait("the merge", |cluster| {
         // Slurm would delay the tasks of a failed node by two minutes, so they are released.
         for line in cluster
-            .ask("squeue", &["-h", "-r", "-t", "PD", "-o", "%i %r"])
+            .run_client("squeue", &["-h", "-r", "-t", "PD", "-o", "%i %r"])
             .lines()
         {
             if let Some(job) = line.strip_suffix(" BeginTime") {
                 let now = format!("JobId={job}");
-                cluster.ask("scontrol", &["update", &now, "StartTime=now"]);
+                cluster.run_client("scontrol", &["update", &now, "StartTime=now"]);
             }
         }
-        cluster.ask("squeue", &["-h"]).trim().is_empty()
+        cluster.run_client("squeue", &["-h"]).trim().is_empty()
     });
     let log = fs::read_to_string(spread.join("slurm/merge.log")).unwrap_or_default();
     for name in ["sweep.json", "sweep.parquet", "map_poincare.png"] {

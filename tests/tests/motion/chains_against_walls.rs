@@ -153,7 +153,7 @@ fn hits(motion: &Motion, degrees: usize) -> Vec<(f64, String)> {
 }
 
 #[test]
-fn impacts_with_constraints_match_those_in_angles_and_log_their_jumps() {
+fn impacts_with_constraints_match_impacts_in_angles_and_log_their_jumps() {
     let mut compared = 0;
     for seed in 0..MACHINES {
         let chain = Chain::draw(seed);

@@ -53,7 +53,7 @@ fn assert_agrees_with_scipy(flow: &str, solver: Solver) {
 
 /// Twice in each oscillation, the difference of the pressures crosses 0 and is comparable with their rounding errors.
 #[test]
-fn flow_between_chambers_passes_equal_pressures() {
+fn flow_between_chambers_continues_through_equal_pressures() {
     let flows = [
         "k_v*sign(p_1 - p_2)*sqrt(abs(p_1 - p_2))",
         "-k_v*sign(p_2 - p_1)*sqrt(abs(p_2 - p_1))",

@@ -473,7 +473,7 @@ c_2 = { zero = "(a*sin(p) + b*sin(q) - a*sin(s))/a" }
 "#;
 
 #[test]
-fn steps_to_a_fold_end_there_for_any_sampling() {
+fn steps_end_at_a_fold_for_any_sampling() {
     let fold = 0.5 * (std::f64::consts::PI - 1.0);
     for sample in [0.05, 0.07, 0.08, 0.09, 0.11, 0.14, 0.33, 0.41] {
         for solver in [Solver::Rk, Solver::Radau] {
@@ -762,8 +762,8 @@ fn rolling_disc_conserves_energy_and_sleigh_straightens() {
     assert!((last[3].hypot(last[4]) - (energy / 2.0).sqrt()).abs() < 1e-7);
 }
 
-/// With constraints at the end of a field, each additional mode must need only a few operations, as with a tip mass:
-/// the operations with its shape at the end.
+/// With constraints at the end of a field, each additional mode must need only a few operations (with its shape at the
+/// end), as with a tip mass.
 #[test]
 fn constraints_add_few_operations_per_mode() {
     let per_mode = |constrained: bool| {
@@ -1045,7 +1045,7 @@ friction = {{ on = "s", value = "-F*sign(dot(s))" }}
 
 /// At a dead centre the friction has no lever arm, so the crank passes it. Then the friction stops the machine.
 #[test]
-fn dry_friction_stops_constrained_crank_as_one_in_its_angle() {
+fn dry_friction_stops_constrained_crank_like_unconstrained_crank() {
     let (sine, cosine) = 2.0_f64.sin_cos();
     let rod = (0.14_f64.powi(2) - (0.04 * sine).powi(2)).sqrt();
     let guide = ("r*sin(phi)", 0.04 * cosine);

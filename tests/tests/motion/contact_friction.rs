@@ -110,7 +110,7 @@ fn final_state(
 }
 
 #[test]
-fn sliding_block_comes_to_rest_in_place_and_time() {
+fn sliding_block_comes_to_rest_at_expected_position_and_time() {
     let model = compile(&sliding_block());
     let (v, mu) = (2.0, 0.3);
     let stop = v / (mu * G);
@@ -411,7 +411,7 @@ tip = { when = "y - l*sin(phi)", restitution = 0, friction = "mu", slip = "dot(t
 "#;
 
 #[test]
-fn rod_of_painleve_is_refused_only_within_its_cone() {
+fn painleve_rod_is_rejected_only_within_its_cone() {
     let model = compile(ROD);
     let phi = 2.0_f64.atan();
     let initial = [0.0, 0.5 * phi.sin(), phi, 5.0, 0.0, 0.0];
@@ -496,8 +496,8 @@ fn box_dropped_flat_bounces_evenly() {
     }
 }
 
-/// A rotating disc comes to rest in a groove after sliding, or after rocking from wall to wall. The machine is
-/// formulated in coordinate systems at several angles.
+/// A rotating disc stops in a groove after sliding, or after rocking from wall to wall. The machine is formulated in
+/// coordinate systems at several angles.
 #[test]
 fn disc_comes_to_rest_in_a_groove_at_any_angle() {
     let model = compile(
@@ -784,7 +784,7 @@ fn wheel_with_bearing_friction_rests_rolls_or_slips() {
 }
 
 #[test]
-fn dry_friction_and_contact_friction_add_their_limits() {
+fn bounds_of_dry_friction_and_contact_friction_add_up() {
     let text = |friction: &str, impact: &str| {
         let force = format!(
             r#"push = {{ on = "x", value = "f*sin(w*t)" }}
@@ -968,7 +968,7 @@ side = "b*sin(w*t)"
 /// A rod slides over a rough floor, and a force lifts it. Above a critical coefficient of friction, both lift-off and
 /// jamming are solutions (Painleve's paradox).
 #[test]
-fn several_motions_are_noted_and_the_smallest_forces_are_taken() {
+fn several_solutions_are_noted_and_the_smallest_forces_are_used() {
     for (friction, is_noted) in [
         (0.5, false),
         (1.0, false),

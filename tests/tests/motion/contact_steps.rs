@@ -74,7 +74,7 @@ fn body_held_by_friction_does_not_creep() {
 }
 
 #[test]
-fn bounces_have_newtons_law_and_end_at_rest() {
+fn bounces_satisfy_newtons_law_and_end_at_rest() {
     let times = [0.0, 0.5, 3.0];
     let ball = BALLS.replace("balls = { when = \"z - y\", restitution = \"e\" }", "");
     let found = states_at(&ball, (Solver::Fixed, 1e-4), &HeldInputs::zero(0), &times);

@@ -98,7 +98,7 @@ fn friction_that_holds_takes_few_evaluations_in_any_unit() {
 /// A ladder rests on a rough floor and against a rough wall. Its initial rates are rounding errors of an earlier
 /// motion.
 #[test]
-fn ladder_with_rates_of_rounding_rests() {
+fn ladder_with_rates_of_rounding_size_remains_at_rest() {
     for rate in [0.0, 1e-45, 1e-30, 1e-20, 1e-14] {
         for until in [0.2, 0.5, 1.0] {
             for size in [1.0, 1e3] {

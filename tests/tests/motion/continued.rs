@@ -107,7 +107,12 @@ fn call_ends(random: &mut Numbers, end: f64) -> Vec<f64> {
     ends
 }
 
-fn whole(run: &Instance<'_>, solver: Solver, times: &[f64], inputs: &HeldInputs) -> Trajectory {
+fn simulate_uninterrupted(
+    run: &Instance<'_>,
+    solver: Solver,
+    times: &[f64],
+    inputs: &HeldInputs,
+) -> Trajectory {
     let request = Request {
         initial: run.initial_state(),
         times,
@@ -157,7 +162,7 @@ fn calls_of_any_length_give_the_motion_of_one_simulation() {
         for &solver in case.solvers {
             let ends = call_ends(&mut random, case.end);
             let times = [&[0.0], &ends[..]].concat();
-            let wanted = whole(&run, solver, &times, &run.default_inputs());
+            let wanted = simulate_uninterrupted(&run, solver, &times, &run.default_inputs());
             let start = (0.0, run.initial_state());
             let mut simulation = run
                 .start_simulation(start, run.default_inputs(), options(solver))
@@ -192,7 +197,7 @@ fn inputs_changed_between_calls_act_like_held_inputs() {
         let values: Vec<f64> = values.collect();
         let held = HeldInputs::new(times.clone(), values.clone(), 1).expect("inputs");
         for &solver in solvers {
-            let wanted = whole(&run, solver, &times, &held);
+            let wanted = simulate_uninterrupted(&run, solver, &times, &held);
             let start = (0.0, run.initial_state());
             let first = HeldInputs::constant(vec![values[0]]);
             let mut simulation = run
@@ -214,7 +219,7 @@ fn inputs_changed_between_calls_act_like_held_inputs() {
 
 /// The force on a mass is constant between its jumps, so that no error estimate limits a step.
 #[test]
-fn steps_without_error_leave_no_rounding_in_states_before_their_end() {
+fn states_within_steps_without_error_have_no_rounding_error() {
     let text = "[model]\nname = \"mass\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n[coordinates]\n\
                 x = { unit = \"m\" }\n[inputs]\nu = { unit = \"N\" }\n[kinetic]\nt = \"1/2*m*dot(x)^2\"\n\
                 [forces]\nf = { on = \"x\", value = \"u\" }\n";
@@ -250,7 +255,7 @@ fn steps_without_error_leave_no_rounding_in_states_before_their_end() {
         let times: Vec<f64> = (0..200).map(|k| 1000.0 + 0.01 * f64::from(k)).collect();
         let times = [&[0.0], &times[..]].concat();
         let jump = HeldInputs::new(vec![0.0, 1000.0, 3000.0], vec![0.0, 1.0, 1.0], 1);
-        let motion = whole(&run, solver, &times, &jump.expect("inputs"));
+        let motion = simulate_uninterrupted(&run, solver, &times, &jump.expect("inputs"));
         for (t, state) in times.iter().zip(&motion.states).skip(1) {
             let error = (state[0] - 0.5 * (t - 1000.0).powi(2)).abs();
             assert!(error < 5e-13, "{solver}, {t} s: {error:.1e} m");
@@ -274,7 +279,7 @@ fn short_calls_keep_the_steps_of_the_solver() {
         assert!(stopped.expect("an advance").is_none());
     }
     let times = [&[0.0], &all.times[..]].concat();
-    let wanted = whole(&run, Solver::Rk, &times, &run.default_inputs());
+    let wanted = simulate_uninterrupted(&run, Solver::Rk, &times, &run.default_inputs());
     let (found, one) = (all.statistics, wanted.statistics);
     assert!(found.steps <= one.steps + 2, "{found:?} instead of {one:?}");
     assert!(

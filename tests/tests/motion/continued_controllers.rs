@@ -92,7 +92,12 @@ fn constant(r: f64, model: &CompiledModel) -> HeldInputs {
     HeldInputs::constant(inputs)
 }
 
-fn whole(run: &Instance<'_>, times: &[f64], inputs: &HeldInputs, solver: Solver) -> Motion {
+fn simulate_uninterrupted(
+    run: &Instance<'_>,
+    times: &[f64],
+    inputs: &HeldInputs,
+    solver: Solver,
+) -> Motion {
     let SolverOptions {
         tolerance,
         max_step,
@@ -160,7 +165,7 @@ fn calls_that_end_anywhere_give_the_motion_of_simulate() {
             times.sort_by(f64::total_cmp);
             times.dedup();
             let inputs = constant(0.5, &model);
-            let motion = whole(&run, &times, &inputs, solver);
+            let motion = simulate_uninterrupted(&run, &times, &inputs, solver);
             let within = match solver {
                 Solver::Exact => 1e-11,
                 Solver::Fixed => f64::MIN_POSITIVE,
@@ -195,7 +200,7 @@ fn inputs_set_between_calls_act_as_held_inputs_of_simulate() {
     let rows = (0..times.len()).flat_map(|row| [value(row), 0.0, 0.0]);
     let held = HeldInputs::new(times.clone(), rows.collect(), 3).expect("inputs");
     for solver in [Solver::Exact, Solver::Rk, Solver::Fixed] {
-        let motion = whole(&run, &times, &held, solver);
+        let motion = simulate_uninterrupted(&run, &times, &held, solver);
         let start = (0.0, run.initial_state());
         let begun = run.start_simulation(start, constant(0.5, &model), options(solver));
         let mut simulation = begun.expect("a simulation");
@@ -210,7 +215,7 @@ fn inputs_set_between_calls_act_as_held_inputs_of_simulate() {
 }
 
 #[test]
-fn simulation_refuses_values_of_driven_inputs_and_keeps_controllers_at_another_state() {
+fn simulation_rejects_values_of_driven_inputs_and_keeps_controllers_at_another_state() {
     let model = derive(LOOP);
     let run = model.with_declared_parameters().expect("an instance");
     let start = (0.0, run.initial_state());

@@ -177,7 +177,7 @@ fn pid_on_a_mass_matches_its_recursion_in_every_solver() {
 /// Between two changes, the work of a constant force is its value times the displacement; its jumps at samples do no
 /// work.
 #[test]
-fn energy_audit_of_a_controlled_motion_has_the_work_of_the_held_force() {
+fn energy_audit_of_a_controlled_motion_includes_work_of_the_held_force() {
     let (mut work, mut e_i, mut sample) = (0.0, 0.01, 0.0);
     let (mut before, mut last) = (Mass::START, Mass::START);
     follow(|mass| {
@@ -507,7 +507,7 @@ fn program(arguments: &[&str]) -> (Option<i32>, String) {
 }
 
 #[test]
-fn commands_run_the_loop_or_say_that_they_do_not() {
+fn commands_simulate_controllers_or_print_a_note() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |name: &str| folder.path().join(name).display().to_string();
     let (spec, out) = (file("mass.toml"), file("out"));

@@ -94,7 +94,7 @@ fn potential_step_is_climbed_or_reflects() {
 }
 
 #[test]
-fn mass_at_an_instant_keeps_momentum_and_mass_at_a_place_keeps_energy() {
+fn mass_jump_in_time_keeps_momentum_and_mass_jump_in_space_keeps_energy() {
     let parameters = "d = { value = 3, unit = \"kg\" }\nt_1 = { value = 1, unit = \"s\" }";
     for (when, speed) in [("t - t_1", 0.25), ("x", 0.5)] {
         let kinetic = format!("1/2*(m + d*above({when}))*dot(x)^2");
@@ -123,7 +123,7 @@ fn base_that_starts_to_move_changes_relative_rate() {
 }
 
 #[test]
-fn start_on_a_surface_is_on_the_side_of_its_first_row() {
+fn start_on_a_surface_uses_the_side_of_the_first_row() {
     let step = |height: &str| {
         let parameters = format!("U = {{ value = {height}, unit = \"J\" }}");
         line(&parameters, "", "1/2*m*dot(x)^2", "U*above(x)")
@@ -379,7 +379,7 @@ fn automatic_solver_applies_corners_and_others_reject_them() {
 }
 
 #[test]
-fn corners_on_a_constraint_are_those_of_an_angle() {
+fn corners_with_a_constraint_match_corners_in_an_angle() {
     // The pendulum is formulated as a point with a constraint, and with its angle from the lowest position.
     let head = |step: f64| {
         format!(
@@ -426,7 +426,7 @@ fn corners_on_a_constraint_are_those_of_an_angle() {
 }
 
 #[test]
-fn surfaces_that_meet_are_refused_unless_orders_agree() {
+fn intersecting_corner_surfaces_are_rejected_unless_all_crossing_orders_agree() {
     let text = plane(0.0, 0.2, (1.0, 0.0));
     let coupled = text
         .replace(
@@ -454,7 +454,7 @@ fn surfaces_that_meet_are_refused_unless_orders_agree() {
 }
 
 #[test]
-fn positions_and_rates_that_jump_are_rejected_at_their_place() {
+fn positions_and_rates_that_jump_are_rejected_with_location() {
     let parameters = "h = { value = 1, unit = \"m\" }\nt_1 = { value = 1, unit = \"s\" }";
     let step = line(
         parameters,

@@ -94,7 +94,7 @@ fn friction_of_a_contact_follows_the_slip_that_a_step_reverses() {
 }
 
 #[test]
-fn body_that_friction_holds_slips_after_its_base_starts() {
+fn sticking_body_slips_after_its_base_starts() {
     let kinetic =
         "[kinetic]\nt = \"1/2*m*(dot(X)^2 + dot(y)^2)\"\n[potential]\nweight = \"m*g*y\"\n";
     let weightless = kinetic.replace("m*g*y", "0*m*g*y");
@@ -130,7 +130,7 @@ fn body_that_friction_holds_slips_after_its_base_starts() {
 }
 
 #[test]
-fn floor_that_drops_leaves_the_body_and_one_that_rises_takes_it_along() {
+fn falling_floor_loses_contact_and_rising_floor_lifts_the_body() {
     let rest = "[kinetic]\nt = \"1/2*m*(dot(x)^2 + dot(Y)^2)\"\n[potential]\nweight = \"m*g*y\"\n\
                 [impacts]\nf = { when = \"y\", restitution = 0 }\n";
     for (speed, place) in [(-2.0, 2.0 * 0.25 - 5.0 * 0.25 * 0.25), (2.0, 0.0)] {
@@ -229,7 +229,7 @@ floor = {{ when = "y", restitution = 0.5 }}
 }
 
 #[test]
-fn contacts_that_bear_stay_closed_where_mass_is_taken_up() {
+fn loaded_contacts_stay_closed_when_the_mass_increases() {
     for force in [1.0, 3.9, 5.0] {
         for solver in SOLVERS {
             let found = end(&in_corner(force), 0.3, solver);

@@ -153,7 +153,7 @@ fn energy_is_conserved_or_a_warning_is_given() {
 }
 
 #[test]
-fn energy_that_errors_of_loose_tolerances_add_up_gives_a_warning() {
+fn energy_error_of_loose_tolerances_gives_a_warning() {
     for (k, amplitude) in [(400.0, 0.15), (4.0, 2.0), (4e6, 1e-3)] {
         let text = format!(
             r#"
@@ -220,7 +220,7 @@ fn work_of_shaking_table_is_accounted_for() {
 }
 
 #[test]
-fn work_of_moving_wall_is_that_of_its_impulse() {
+fn work_of_moving_wall_equals_work_of_its_impulse() {
     // The moving wall hits the ball at rest with speed V; the ball leaves with (1 + e) V.
     let text = BALL
         .replace("weight = \"m*g*y\"", "weight = \"0*m*g*y\"")
@@ -578,7 +578,7 @@ fn losses_at_contacts_do_not_depend_on_the_frame() {
 }
 
 #[test]
-fn work_of_a_contact_in_a_moving_frame_is_that_of_its_force() {
+fn work_of_a_contact_in_a_moving_frame_equals_work_of_its_force() {
     // The coordinates of a ball at rest on the floor are relative to a frame that rises with V. In the inertial frame,
     // T + V is constant.
     let text = BALL
@@ -599,7 +599,7 @@ fn work_of_a_contact_in_a_moving_frame_is_that_of_its_force() {
 /// A body comes to rest on the floor under a force that is not part of the potential energy. If all bounces are small,
 /// the energy dissipated at the last bounce exceeds the errors of the solver.
 #[test]
-fn last_bounce_under_an_applied_force_is_no_fault() {
+fn last_bounce_under_an_applied_force_gives_no_warning() {
     for speed in [0.3, 2.2e-7, -1.2e-7, 3.3e-9, -2.9e-9] {
         for restitution in [0.3, 0.38, 0.55, 0.63, 0.74, 0.9] {
             for (mass, force) in [
@@ -674,7 +674,7 @@ fn start_from_rest_with_an_energy_gives_no_warning() {
 }
 
 #[test]
-fn block_that_two_frictions_hold_gives_no_warning() {
+fn block_sticking_by_two_frictions_gives_no_warning() {
     for (mass, amplitude, frequency, friction, weight, coefficient) in [
         (1.794, 2.746, 8.724, 0.512, 4.169, 0.209),
         (0.705, 6.618, 6.006, 1.247, 9.531, 0.396),

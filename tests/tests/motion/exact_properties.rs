@@ -1,5 +1,5 @@
-//! Comparison of the exact solver with the general solvers over short times, for the arm and for small machines of
-//! springs, stops and dry friction with random parameters over decades.
+//! Comparison of the exact solver with the general solvers over short times. The machines are the arm, and small
+//! machines of springs, stops and dry friction, with random parameters over decades.
 //!
 //! The uncertainty of the general solvers is the difference between tolerances and between methods. The exact solver
 //! may differ by twice the uncertainty plus rounding. A second method is needed, because one method can miss an event

@@ -118,7 +118,7 @@ fn draw_blocks(
 const LENGTHS: [f64; 3] = [1.0, 1e-3, 1e3];
 
 #[test]
-fn pushed_block_stays_where_the_wall_turns() {
+fn block_stays_at_rest_when_the_wall_reverses() {
     let blocks = draw_blocks(41, [0.1, 0.9], ("a*sin(w*t)", "0*a*w"));
     for (block, length) in blocks.zip(LENGTHS.into_iter().cycle()) {
         let Block {
@@ -138,7 +138,7 @@ fn pushed_block_stays_where_the_wall_turns() {
 }
 
 #[test]
-fn belt_that_turns_takes_the_block_from_the_wall() {
+fn reversing_belt_moves_the_block_away_from_the_wall() {
     let blocks = draw_blocks(42, [0.1, 0.9], ("0*a", "-a*w*sin(w*t)"));
     for (block, length) in blocks.zip(LENGTHS.into_iter().cycle()) {
         let Block {
@@ -159,7 +159,7 @@ fn belt_that_turns_takes_the_block_from_the_wall() {
 }
 
 #[test]
-fn belt_that_starts_smoothly_takes_the_block_from_the_wall() {
+fn smoothly_starting_belt_moves_the_block_away_from_the_wall() {
     let blocks = draw_blocks(43, [0.1, 0.6], ("0*a", "a*w*(w*t)^2"));
     for (block, length) in blocks.zip(LENGTHS.into_iter().cycle()) {
         let Block {

@@ -48,7 +48,7 @@ fn body_rests_on_a_belt_that_starts_slowly() {
 }
 
 #[test]
-fn body_slides_on_a_belt_that_starts_fast_and_is_held_later() {
+fn body_slides_on_a_fast_starting_belt_and_sticks_later() {
     compare("v*min(5*w*t, 1)", |t| (1.5 * t).min(0.6));
 }
 

@@ -10,7 +10,7 @@ const SOLVERS: [Solver; 3] = [Solver::Rk, Solver::Radau, Solver::Auto];
 
 const MACHINES: usize = 30;
 
-fn between(numbers: &mut Numbers, low: f64, high: f64) -> f64 {
+fn draw_between(numbers: &mut Numbers, low: f64, high: f64) -> f64 {
     low + 0.5 * (high - low) * (1.0 + numbers.symmetric())
 }
 
@@ -41,18 +41,18 @@ fn simulate(text: &str, until: f64, solver: Solver) -> (Vec<f64>, Vec<Vec<f64>>)
 /// A spring alternately pulls a body away from a wall and presses it against the wall, with less force than the
 /// friction. The mass at the other end of the spring oscillates freely.
 #[test]
-fn held_body_stays_at_a_wall() {
+fn sticking_body_stays_at_a_wall() {
     for case in 0..MACHINES {
         let numbers = &mut Numbers(case as u64 + 1);
         let (length, mass) = UNITS[case % 2];
-        let m = between(numbers, 0.2, 3.0);
-        let k = between(numbers, 2.0, 60.0);
-        let wall = between(numbers, -0.2, 0.2);
-        let stretch = between(numbers, -0.2, 0.2);
-        let speed = between(numbers, -0.5, 0.5);
+        let m = draw_between(numbers, 0.2, 3.0);
+        let k = draw_between(numbers, 2.0, 60.0);
+        let wall = draw_between(numbers, -0.2, 0.2);
+        let stretch = draw_between(numbers, -0.2, 0.2);
+        let speed = draw_between(numbers, -0.5, 0.5);
         let frequency = (k / (3.0 * m)).sqrt();
         let amplitude = stretch.hypot(speed / frequency);
-        let friction = k * amplitude * between(numbers, 1.02, 2.0);
+        let friction = k * amplitude * draw_between(numbers, 1.02, 2.0);
         let distance = if stretch > 0.0 { "x - c" } else { "c - x" };
         let restitution = [0.0, 0.3, 1.0][case / 2 % 3];
         let text = format!(
@@ -90,13 +90,13 @@ fn held_body_stays_at_a_wall() {
 /// A force alternately presses a body against a wall and pulls it away, with less force than the friction. Rounding
 /// errors of the position at rest must cause neither impacts nor overlaps, also if another coordinate is zero.
 #[test]
-fn held_body_at_a_wall_has_one_event() {
+fn sticking_body_at_a_wall_has_one_event() {
     for case in 0..12 {
         let numbers = &mut Numbers(case as u64 + 100);
-        let m = between(numbers, 0.3, 3.0);
-        let push = between(numbers, 0.5, 5.0);
-        let friction = push * between(numbers, 1.1, 2.5);
-        let frequency = between(numbers, 2.0, 12.0);
+        let m = draw_between(numbers, 0.3, 3.0);
+        let push = draw_between(numbers, 0.5, 5.0);
+        let friction = push * draw_between(numbers, 1.1, 2.5);
+        let frequency = draw_between(numbers, 2.0, 12.0);
         let wall = [0.0, 1e-7, 0.2][case % 3];
         let restitution = [0.0, 0.3, 1.0][case / 3 % 3];
         for (length, mass) in [(1.0, 1.0), (1e-4, 1.0), (1e-6, 1e-3), (1e6, 1.0)] {
@@ -142,8 +142,8 @@ fn held_body_at_a_wall_has_one_event() {
     }
 }
 
-/// A periodic force moves a body away from a wall and back to it, and the body comes to rest at the wall. Samples
-/// within the last step are beyond the wall by the error of dense output.
+/// A periodic force moves a body away from a wall and back to it, and the body stops at the wall. Samples within the
+/// last step are beyond the wall by the error of dense output.
 #[test]
 fn sliding_body_returns_to_a_wall() {
     let (m, push, friction, frequency) = (
@@ -183,7 +183,7 @@ fn sliding_body_returns_to_a_wall() {
 /// A body sticks on two surfaces. An oscillating wall hits it, and hits it again before it stops. Different durations
 /// of the simulation vary the step sizes.
 #[test]
-fn held_body_is_hit_by_a_moving_wall() {
+fn sticking_body_is_hit_by_a_moving_wall() {
     for (length, mass) in UNITS {
         for step in 0..12 {
             let until = 0.5 + 0.3 * f64::from(step);
@@ -237,13 +237,16 @@ fn held_body_is_hit_by_a_moving_wall() {
 /// A body hits a wall without restitution and sticks there by dry friction. Then another body of any mass hits it. The
 /// wall takes the impulse in the same impact, and the other body rebounds with its speed.
 #[test]
-fn body_that_friction_holds_at_a_wall_stays_in_contact() {
+fn body_sticking_at_a_wall_stays_in_contact_after_a_collision() {
     for case in 0..MACHINES {
         let numbers = &mut Numbers(case as u64 + 1);
         let (length, mass) = UNITS[case % 2];
-        let [m, other] = [(); 2].map(|()| between(numbers, 0.3, 3.0));
-        let friction = m * between(numbers, 0.3, 0.8);
-        let (speed, other_speed) = (between(numbers, 1.0, 3.0), between(numbers, 0.3, 0.8));
+        let [m, other] = [(); 2].map(|()| draw_between(numbers, 0.3, 3.0));
+        let friction = m * draw_between(numbers, 0.3, 0.8);
+        let (speed, other_speed) = (
+            draw_between(numbers, 1.0, 3.0),
+            draw_between(numbers, 0.3, 0.8),
+        );
         let text = format!(
             "[model]\nname = \"held\"\n[parameters]\n\
              m = {{ value = {:?}, unit = \"kg\" }}\nM = {{ value = {:?}, unit = \"kg\" }}\n\
@@ -278,12 +281,12 @@ fn body_that_friction_holds_at_a_wall_stays_in_contact() {
 /// friction between them. The contact between them opens while they stick together. When the friction slips, the
 /// contact must carry a load again.
 #[test]
-fn stack_that_friction_holds_together_stays_at_rest() {
+fn stack_with_friction_between_bodies_stays_at_rest() {
     for case in 0..MACHINES {
         let numbers = &mut Numbers(case as u64 + 101);
         let (length, mass) = UNITS[case % 2];
-        let level = between(numbers, 0.3, 1.3);
-        let pull = between(numbers, 1.0, 0.98 + level);
+        let level = draw_between(numbers, 0.3, 1.3);
+        let pull = draw_between(numbers, 1.0, 0.98 + level);
         let text = format!(
             "[model]\nname = \"stack\"\n[parameters]\n\
              m = {{ value = {:?}, unit = \"kg\" }}\ng = {{ value = {:?}, unit = \"m/s^2\" }}\n\
@@ -295,10 +298,10 @@ fn stack_that_friction_holds_together_stays_at_rest() {
              load = {{ on = \"y2\", value = \"pull*m*g*sin(w*t + phase)\" }}\n\
              [impacts]\nfloor = {{ when = \"y1\", restitution = 0 }}\n\
              joint = {{ when = \"y2 - y1\", restitution = 0 }}\n",
-            mass * between(numbers, 0.2, 3.0),
+            mass * draw_between(numbers, 0.2, 3.0),
             9.81 * length,
-            between(numbers, 3.0, 12.0),
-            between(numbers, 0.0, 6.0),
+            draw_between(numbers, 3.0, 12.0),
+            draw_between(numbers, 0.0, 6.0),
         );
         for solver in SOLVERS {
             let (times, states) = simulate(&text, 3.0, solver);

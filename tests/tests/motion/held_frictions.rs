@@ -116,7 +116,7 @@ drive = {{ on = "x", value = "-F*sign(dot(x)) + A*sin(v*t) + B*sin(w*t) - z" }}
 }
 
 #[test]
-fn short_peaks_of_a_load_release_a_held_mass() {
+fn short_load_peaks_release_a_sticking_mass() {
     let machines = [
         driven(
             [1.3221785807175488, 82.24972820084987, 2.658672394846581],
@@ -149,7 +149,7 @@ fn short_peaks_of_a_load_release_a_held_mass() {
 }
 
 #[test]
-fn hysteresis_between_two_held_masses_ends() {
+fn hysteresis_between_two_sticking_masses_ends() {
     for (drive, rate) in [(4.1, 3.3), (3.6, 2.1), (5.2, 4.7)] {
         let text = format!(
             r#"
@@ -189,7 +189,7 @@ z = {{ on = "y - x", value = "-z" }}
 }
 
 #[test]
-fn block_carried_at_the_limit_of_its_friction_stops_with_the_one_below() {
+fn carried_block_at_its_friction_bound_stops_with_the_block_below() {
     for case in 0..12 {
         let (lower, upper) = (0.8 + 0.37 * f64::from(case), 2.7 - 0.19 * f64::from(case));
         let (friction, speed) = (0.3 + 0.06 * f64::from(case % 5), 0.75);

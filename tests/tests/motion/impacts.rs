@@ -780,7 +780,7 @@ fn initial_penetration_by_rounding_starts_on_contact() {
 }
 
 #[test]
-fn rounding_below_a_stop_is_moved_onto_it_without_any_length() {
+fn initial_rounding_error_below_a_stop_is_corrected_without_a_length_parameter() {
     for (height, starts) in [("-1e-17", true), ("-1e-300", true), ("-1e-12", false)] {
         let text = format!(
             "[model]\nname = \"block\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
@@ -802,7 +802,7 @@ fn rounding_below_a_stop_is_moved_onto_it_without_any_length() {
 }
 
 #[test]
-fn start_just_beside_a_floor_costs_no_more_than_one_on_it() {
+fn start_just_above_a_floor_needs_no_more_evaluations_than_start_on_it() {
     let starts = |height: &str, speed: &str| {
         let text = format!(
             "[model]\nname = \"ball\"\n[parameters]\nm = {{ value = 2, unit = \"kg\" }}\n\
@@ -879,7 +879,7 @@ fn force_that_reaches_the_weight_lifts_a_resting_body() {
 }
 
 #[test]
-fn large_independent_state_closes_no_contact() {
+fn large_independent_state_does_not_close_contacts() {
     for height in ["1e-3", "1e-5", "1e-6"] {
         let h: f64 = height.parse().expect("a number");
         let (fall, rebound) = ((2.0 * h / 10.0).sqrt(), 0.5 * (2.0 * 10.0 * h).sqrt());
@@ -1109,7 +1109,7 @@ fn sleigh_and_rolling_disc_bounce_within_their_constraints() {
 /// A block rests at a stop, and another block slides on it. When the sliding block sticks, it pulls the first block
 /// away from the stop.
 #[test]
-fn block_leaves_its_stop_when_the_one_on_it_begins_to_stick() {
+fn block_leaves_its_stop_when_the_upper_block_sticks() {
     let text = r#"
 [model]
 name = "pulled"
@@ -1154,7 +1154,7 @@ stop = { when = "d - a", restitution = 0 }
 /// Two bodies stick to each other and hit a stop repeatedly. After each impact both have 0.15 of the speed, so that
 /// they come to rest at the stop after 0.33 s.
 #[test]
-fn bodies_held_together_come_to_rest_at_a_stop() {
+fn bodies_sticking_together_come_to_rest_at_a_stop() {
     let text = r#"
 [model]
 name = "together"

@@ -115,7 +115,7 @@ outputs = { w = "u" }
 /// A body is at rest on a belt that starts at 1 s. The body slides until it has the speed of the belt; then it sticks
 /// to the belt.
 #[test]
-fn friction_holds_on_a_belt_that_steps() {
+fn friction_sticks_on_a_belt_with_a_speed_step() {
     let text = r#"[model]
 name = "belt"
 [parameters]

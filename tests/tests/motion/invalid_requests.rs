@@ -51,7 +51,7 @@ fn tolerances_out_of_range_are_rejected_by_every_solver() {
 }
 
 #[test]
-fn overflowing_energy_has_no_warning_of_the_audit() {
+fn overflowing_energy_gives_no_audit_warning() {
     let (status, message) = simulate(&["--input", "u=1e300"]);
     assert_eq!(status, Some(1), "{message}");
     assert!(message.contains("`energy` is not finite"), "{message}");
@@ -59,7 +59,7 @@ fn overflowing_energy_has_no_warning_of_the_audit() {
 }
 
 #[test]
-fn input_that_depends_on_the_motion_is_rejected_at_its_place() {
+fn input_that_depends_on_the_motion_is_rejected_with_location() {
     for (input, column) in [("u=x", 3), ("u=0.5*x", 7), ("u=1 - sin(3*x)", 13)] {
         let (status, message) = simulate(&["--input", input]);
         assert_eq!(status, Some(2), "{message}");
@@ -81,7 +81,7 @@ fn input_that_depends_on_the_motion_is_rejected_at_its_place() {
 }
 
 #[test]
-fn wrong_units_of_inputs_are_rejected_at_their_places() {
+fn wrong_units_of_inputs_are_rejected_with_location() {
     for (input, column, expected) in [
         ("u=5 mm", 5, "`u` is in N, not in mm"),
         ("u=5 foo", 5, "unknown unit `foo`"),

@@ -110,7 +110,7 @@ fn ball_on_floor_defined_by_minimum_matches_general_solver() {
 }
 
 #[test]
-fn preloaded_springs_and_one_sided_stops_hold_at_rest() {
+fn preloaded_springs_and_one_sided_stops_stay_at_rest() {
     for force in [
         "-F0*sign(deadzone(y, b)) - k*deadzone(y, b)",
         "-k*max(y - b, 0) - c*contact(max(y - b, 0), 0)*dot(y)",
@@ -130,7 +130,7 @@ fn preloaded_springs_and_one_sided_stops_hold_at_rest() {
 /// Friction that acts only above a given speed can hold the mass at this speed. Steep smooth friction gives nearly the
 /// same motion.
 #[test]
-fn friction_that_starts_at_a_speed_holds_the_mass_at_it() {
+fn friction_with_a_speed_threshold_holds_the_mass_at_the_threshold() {
     let times = grid(4.0, 40);
     let force = |friction: &str| format!("-{friction} - 0.3*k*y");
     let sudden = driven_mass(&force("F0*sign(deadzone(dot(y), v))"));

@@ -136,7 +136,7 @@ fn compile(text: &str) -> CompiledModel {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn without(text: &str, constraint: &str) -> String {
+fn remove_constraint(text: &str, constraint: &str) -> String {
     let kept = text.lines().filter(|line| !line.starts_with(constraint));
     kept.collect::<Vec<_>>().join("\n")
 }
@@ -181,7 +181,7 @@ fn third_rod_leaves_motion_unchanged() {
     );
     let three = three.with_declared_parameters().unwrap();
     for removed in ["left", "middle", "right"] {
-        let two = compile(&without(THREE_RODS, removed));
+        let two = compile(&remove_constraint(THREE_RODS, removed));
         assert!(two.redundancy_notes().is_empty());
         let two = two.with_declared_parameters().unwrap();
         for (solver, tolerance) in [(Solver::Rk, 1e-12), (Solver::Radau, 1e-11)] {
@@ -302,7 +302,7 @@ fn planar_linkage_in_space_moves_like_that_without_redundant_plane() {
         note.contains("`plane_a`, `plane_b`, `hinge` depend"),
         "{note}"
     );
-    let plain = compile(&without(SPATIAL, "hinge"));
+    let plain = compile(&remove_constraint(SPATIAL, "hinge"));
     let [one, other] = [&model, &plain].map(|model| {
         let run = model.with_declared_parameters().unwrap();
         move_until(&run, 1.0, Solver::Rk, 1e-12)
@@ -313,7 +313,7 @@ fn planar_linkage_in_space_moves_like_that_without_redundant_plane() {
 #[test]
 fn fold_of_redundant_rods_stops_at_the_same_time() {
     let fast = THREE_RODS.replace("w = { value = 0,", "w = { value = 7,");
-    let stops = [fast.clone(), without(&fast, "middle")].map(|text| {
+    let stops = [fast.clone(), remove_constraint(&fast, "middle")].map(|text| {
         let model = compile(&text);
         let run = model.with_declared_parameters().unwrap();
         let motion = move_until(&run, 2.0, Solver::Rk, 1e-10);
@@ -325,7 +325,7 @@ fn fold_of_redundant_rods_stops_at_the_same_time() {
 }
 
 #[test]
-fn contradictory_parameters_are_refused() {
+fn contradictory_parameters_are_rejected() {
     let model = compile(THREE_RODS);
     let run = model.with_parameters(&[("l_r", 1.2)]).unwrap();
     let found = run.simulate(
@@ -370,7 +370,11 @@ again = { zero = "x^2 + y^2 - l^2" }
 #[test]
 fn friction_and_impacts_act_along_doubled_constraint() {
     let all: Vec<(usize, usize)> = (0..4).map(|k| (k, k)).collect();
-    let motions = [RUBBED_BEAD.to_owned(), without(RUBBED_BEAD, "again")].map(|text| {
+    let motions = [
+        RUBBED_BEAD.to_owned(),
+        remove_constraint(RUBBED_BEAD, "again"),
+    ]
+    .map(|text| {
         let model = compile(&text);
         let run = model.with_declared_parameters().unwrap();
         move_until(&run, 4.0, Solver::Rk, 1e-12)
@@ -386,7 +390,7 @@ fn friction_and_impacts_act_along_doubled_constraint() {
 
 #[test]
 fn certificate_accepts_dependent_constraints_and_finds_small_faults() {
-    let spatial_plain = without(SPATIAL, "hinge");
+    let spatial_plain = remove_constraint(SPATIAL, "hinge");
     let bead = format!("{BEAD}{ALONG}{UP}{CIRCLE}");
     for (text, faults) in [
         (
@@ -455,7 +459,7 @@ again = { zero = "3*(x_2 - x_1)" }
 "#;
 
 #[test]
-fn linear_pair_with_doubled_constraint_moves_as_one_mass_and_is_not_propagated_exactly() {
+fn linear_pair_with_doubled_constraint_moves_as_one_mass_without_exact_solver() {
     let model = compile(PAIR);
     let run = model.with_declared_parameters().unwrap();
     for solver in [Solver::Auto, Solver::Rk, Solver::Radau] {
@@ -484,7 +488,7 @@ fn linear_pair_with_doubled_constraint_moves_as_one_mass_and_is_not_propagated_e
 }
 
 #[test]
-fn redundant_constraint_without_derivative_is_refused_with_its_name() {
+fn redundant_constraint_without_derivative_is_rejected_with_its_name() {
     let scaled = PAIR.replace("again = { zero = \"3*", "again = { zero = \"c*");
     let scaled = |c: f64| {
         scaled.replace(

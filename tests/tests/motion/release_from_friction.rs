@@ -37,7 +37,7 @@ fn find_zero(function: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f6
 }
 
 #[test]
-fn step_after_the_release_stops_the_motion() {
+fn input_step_after_breakaway_stops_the_motion() {
     const FORCE: f64 = 2.0;
     const FREQUENCY: f64 = 3.0;
     const FRICTION: f64 = 1.0;
@@ -135,7 +135,7 @@ h = {{ on = "x", value = "a*sin(w*t) + u" }}
 /// While the second mass moves with the velocity of the first one and exerts no force on it, four states form a chain
 /// of integrators.
 #[test]
-fn drawn_machines_with_stepped_inputs_match_the_general_solver() {
+fn random_machines_with_stepped_inputs_match_the_general_solver() {
     let mut random = Random::new(11);
     let times: Vec<f64> = (0..=40).map(|k| 0.05 * f64::from(k)).collect();
     for case in 0..24 {

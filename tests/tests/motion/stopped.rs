@@ -80,8 +80,7 @@ gravity = "-T_g*cos(theta)"
 friction = { on = "theta", value = "-T_c*tanh(dot(theta)/v_0)" }
 "#;
 
-/// Two chambers with an orifice and a piston that comes to rest. At equal pressures the derivative of the flow is
-/// infinite.
+/// Two chambers with an orifice and a piston that stops. At equal pressures the derivative of the flow is infinite.
 const ORIFICE: &str = r#"
 [model]
 name = "orifice"
@@ -123,12 +122,12 @@ table = "1/2*J*(1 - x/a)*dot(phi)^2"
 spring = "1/2*k*phi^2"
 "#;
 
-struct Stopped {
+struct StoppedRun {
     output: Output,
     rows: Vec<Vec<f64>>,
 }
 
-impl Stopped {
+impl StoppedRun {
     fn message(&self) -> String {
         text(&self.output.stderr)
     }
@@ -159,7 +158,7 @@ fn write_spec(folder: &Path, specification: &str) -> String {
     path.display().to_string()
 }
 
-fn run_until_stop(specification: &str, until: &str, more: &[&str]) -> Stopped {
+fn run_until_stop(specification: &str, until: &str, more: &[&str]) -> StoppedRun {
     let folder = tempfile::tempdir().expect("a folder");
     let (spec, out) = (
         write_spec(folder.path(), specification),
@@ -180,7 +179,7 @@ fn run_until_stop(specification: &str, until: &str, more: &[&str]) -> Stopped {
     let rows: Vec<_> = rows.collect();
     assert!(rows.iter().flatten().all(|number| number.is_finite()));
     assert!(rows.windows(2).all(|pair| pair[0][0] < pair[1][0]));
-    Stopped { output, rows }
+    StoppedRun { output, rows }
 }
 
 #[test]
@@ -263,7 +262,7 @@ fn chattering_forces_are_not_reported_as_friction() {
 
 /// A relay with a lead term has a sliding mode on its switching surface, like dry friction.
 #[test]
-fn relay_with_lead_slides() {
+fn relay_with_lead_term_has_sliding_mode() {
     let folder = tempfile::tempdir().expect("a folder");
     let law = between_forces("-F*sign(x + tau*dot(x))");
     let spec = write_spec(folder.path(), &law);
@@ -382,7 +381,7 @@ fn explicit_solvers_report_stiffness() {
 }
 
 /// The solution of `auto` agrees with the solution for a friction that is a thousand times less steep: the pendulum
-/// comes to rest at the same time.
+/// stops at the same time.
 #[test]
 fn auto_solves_stiff_friction_with_radau() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -41,13 +41,16 @@ fn compile(text: &str) -> CompiledModel {
         .unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-fn between(numbers: &mut Numbers, low: f64, high: f64) -> f64 {
+fn draw_between(numbers: &mut Numbers, low: f64, high: f64) -> f64 {
     low + 0.5 * (high - low) * (1.0 + numbers.symmetric())
 }
 
 /// Returns a random force that changes its sign; some forces start with zero, and some are zero during an interval.
 fn force(numbers: &mut Numbers, case: usize) -> String {
-    let (w, phase) = (between(numbers, 1.0, 8.0), between(numbers, 0.0, 6.0));
+    let (w, phase) = (
+        draw_between(numbers, 1.0, 8.0),
+        draw_between(numbers, 0.0, 6.0),
+    );
     [
         format!("F*cos({w:?}*w*t + {phase:?})"),
         format!("F*sin({w:?}*w*t)"),
@@ -61,8 +64,11 @@ fn force(numbers: &mut Numbers, case: usize) -> String {
 /// Returns a gear train; a torque acts on the first gear, a spring and dry friction on the last.
 fn gears(numbers: &mut Numbers, case: usize, (length, mass): (f64, f64)) -> Machine {
     let count = 2 + case % 3;
-    let torque = between(numbers, 0.5, 5.0) * mass;
-    let (spring, damping) = (between(numbers, 0.0, 3.0), between(numbers, 0.0, 0.3));
+    let torque = draw_between(numbers, 0.5, 5.0) * mass;
+    let (spring, damping) = (
+        draw_between(numbers, 0.0, 3.0),
+        draw_between(numbers, 0.0, 0.3),
+    );
     let dry = if case.is_multiple_of(2) {
         0.0
     } else {
@@ -79,8 +85,8 @@ fn gears(numbers: &mut Numbers, case: usize, (length, mass): (f64, f64)) -> Mach
     let (mut angle, mut rate) = (numbers.symmetric(), 2.0 * numbers.symmetric());
     let mut before = 0.0;
     for gear in 0..count {
-        let radius = between(numbers, 0.05, 0.3);
-        let inertia = between(numbers, 0.01, 1.0) * mass;
+        let radius = draw_between(numbers, 0.05, 0.3);
+        let inertia = draw_between(numbers, 0.01, 1.0) * mass;
         if gear > 0 {
             (angle, rate) = (-angle * before / radius, -rate * before / radius);
             let last = gear - 1;
@@ -113,13 +119,16 @@ fn gears(numbers: &mut Numbers, case: usize, (length, mass): (f64, f64)) -> Mach
 
 /// Returns a bead on a circle. Weight, a force and the centripetal force change the side of the ring that carries it.
 fn ring(numbers: &mut Numbers, case: usize, (length, mass): (f64, f64)) -> Machine {
-    let (radius, angle) = (between(numbers, 0.3, 2.0), between(numbers, 0.0, 6.3));
-    let speed = between(numbers, 1.0, 5.0);
+    let (radius, angle) = (
+        draw_between(numbers, 0.3, 2.0),
+        draw_between(numbers, 0.0, 6.3),
+    );
+    let speed = draw_between(numbers, 1.0, 5.0);
     let [x, y] = [angle.cos(), angle.sin()].map(|part| part * radius * length);
     let [u, v] = [-angle.sin(), angle.cos()].map(|part| part * speed * length);
     let (m, push) = (
-        between(numbers, 0.2, 3.0) * mass,
-        between(numbers, 1.0, 20.0),
+        draw_between(numbers, 0.2, 3.0) * mass,
+        draw_between(numbers, 1.0, 20.0),
     );
     Machine {
         text: format!(
@@ -144,8 +153,14 @@ fn ring(numbers: &mut Numbers, case: usize, (length, mass): (f64, f64)) -> Machi
 
 /// Returns a bead in an oscillating slot.
 fn slot(numbers: &mut Numbers, case: usize, (length, mass): (f64, f64)) -> Machine {
-    let (m, stiffness) = (between(numbers, 0.2, 3.0), between(numbers, 0.0, 10.0));
-    let (amplitude, frequency) = (between(numbers, 0.1, 1.0), between(numbers, 1.0, 7.0));
+    let (m, stiffness) = (
+        draw_between(numbers, 0.2, 3.0),
+        draw_between(numbers, 0.0, 10.0),
+    );
+    let (amplitude, frequency) = (
+        draw_between(numbers, 0.1, 1.0),
+        draw_between(numbers, 1.0, 7.0),
+    );
     Machine {
         text: format!(
             "[model]\nname = \"slot\"\n[parameters]\nm = {{ value = {:?}, unit = \"kg\" }}\n\
@@ -160,7 +175,7 @@ fn slot(numbers: &mut Numbers, case: usize, (length, mass): (f64, f64)) -> Machi
             amplitude * length,
             numbers.symmetric(),
             stiffness * mass,
-            between(numbers, 1.0, 20.0) * length * mass,
+            draw_between(numbers, 1.0, 20.0) * length * mass,
             force(numbers, case)
         ),
         pairs: vec![[

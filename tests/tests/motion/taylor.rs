@@ -108,7 +108,7 @@ fn product(roots: &[f64]) -> Vec<DoubleDouble> {
 }
 
 #[test]
-fn first_rise_is_found_however_short() {
+fn first_change_to_positive_is_found_for_any_duration() {
     // The polynomial is positive only between the first two roots, an interval of 1e-9 of the step.
     let found = first_rise(&product(&[0.3, 0.3 + 1e-9, 0.9, 1.5, 2.0]));
     assert!(found.is_some_and(|at| (at.to_f64() - 0.3).abs() < 1e-15));

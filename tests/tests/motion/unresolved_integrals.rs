@@ -25,7 +25,7 @@ arc = "integral(F*(sqrt(1 + diff(w, x)^2) - 1), w)"
 "#;
 
 #[test]
-fn steep_field_gives_a_warning_with_integrand_error_and_cure() {
+fn unresolved_integral_gives_a_warning_with_integrand_error_and_remedy() {
     let model = CompiledModel::from_text("arc.toml", ARC, Orders::Declared).expect("a model");
     let run = model.with_declared_parameters().expect("an instance");
     for (deflection, is_resolved) in [(0.0, true), (0.05, true), (15.0, false)] {

@@ -29,7 +29,7 @@ fn simulate(text: &str, solver: Solver) -> Motion {
 }
 
 #[test]
-fn auto_follows_motions_with_too_many_switches_for_exact() {
+fn auto_simulates_motions_with_too_many_switches_for_exact() {
     for [mass, force, damping] in MACHINES {
         let text = relay(mass, force, damping);
         let name = format!("{mass} kg, {force} N, {damping} N s/m");

@@ -25,7 +25,7 @@ fn simulate(across: f64, forces: &str, solver: Solver, until: f64) -> Motion {
 const ACROSS: [f64; 9] = [0.5, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 0.0];
 
 #[test]
-fn straight_stop_takes_as_many_evaluations_for_any_velocity_across() {
+fn straight_stop_needs_equal_evaluations_for_any_lateral_velocity() {
     for solver in [Solver::Rk, Solver::Radau, Solver::Auto] {
         for across in ACROSS {
             let motion = simulate(across, "", solver, 1.0);
@@ -42,7 +42,7 @@ fn straight_stop_takes_as_many_evaluations_for_any_velocity_across() {
 }
 
 #[test]
-fn repeated_stops_take_as_many_evaluations_for_any_velocity_across() {
+fn repeated_stops_need_equal_evaluations_for_any_lateral_velocity() {
     let forces = "push = { on = \"x\", value = \"P*sin(w*t)\" }\n";
     for solver in [Solver::Rk, Solver::Radau, Solver::Auto] {
         for across in ACROSS {
@@ -142,7 +142,7 @@ fn puck_in_a_corner_rests() {
 }
 
 #[test]
-fn contact_of_another_body_does_not_move_a_puck_at_rest() {
+fn contact_of_another_body_does_not_move_a_resting_puck() {
     let text = "[model]\nname = \"puck_and_ball\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
         g = { value = 9.81, unit = \"m/s^2\" }\nmu = { value = 0.5, unit = \"1\" }\n[coordinates]\n\
         a = { unit = \"m\", initial_rate = -0.8 }\nb = { unit = \"m\", initial_rate = -0.6 }\n\

@@ -97,7 +97,7 @@ fn derivation_matches_corrected_rows_and_differs_from_misprints() {
 }
 
 #[test]
-fn printed_damping_fails_in_its_row() {
+fn printed_damping_fails_its_row_of_errata() {
     let printed = |parameters: &PlanetaryArmParameters, order: usize, t: f64, state: &[f64]| {
         let mut accelerations = corrected(parameters, order, t, state);
         let [x_sp, _, _, x_sp_dot, x_pr_dot, x_c_dot] = *state else {
@@ -134,7 +134,7 @@ fn printed_damping_fails_in_its_row() {
 }
 
 #[test]
-fn empty_accelerations_agree_with_no_row() {
+fn missing_accelerations_fail_every_row() {
     let table = errata_table(&|_, _, _, _| Vec::new());
     let from_the_model = table
         .rows

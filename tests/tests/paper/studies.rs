@@ -228,7 +228,7 @@ fn exponent_matches_the_divergence_of_two_motions() {
 }
 
 #[test]
-fn exponent_errors_match_their_scatter() {
+fn standard_errors_of_exponents_match_their_scatter() {
     let arm = Arm::new(&[4]).unwrap();
     let length = RunLength {
         transient: (200, 200),
@@ -315,7 +315,7 @@ fn motion_without_backlash_is_regular_and_matches_observables() {
     };
     let measured = measure(&arm, &case, &RunLength::SCREENING).unwrap();
     assert_eq!(Reading::from_measurement(&measured).kind, Kind::Regular);
-    // Check of the magnitude by quasi-static bending due to the acceleration a of the tip: the tip of a cantilever
+    // Check of the magnitude by quasi-static bending due to the acceleration a of the tip. The tip of a cantilever
     // under the load rho A x a/l deflects by 11 rho A a l^4/(120 E I).
     let torque = case.undisclosed.f_w;
     let lengths = arm.lengths(&case);

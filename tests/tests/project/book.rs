@@ -124,7 +124,7 @@ fn toml_on_the_pages_is_valid() {
 
 /// The table of times repeats numbers of other pages and names commands that these pages contain.
 #[test]
-fn times_of_the_readme_are_those_of_the_book() {
+fn times_in_readme_match_the_book() {
     let readme = read("README.md");
     let (_, section) = readme.split_once("## Speed").expect("a section");
     let section = section.split("\n## ").next().unwrap_or_default();

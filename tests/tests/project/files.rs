@@ -64,7 +64,7 @@ fn output_in_place_of_a_non_file_is_rejected() {
 
 #[cfg(unix)]
 #[test]
-fn output_folder_that_is_a_link_to_nothing_is_rejected() {
+fn output_folder_that_is_a_broken_link_is_rejected() {
     let folder = tempfile::tempdir().expect("a folder");
     let link = folder.path().join("link");
     std::os::unix::fs::symlink("missing", &link).expect("a link");

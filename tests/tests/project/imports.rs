@@ -279,7 +279,7 @@ fn folders_of_a_crate_import_in_one_direction() {
 }
 
 #[test]
-fn circles_of_files_are_few_and_documented() {
+fn import_cycles_are_few_and_documented() {
     let page = std::fs::read_to_string(project().join("docs/architecture.md")).expect("the page");
     let (_, section) = page
         .split_once("### Import cycles between files")

@@ -147,7 +147,7 @@ fn named_files(page: &str) -> Vec<String> {
 }
 
 #[test]
-fn files_shown_in_recipes_are_those_of_the_project() {
+fn files_shown_in_recipes_match_the_project() {
     for (name, page) in recipes() {
         let files = named_files(&page);
         for block in page.split("\n```").skip(1).step_by(2) {

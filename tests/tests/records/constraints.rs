@@ -52,31 +52,31 @@ fn assert_no_gap<const S: usize, const C: usize>(machine: &Machine<S, C>, sampli
 }
 
 #[test]
-fn pendulum_on_a_rod_leaves_the_noise() {
+fn residual_of_pendulum_on_a_rod_is_noise() {
     assert_no_gap(&pendulum(0.3, 0.0, true), WHOLE);
     assert_no_gap(&pendulum(0.3, 0.0, false), WINDOWS);
 }
 
 #[test]
-fn slider_crank_leaves_the_noise() {
+fn residual_of_slider_crank_is_noise() {
     assert_no_gap(&slider_crank(0.4, 0.0, 0.0, true), WHOLE);
     assert_no_gap(&slider_crank(0.4, 0.0, 0.0, false), WINDOWS);
 }
 
 #[test]
-fn four_bar_linkage_leaves_the_noise_far_from_its_initial_state() {
+fn residual_of_four_bar_linkage_far_from_its_initial_state_is_noise() {
     assert_no_gap(&four_bar(0.0, true), WHOLE);
     assert_no_gap(&four_bar(0.0, false), WINDOWS);
 }
 
 #[test]
-fn gears_leave_the_noise() {
+fn residual_of_gears_is_noise() {
     assert_no_gap(&gears(0.0, true), WHOLE);
     assert_no_gap(&gears(0.0, false), WINDOWS);
 }
 
 #[test]
-fn sleigh_on_an_edge_leaves_the_noise() {
+fn residual_of_sleigh_is_noise() {
     assert_no_gap(&sleigh(0.0, true), WHOLE);
     assert_no_gap(&sleigh(0.0, false), WINDOWS);
 }

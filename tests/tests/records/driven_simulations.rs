@@ -214,7 +214,7 @@ fn invalid_records_are_rejected() {
 
 #[test]
 #[cfg(unix)]
-fn link_out_of_the_datasets_folder_is_rejected() {
+fn link_to_outside_of_dataset_folder_is_rejected() {
     let elsewhere = tempfile::tempdir().expect("a folder");
     let secret = elsewhere.path().join("secret.csv");
     std::fs::write(&secret, "time,secret\n0,1\n1,2\n").expect("written");

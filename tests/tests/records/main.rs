@@ -7,7 +7,7 @@ mod free_decays;
 mod measured_quantities;
 mod moving_base;
 mod parquet;
-mod refused_records;
+mod rejected_records;
 mod sensor_errors;
 mod several_records;
 mod time_origins;

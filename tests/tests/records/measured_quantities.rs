@@ -1,6 +1,6 @@
-//! Tests with channels of a driven mass on a spring with dry friction: only acceleration or also position, intervals at
-//! rest, and two proportional quantities such as two encoders of a joint. The records are from Newton's and Coulomb's
-//! laws, integrated with small steps.
+//! Tests with channels of a driven mass on a spring with dry friction. The channels are acceleration with or without
+//! position, or two proportional quantities such as two encoders of a joint. Some records have intervals at rest. The
+//! records are from Newton's and Coulomb's laws, integrated with small steps.
 
 use eomgen_tests::program;
 use eomgen_tests::program::run_on_dataset;
@@ -263,7 +263,7 @@ fn compare_free_vibrations(train: f64, test: f64, channel: &str, initial: &str) 
 }
 
 #[test]
-fn free_vibration_from_the_other_side_is_no_wrong_sign() {
+fn free_vibration_from_the_other_side_is_not_reported_as_wrong_sign() {
     let found = compare_free_vibrations(-0.1, -0.07, "y", "state = \"estimate\"");
     assert_eq!(found["verdict"], "no_significant_gap", "{found:#}");
 }

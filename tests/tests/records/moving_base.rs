@@ -25,7 +25,7 @@ fn assert_no_gap<const N: usize, const C: usize>(machine: &Machine<N, C>, record
 }
 
 #[test]
-fn moving_masses_leave_the_noise_in_any_unit_and_sampling() {
+fn residual_of_tower_is_noise_in_any_unit_and_sampling() {
     for (step, parts, unit) in [(4e-3, 80, IN_M), (4e-3, 80, ("mm", 1e-3)), (2e-3, 40, IN_M)] {
         let recording = Recording { step, parts, unit };
         assert_no_gap(&tower(|_, _| 0.0), recording);
@@ -33,7 +33,7 @@ fn moving_masses_leave_the_noise_in_any_unit_and_sampling() {
 }
 
 #[test]
-fn pendulum_with_a_moving_pivot_leaves_the_noise() {
+fn residual_of_pendulum_with_a_moving_pivot_is_noise() {
     let recording = Recording {
         step: 5e-3,
         parts: 100,
@@ -43,7 +43,7 @@ fn pendulum_with_a_moving_pivot_leaves_the_noise() {
 }
 
 #[test]
-fn mass_that_rubs_on_the_moving_base_leaves_the_noise() {
+fn residual_of_mass_with_friction_on_moving_base_is_noise() {
     let recording = Recording {
         step: 4e-3,
         parts: 100,
@@ -53,7 +53,7 @@ fn mass_that_rubs_on_the_moving_base_leaves_the_noise() {
 }
 
 #[test]
-fn beam_on_a_moving_base_leaves_the_noise() {
+fn residual_of_beam_on_a_moving_base_is_noise() {
     let recording = Recording {
         step: 1e-3,
         parts: 100,

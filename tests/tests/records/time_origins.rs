@@ -211,7 +211,7 @@ fn rounded_doubles_of_even_times_are_even() {
 }
 
 #[test]
-fn parts_of_a_file_are_given_in_its_time() {
+fn parts_of_a_file_use_the_time_of_the_file() {
     let usual = Times::from_zero(5_000_000);
     let part = |from: &str, to: &str| {
         DATASET.replace(
@@ -361,7 +361,7 @@ fn wrapped_observable_starts_on_the_branch_of_the_initial_state() {
 }
 
 #[test]
-fn thirty_kept_samples_per_period_are_enough() {
+fn thirty_samples_per_period_are_sufficient() {
     // The natural frequency is 3.2 Hz, the input contains frequencies up to 4.7 Hz, and the sampling rate is 1 kHz.
     let times = Times::from_zero(1_000_000);
     for every in [2, 5, 7] {

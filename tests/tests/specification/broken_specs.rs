@@ -50,7 +50,7 @@ fn reject_without_files(spec: &Path) -> String {
 }
 
 /// Returns the `:line:column` of a message.
-fn place(message: &str) -> Option<&str> {
+fn read_location(message: &str) -> Option<&str> {
     let (_, rest) = message.split_once("--> ")?;
     let line = rest.lines().next()?;
     let (_, place) = line.split_once(".toml")?;
@@ -73,9 +73,9 @@ fn corpus_files_are_rejected_with_location() {
     for spec in specs {
         let message = reject_without_files(&spec);
         let golden = std::fs::read_to_string(spec.with_extension("txt")).expect("its message");
-        assert_eq!(place(&message), place(&golden), "{message}");
+        assert_eq!(read_location(&message), read_location(&golden), "{message}");
         assert!(
-            place(&golden).is_some_and(|place| !place.is_empty()),
+            read_location(&golden).is_some_and(|place| !place.is_empty()),
             "no place: {golden}"
         );
     }
@@ -119,7 +119,7 @@ fn deep_nesting_is_rejected() {
         format!("m{}", "/m".repeat(10_000)),
     ] {
         let message = reject_text("nested", &term(&expression));
-        assert!(place(&message).is_some(), "{message}");
+        assert!(read_location(&message).is_some(), "{message}");
     }
     reject_text(
         "arrays",

@@ -2,10 +2,10 @@
 
 mod broken_specs;
 mod clipped_models;
+mod correct_models;
 mod features;
 mod latex;
 mod macro_errors;
 mod ranges;
 mod reference_pages;
-mod right_models;
 mod schema;

@@ -129,11 +129,11 @@ fn compare(page: &str, table: &str) {
 }
 
 #[test]
-fn page_of_the_language_matches_the_table_of_sections() {
+fn language_reference_matches_the_table_of_sections() {
     compare("specification.md", &(table(&SECTIONS) + &legend()));
 }
 
 #[test]
-fn page_of_datasets_matches_the_table_of_keys() {
+fn dataset_reference_matches_the_table_of_keys() {
     compare("discovery.md", &table(&TABLES));
 }

@@ -124,7 +124,7 @@ fn schema_rejects_values_of_wrong_type() {
 }
 
 #[test]
-fn schema_requires_the_keys_the_reader_requires() {
+fn schema_requires_the_keys_that_the_parser_requires() {
     let validator = validator();
     let (mut needed, mut free) = (0, 0);
     for path in valid_specifications() {
@@ -144,7 +144,7 @@ fn schema_requires_the_keys_the_reader_requires() {
 }
 
 #[test]
-fn schema_rejects_what_the_reader_rejects_by_structure() {
+fn schema_rejects_structures_that_the_parser_rejects() {
     let validator = validator();
     let mut refused = 0;
     for path in specifications("model-spec/tests/corpus/broken") {

@@ -72,7 +72,10 @@ impl<'m> Quantities<'m> {
             let rates = std::iter::successors(input.rate, |rate| model.inputs[*rate].rate);
             let (low, high) = range.unwrap_or_else(|| match input.rate {
                 // The range of a prescribed motion is the size of the machine.
-                Some(_) => around_zero(reach(&input.unit.to_string(), machine_size(compiled))),
+                Some(_) => around_zero(default_half_range(
+                    &input.unit.to_string(),
+                    machine_size(compiled),
+                )),
                 None => around_zero(10.0),
             });
             Signal {
@@ -93,7 +96,7 @@ impl<'m> Quantities<'m> {
             parameters: parameters.collect(),
             initial: initial_state(compiled, &units, &ranges, initial),
             inputs: inputs.collect(),
-            shown: shown(compiled, &units),
+            shown: list_curves(compiled, &units),
             units,
         })
     }
@@ -149,8 +152,9 @@ fn initial_state<'m>(
     all.map(|place| {
         let value = initial[place];
         let declared = ranges.get(place).copied().flatten();
-        let (low, high) = declared
-            .unwrap_or_else(|| around_zero(reach(&units[place], size).max(1.5 * value.abs())));
+        let (low, high) = declared.unwrap_or_else(|| {
+            around_zero(default_half_range(&units[place], size).max(1.5 * value.abs()))
+        });
         let coordinate = model.coordinates.get(place).map(|known| &known.doc);
         let state = place
             .checked_sub(2 * degrees)
@@ -184,7 +188,7 @@ pub(super) fn machine_size(compiled: &CompiledModel) -> f64 {
 }
 
 /// Returns the default of half the range of a slider for a unit. `size` is the size of the machine, in m.
-fn reach(unit: &str, size: f64) -> f64 {
+fn default_half_range(unit: &str, size: f64) -> f64 {
     match unit {
         "rad" => std::f64::consts::PI,
         "rad/s" => 10.0,
@@ -200,13 +204,13 @@ const ROUNDING: f64 = 1e-14;
 /// Returns the largest value in a unit that is treated as rounding error; 0 for units without a typical size.
 pub(super) fn rounding_error(unit: &str, size: f64) -> f64 {
     match unit {
-        "rad" | "rad/s" | "m" | "m/s" => ROUNDING * reach(unit, size),
+        "rad" | "rad/s" | "m" | "m/s" => ROUNDING * default_half_range(unit, size),
         _ => 0.0,
     }
 }
 
 /// Returns states and observables as curves; curves of coordinates and energy are shown initially.
-fn shown(compiled: &CompiledModel, units: &[String]) -> Vec<CurveQuantity> {
+fn list_curves(compiled: &CompiledModel, units: &[String]) -> Vec<CurveQuantity> {
     let states = compiled.state_names().into_iter().zip(units.to_vec());
     let observables = &compiled.program().observables;
     let observables = observables.iter().map(|o| (o.name.clone(), o.unit.clone()));

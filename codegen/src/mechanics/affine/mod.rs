@@ -116,10 +116,10 @@ pub fn derive_affine(mut equations: Equations) -> Result<AffineEquations, NodeId
         .iter()
         .map(|&phase| PhaseNodes {
             rate: derive_by_scalar(graph, phase, time),
-            offset: at_time_zero(graph, phase, time),
+            offset: evaluate_at_time_zero(graph, phase, time),
         })
         .collect();
-    let guard_groups = parallel_groups(graph, &surfaces);
+    let guard_groups = group_parallel_surfaces(graph, &surfaces);
     let guards_rest = surfaces
         .iter()
         .map(|id| can_be_constant(graph, *id))
@@ -160,13 +160,13 @@ fn read_rows(reader: &mut rows::Reader<'_>, graph: &mut Graph, nodes: &[NodeId])
         .collect()
 }
 
-fn at_time_zero(graph: &mut Graph, phase: NodeId, time: NodeId) -> NodeId {
+fn evaluate_at_time_zero(graph: &mut Graph, phase: NodeId, time: NodeId) -> NodeId {
     let zero = |graph: &mut Graph, node: NodeId| (node == time).then(|| graph.zero());
     substitute(graph, phase, &zero, &mut HashMap::new())
 }
 
 /// Returns, for each surface, the index of the first parallel surface (possibly its own index).
-fn parallel_groups(graph: &mut Graph, surfaces: &[NodeId]) -> Vec<usize> {
+fn group_parallel_surfaces(graph: &mut Graph, surfaces: &[NodeId]) -> Vec<usize> {
     let mut firsts = Vec::with_capacity(surfaces.len());
     for (index, &surface) in surfaces.iter().enumerate() {
         let first = (0..index).find(|&other| {

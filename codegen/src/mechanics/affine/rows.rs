@@ -141,10 +141,10 @@ impl<'a> Reader<'a> {
         };
         let (coordinates, rates) = (by(graph, &self.coordinates), by(graph, &self.rates));
         let (states, inputs) = (by(graph, &self.states), by(graph, &self.inputs));
-        let by_calls = |graph: &mut Graph, place: usize| -> Vec<NodeId> {
+        let by_calls = |graph: &mut Graph, index: usize| -> Vec<NodeId> {
             let calls = self.sinusoids.calls.iter();
             calls
-                .map(|pair| derive_by_scalar(graph, id, pair[place]))
+                .map(|pair| derive_by_scalar(graph, id, pair[index]))
                 .collect()
         };
         AffineRow {
@@ -191,7 +191,7 @@ fn read_modes(
         .iter_mut()
         .map(|field| match elements {
             Some(space) => {
-                let jacobian = field.element_jacobian(graph, id, space);
+                let jacobian = field.derive_element_jacobian(graph, id, space);
                 jacobian.assemble(graph)
             }
             None => field.gradient(graph, id),

@@ -7,44 +7,45 @@ use eomgen_model_spec::model::{Expr, ExprKind, Function, Model, ParameterValue};
 use super::contents::contents;
 
 /// Largest rounding error of a relative position, which takes a dozen operations.
-const ROUNDING: f64 = 1e-14;
+const POSITION_ROUNDING: f64 = 1e-14;
 
 /// Number of other parameter sets for which a position must be at the same fraction of the length.
-const OTHER_VALUES: usize = 2;
+const OTHER_PARAMETER_SETS: usize = 2;
 
 /// Function of the position that changes its sign at a break: a sum of expressions with factors.
 type Argument<'m> = Vec<(f64, &'m Expr)>;
 
 /// Returns the relative positions inside the domain, ascending. Switches whose relative position depends on the
 /// parameters are left out.
-pub(super) fn fixed_breaks(model: &Model, field: FieldId) -> Vec<f64> {
-    let arguments = switching_arguments(model, field);
+pub(super) fn find_fixed_breaks(model: &Model, field: FieldId) -> Vec<f64> {
+    let arguments = find_switching_arguments(model, field);
     if arguments.is_empty() {
         return Vec::new();
     }
     let Ok(declared) = model.parameter_values() else {
         return Vec::new();
     };
-    let others: Vec<Vec<f64>> = (1..=OTHER_VALUES)
-        .filter_map(|draw| other_values(model, draw))
+    let others: Vec<Vec<f64>> = (1..=OTHER_PARAMETER_SETS)
+        .filter_map(|draw| vary_parameters(model, draw))
         .collect();
-    if others.len() < OTHER_VALUES {
+    if others.len() < OTHER_PARAMETER_SETS {
         return Vec::new();
     }
     let roots = arguments.iter().filter_map(|argument| {
-        let root = |parameters: &Vec<f64>| relative_root(model, field, argument, parameters);
+        let root =
+            |parameters: &Vec<f64>| solve_for_relative_position(model, field, argument, parameters);
         let found = root(&declared)?;
-        let is_same = |other| (root(other).unwrap_or(f64::NAN) - found).abs() <= ROUNDING;
-        let is_inside = ROUNDING < found && found < 1.0 - ROUNDING;
+        let is_same = |other| (root(other).unwrap_or(f64::NAN) - found).abs() <= POSITION_ROUNDING;
+        let is_inside = POSITION_ROUNDING < found && found < 1.0 - POSITION_ROUNDING;
         (is_inside && others.iter().all(is_same)).then_some(found)
     });
     let mut breaks: Vec<f64> = roots.collect();
     breaks.sort_by(f64::total_cmp);
-    breaks.dedup_by(|later, earlier| *later - *earlier <= ROUNDING);
+    breaks.dedup_by(|later, earlier| *later - *earlier <= POSITION_ROUNDING);
     breaks
 }
 
-fn switching_arguments(model: &Model, of: FieldId) -> Vec<Argument<'_>> {
+fn find_switching_arguments(model: &Model, of: FieldId) -> Vec<Argument<'_>> {
     let mut found: Vec<Argument<'_>> = Vec::new();
     model.for_each_expression(&mut |expr| {
         expr.visit(&mut |part| {
@@ -58,7 +59,7 @@ fn switching_arguments(model: &Model, of: FieldId) -> Vec<Argument<'_>> {
                 if let ExprKind::Call(function, arguments) = &part.kind
                     && contents(model, part).is_coefficient()
                 {
-                    found.extend(arguments_of_call(*function, arguments));
+                    found.extend(find_call_arguments(*function, arguments));
                 }
             });
         });
@@ -66,7 +67,7 @@ fn switching_arguments(model: &Model, of: FieldId) -> Vec<Argument<'_>> {
     found
 }
 
-fn arguments_of_call(function: Function, arguments: &[Expr]) -> Vec<Argument<'_>> {
+fn find_call_arguments(function: Function, arguments: &[Expr]) -> Vec<Argument<'_>> {
     match (function, arguments) {
         (Function::Above | Function::Sign | Function::Abs, [x]) => vec![vec![(1.0, x)]],
         (Function::Min | Function::Max, [x, y]) => vec![vec![(1.0, x), (-1.0, y)]],
@@ -78,7 +79,7 @@ fn arguments_of_call(function: Function, arguments: &[Expr]) -> Vec<Argument<'_>
 }
 
 /// Returns the relative position at which an argument is 0; `None` if it is not linear in the position.
-fn relative_root(
+fn solve_for_relative_position(
     model: &Model,
     field: FieldId,
     argument: &Argument<'_>,
@@ -101,14 +102,15 @@ fn relative_root(
         addends.sum()
     };
     let [start, middle, end] = [from, 0.5 * (from + to), to].map(value);
-    let is_linear = (start + end - 2.0 * middle).abs() <= ROUNDING * (start.abs() + end.abs());
+    let is_linear =
+        (start + end - 2.0 * middle).abs() <= POSITION_ROUNDING * (start.abs() + end.abs());
     let root = start / (start - end);
     (is_linear && root.is_finite()).then_some(root)
 }
 
 /// Returns the parameters, with each independent parameter multiplied by a different factor; declared bounds are
 /// ignored.
-fn other_values(model: &Model, draw: usize) -> Option<Vec<f64>> {
+fn vary_parameters(model: &Model, draw: usize) -> Option<Vec<f64>> {
     let mut changed = model.clone();
     for (place, parameter) in changed.parameters.iter_mut().enumerate() {
         (parameter.min, parameter.max) = (None, None);

@@ -25,7 +25,7 @@ impl Contents {
         self.position && !self.shapes && !self.motion && !self.time
     }
 
-    pub fn vary_along_field(self) -> bool {
+    pub fn varies_along_field(self) -> bool {
         self.position || self.shapes
     }
 }
@@ -42,7 +42,7 @@ pub(super) fn contents(model: &Model, expr: &Expr) -> Contents {
             found = contents(model, operand);
             found.motion |= !found.shapes;
         }
-        ExprKind::Definition(index) => found = contents_of_definition(model, *index),
+        ExprKind::Definition(index) => found = find_definition_quantities(model, *index),
         ExprKind::Negate(operand) => found = contents(model, operand),
         ExprKind::Binary(_, left, right) => {
             found = contents(model, left);
@@ -59,7 +59,7 @@ pub(super) fn contents(model: &Model, expr: &Expr) -> Contents {
 }
 
 /// Returns the contents of a definition, which is constant along fields.
-fn contents_of_definition(model: &Model, index: DefinitionId) -> Contents {
+fn find_definition_quantities(model: &Model, index: DefinitionId) -> Contents {
     let value = &model.definitions[index].value;
     let mut found = Contents::default();
     value.visit(&mut |part| match &part.kind {
@@ -70,7 +70,7 @@ fn contents_of_definition(model: &Model, index: DefinitionId) -> Contents {
         | ExprKind::Binary(..)
         | ExprKind::Call(..) => {}
         ExprKind::Time => found.time = true,
-        ExprKind::Definition(index) => found.include(contents_of_definition(model, *index)),
+        ExprKind::Definition(index) => found.include(find_definition_quantities(model, *index)),
         _ => found.motion = true,
     });
     found

@@ -44,7 +44,7 @@ impl Domain {
 
     /// Returns s = (x - from)/(to - from). Tabulated shapes need a constant s; for these, equal terms of x and of the
     /// ends of the domain are cancelled.
-    pub fn relative_position(&self, graph: &mut Graph, position: NodeId) -> NodeId {
+    pub fn derive_relative_position(&self, graph: &mut Graph, position: NodeId) -> NodeId {
         if self.basis.table().is_none() {
             let from_start = graph.subtract(position, self.from);
             return graph.divide(from_start, self.length);
@@ -60,7 +60,7 @@ impl Domain {
         let basis = &self.basis;
         graph.constants(self.field, kind, || match kind {
             TableKind::NodePosition | TableKind::NodeWeight | TableKind::ShapeAtNodes(_) => {
-                modes::table_at_nodes(basis, order, &self.rule.quadrature(), kind)
+                modes::compute_table_at_nodes(basis, order, &self.rule.quadrature(), kind)
             }
             _ => modes::table(basis, order, kind),
         })

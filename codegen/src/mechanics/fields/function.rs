@@ -11,7 +11,7 @@ use eomgen_model_spec::model::Function;
 
 use super::term::{Atom, IntegrandTerm};
 use crate::mechanics::fields::domain::Domain;
-use crate::mechanics::fields::moments::{integral_of_term, shapes_at};
+use crate::mechanics::fields::moments::{build_shapes_at, integrate_term};
 use crate::symbolic::arguments::Arguments;
 use crate::symbolic::graph::{Graph, NodeId, Space};
 use crate::symbolic::tables::TableKind;
@@ -128,7 +128,7 @@ impl FieldFunction {
         domain: &Domain,
         position: NodeId,
     ) -> Outcome<NodeId> {
-        let s = domain.relative_position(graph, position);
+        let s = domain.derive_relative_position(graph, position);
         let mut terms = Vec::new();
         for term in &self.terms {
             if term.weight.is_some() {
@@ -139,11 +139,11 @@ impl FieldFunction {
             }
             let mut factors = vec![(term.scalar, 1), (s, term.power as i32)];
             for atom in &term.atoms {
-                let shapes = shapes_at(graph, domain, s, atom.derivative())?;
+                let shapes = build_shapes_at(graph, domain, s, atom.derivative())?;
                 let value = match atom.amplitudes(graph, domain.field) {
                     Some(amplitudes) => {
                         let product = graph.multiply(shapes, amplitudes);
-                        graph.total_over(Space::Modes(domain.field), product)
+                        graph.sum_over_space(Space::Modes(domain.field), product)
                     }
                     None => shapes,
                 };
@@ -158,7 +158,7 @@ impl FieldFunction {
     pub fn integral(&self, graph: &mut Graph, domain: &Domain) -> Outcome<NodeId> {
         let mut terms = Vec::new();
         for term in &self.terms {
-            let value = integral_of_term(graph, domain, term);
+            let value = integrate_term(graph, domain, term);
             let product = graph.product(&[(term.scalar, 1), (domain.length, 1), (value, 1)]);
             terms.push((1.0, product));
         }
@@ -202,7 +202,7 @@ impl FieldFunction {
             return Ok(Self::weight(graph, product));
         }
         if self.terms.len() * other.terms.len() > MAX_TERMS {
-            return Err(too_many_terms());
+            return Err(describe_too_many_terms());
         }
         let mut terms = Vec::new();
         for a in &self.terms {
@@ -301,11 +301,11 @@ fn collect_like_terms(graph: &mut Graph, terms: Vec<IntegrandTerm>) -> Vec<Integ
 
 fn check_term_count(terms: Vec<IntegrandTerm>) -> Outcome<FieldFunction> {
     if terms.len() > MAX_TERMS {
-        return Err(too_many_terms());
+        return Err(describe_too_many_terms());
     }
     Ok(FieldFunction { terms })
 }
 
-fn too_many_terms() -> String {
+fn describe_too_many_terms() -> String {
     format!("this integrand has more than {MAX_TERMS} terms when expanded")
 }

@@ -30,7 +30,7 @@ pub(super) struct Mode {
 impl Mode {
     /// Returns the integral of s^power phi for `power` 0 or 1. Because phi'''' = k^4 phi, integration by parts leaves
     /// only end values.
-    pub(super) fn moment(&self, power: u32) -> f64 {
+    pub(super) fn compute_moment(&self, power: u32) -> f64 {
         let k = self.wavenumber;
         match power {
             0 => (self.at_end[3] - self.at_start[3]) / k,

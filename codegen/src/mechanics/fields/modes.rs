@@ -5,15 +5,15 @@ use eomgen_model_spec::model::Basis;
 
 use super::beam;
 use super::mode::{Mode, power};
-use super::quadrature::{QuadratureRule, composite, gauss_legendre};
+use super::quadrature::{QuadratureRule, build_composite_rule, gauss_legendre};
 use super::spline::Spline;
-use crate::symbolic::tables::{TableKind, quadrature_size};
+use crate::symbolic::tables::{TableKind, count_quadrature_nodes};
 
 /// Number of shapes in the products for which quadrature nodes are chosen by default.
-const PRODUCT_OF_TWO: u32 = 2;
+const DEFAULT_PRODUCT_DEGREE: u32 = 2;
 
 /// Polynomial degree of the pieces of a cubic spline.
-const DEGREE_OF_A_PIECE: usize = 3;
+const SPLINE_PIECE_DEGREE: usize = 3;
 
 /// Returns true if the integral of s^k phi_r^(a) phi_p^(b) is zero for all r != p. The shapes of a uniform beam are
 /// orthogonal, and so are their curvatures. For sines and cosines this also holds for other equal derivatives.
@@ -31,11 +31,11 @@ pub fn is_orthogonal(basis: &Basis, power: u32, left: u8, right: u8) -> bool {
 /// Returns the number of quadrature nodes between neighbouring knots, for products of up to `degree` shapes. All
 /// pieces of a table together have at least as many nodes as other bases, and each piece has enough nodes for the
 /// products.
-pub(super) fn nodes_of_a_piece(basis: &Basis, order: usize, degree: u32) -> usize {
-    let nodes = quadrature_size(order, degree);
+pub(super) fn compute_nodes_per_piece(basis: &Basis, order: usize, degree: u32) -> usize {
+    let nodes = count_quadrature_nodes(order, degree);
     match basis {
         Basis::Table { table, .. } => {
-            let exact = (DEGREE_OF_A_PIECE * degree as usize + 1).div_ceil(2);
+            let exact = (SPLINE_PIECE_DEGREE * degree as usize + 1).div_ceil(2);
             nodes.div_ceil(table.positions.len() - 1).max(exact)
         }
         Basis::Beam { .. } | Basis::ClampedFreePrinted => nodes,
@@ -58,7 +58,7 @@ pub(super) fn knots(basis: &Basis) -> Vec<f64> {
 
 /// Computes a table of values at these quadrature nodes; returns an empty table if `kind` is not a table at
 /// quadrature nodes.
-pub(crate) fn table_at_nodes(
+pub(crate) fn compute_table_at_nodes(
     basis: &Basis,
     order: usize,
     rule: &QuadratureRule,
@@ -69,7 +69,9 @@ pub(crate) fn table_at_nodes(
         TableKind::NodeWeight => rule.weights.clone(),
         TableKind::ShapeAtNodes(derivative) => {
             let shapes = Shapes::new(basis, order);
-            shapes.values_at_nodes(derivative, &rule.nodes).concat()
+            shapes
+                .compute_values_at_nodes(derivative, &rule.nodes)
+                .concat()
         }
         _ => Vec::new(),
     }
@@ -93,17 +95,17 @@ pub fn table(basis: &Basis, order: usize, kind: TableKind) -> Vec<f64> {
         TableKind::Indicator(mode) => (1..=order)
             .map(|number| f64::from(u8::from(number == mode)))
             .collect(),
-        TableKind::Moment { power, derivative } => shapes.moments(basis, power, derivative),
+        TableKind::Moment { power, derivative } => shapes.compute_moments(basis, power, derivative),
         TableKind::OwnMoment { power, left, right } => {
-            shapes.own_moments(basis, power, left, right)
+            shapes.compute_diagonal_moments(basis, power, left, right)
         }
         TableKind::PairMoment { power, left, right } => {
-            shapes.pair_moments(basis, power, left, right)
+            shapes.compute_pair_moments(basis, power, left, right)
         }
         TableKind::NodePosition | TableKind::NodeWeight | TableKind::ShapeAtNodes(_) => {
-            let nodes = nodes_of_a_piece(basis, order, PRODUCT_OF_TWO);
-            let rule = composite(&knots(basis), nodes);
-            table_at_nodes(basis, order, &rule, kind)
+            let nodes = compute_nodes_per_piece(basis, order, DEFAULT_PRODUCT_DEGREE);
+            let rule = build_composite_rule(&knots(basis), nodes);
+            compute_table_at_nodes(basis, order, &rule, kind)
         }
     }
 }
@@ -121,9 +123,11 @@ impl Shapes {
         let numbers = 1..=order;
         match basis {
             Basis::Beam { from, to } => {
-                Self::Modes(numbers.map(|r| beam::mode(*from, *to, r)).collect())
+                Self::Modes(numbers.map(|r| beam::compute_mode(*from, *to, r)).collect())
             }
-            Basis::ClampedFreePrinted => Self::Modes(numbers.map(beam::printed_mode).collect()),
+            Basis::ClampedFreePrinted => {
+                Self::Modes(numbers.map(beam::compute_printed_mode).collect())
+            }
             Basis::Table { table, .. } => {
                 let knots = knots(basis);
                 let used = table.shapes.iter().take(order);
@@ -177,7 +181,7 @@ impl Shapes {
     }
 
     /// Returns phi_r^(a) with one row for each position and one column for each mode.
-    fn values_at_nodes(&self, derivative: u8, places: &[f64]) -> Vec<Vec<f64>> {
+    fn compute_values_at_nodes(&self, derivative: u8, places: &[f64]) -> Vec<Vec<f64>> {
         places
             .iter()
             .map(|s| self.values_at(derivative, *s))
@@ -185,12 +189,12 @@ impl Shapes {
     }
 
     /// Computes the integrals of s^k phi_r^(a) for all modes r.
-    fn moments(&self, basis: &Basis, moment: u32, derivative: u8) -> Vec<f64> {
+    fn compute_moments(&self, basis: &Basis, moment: u32, derivative: u8) -> Vec<f64> {
         if matches!(basis, Basis::Beam { .. }) && moment < 2 && derivative == 0 {
-            return self.values(|mode| mode.moment(moment));
+            return self.values(|mode| mode.compute_moment(moment));
         }
         let QuadratureRule { nodes, weights } = self.rule(basis, moment);
-        let shapes = self.values_at_nodes(derivative, &nodes);
+        let shapes = self.compute_values_at_nodes(derivative, &nodes);
         (0..self.order())
             .map(|r| sum_over(&weights, |g| shapes[g][r]))
             .collect()
@@ -198,7 +202,13 @@ impl Shapes {
 
     /// Computes the integrals of s^k phi_r^(a) phi_r^(b) for all modes r; if a and b differ by 2, by integration by
     /// parts.
-    fn own_moments(&self, basis: &Basis, moment: u32, left: u8, right: u8) -> Vec<f64> {
+    fn compute_diagonal_moments(
+        &self,
+        basis: &Basis,
+        moment: u32,
+        left: u8,
+        right: u8,
+    ) -> Vec<f64> {
         if is_orthogonal(basis, moment, left, right) {
             let opposite = !(left.abs_diff(right) / 2).is_multiple_of(2);
             let sign = if opposite { -1.0 } else { 1.0 };
@@ -207,17 +217,17 @@ impl Shapes {
                 sign * (power(m.wavenumber, left + right) * one * other)
             });
         }
-        let pairs = self.pair_moments(basis, moment, left, right);
+        let pairs = self.compute_pair_moments(basis, moment, left, right);
         pairs.iter().step_by(self.order() + 1).copied().collect()
     }
 
-    fn pair_moments(&self, basis: &Basis, moment: u32, left: u8, right: u8) -> Vec<f64> {
+    fn compute_pair_moments(&self, basis: &Basis, moment: u32, left: u8, right: u8) -> Vec<f64> {
         let QuadratureRule { nodes, weights } = self.rule(basis, moment);
-        let a = self.values_at_nodes(left, &nodes);
+        let a = self.compute_values_at_nodes(left, &nodes);
         let b = if left == right {
             a.clone()
         } else {
-            self.values_at_nodes(right, &nodes)
+            self.compute_values_at_nodes(right, &nodes)
         };
         let order = self.order();
         (0..order * order)
@@ -234,10 +244,10 @@ impl Shapes {
 
     /// Returns a quadrature rule whose weights are multiplied by s^k.
     fn rule(&self, basis: &Basis, moment: u32) -> QuadratureRule {
-        let nodes = nodes_of_a_piece(basis, self.order(), PRODUCT_OF_TWO);
+        let nodes = compute_nodes_per_piece(basis, self.order(), DEFAULT_PRODUCT_DEGREE);
         let mut rule = match self {
             Self::Modes(_) => gauss_legendre(nodes + moment as usize),
-            Self::Splines(knots, _) => composite(knots, nodes + moment as usize / 2),
+            Self::Splines(knots, _) => build_composite_rule(knots, nodes + moment as usize / 2),
         };
         for (weight, s) in rule.weights.iter_mut().zip(&rule.nodes) {
             *weight *= (0..moment).fold(1.0, |product, _| product * s);

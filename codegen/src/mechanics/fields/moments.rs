@@ -14,7 +14,7 @@ use crate::symbolic::tables::TableKind;
 ///
 /// # Errors
 /// A tabulated shape at a position that depends on parameters.
-pub(crate) fn shapes_at(
+pub(crate) fn build_shapes_at(
     graph: &mut Graph,
     domain: &Domain,
     s: NodeId,
@@ -33,8 +33,8 @@ pub(crate) fn shapes_at(
                 from: End::Clamped, ..
             },
             _,
-        ) => Ok(clamped_shapes(graph, domain, s, derivative)),
-        (&Basis::Beam { from, to }, _) => Ok(beam_shapes(graph, domain, s, derivative, [from, to])),
+        ) => Ok(build_clamped_shapes(graph, domain, s, derivative)),
+        (&Basis::Beam { from, to }, _) => Ok(build_beam_shapes(graph, domain, s, derivative, [from, to])),
         (Basis::Table { .. }, Some(s)) if (0.0..=1.0).contains(&s) => {
             let bits = s.to_bits();
             Ok(domain.table(graph, TableKind::ShapeAtPlace { bits, derivative }))
@@ -49,7 +49,7 @@ pub(crate) fn shapes_at(
 }
 
 /// Builds the shapes of Eq. (17) from xi_r and (1 + xi_r) exp(beta_r l).
-fn clamped_shapes(graph: &mut Graph, domain: &Domain, s: NodeId, derivative: u8) -> NodeId {
+fn build_clamped_shapes(graph: &mut Graph, domain: &Domain, s: NodeId, derivative: u8) -> NodeId {
     let beta = domain.table(graph, TableKind::Wavenumber);
     let xi = domain.table(graph, TableKind::Mixing);
     let growing = domain.table(graph, TableKind::GrowingAmplitude);
@@ -87,7 +87,7 @@ fn clamped_shapes(graph: &mut Graph, domain: &Domain, s: NodeId, derivative: u8)
 
 /// Builds sin z, sin z + xi cos z or cos z, depending on the end at the start, plus the decaying exponentials of
 /// clamped and free ends.
-fn beam_shapes(
+fn build_beam_shapes(
     graph: &mut Graph,
     domain: &Domain,
     s: NodeId,
@@ -98,10 +98,10 @@ fn beam_shapes(
     let z = graph.multiply(beta, s);
     let mut terms = Vec::new();
     if from != End::Guided {
-        terms.push(sinusoid_derivative(graph, Function::Sin, z, derivative));
+        terms.push(differentiate_sinusoid(graph, Function::Sin, z, derivative));
     }
     if from != End::Pinned {
-        let (sign, mut cosine) = sinusoid_derivative(graph, Function::Cos, z, derivative);
+        let (sign, mut cosine) = differentiate_sinusoid(graph, Function::Cos, z, derivative);
         if from != End::Guided {
             let xi = domain.table(graph, TableKind::Mixing);
             cosine = graph.multiply(xi, cosine);
@@ -130,7 +130,7 @@ fn beam_shapes(
 }
 
 /// Returns a derivative of sin z or cos z by z as a function and a sign.
-fn sinusoid_derivative(
+fn differentiate_sinusoid(
     graph: &mut Graph,
     function: Function,
     z: NodeId,
@@ -148,9 +148,9 @@ fn sinusoid_derivative(
 
 /// Returns the integral over s of s^power weight atom_1 atom_2; a vector over the modes if one atom is a bare
 /// shape.
-pub(crate) fn integral_of_term(graph: &mut Graph, domain: &Domain, term: &IntegrandTerm) -> NodeId {
+pub(crate) fn integrate_term(graph: &mut Graph, domain: &Domain, term: &IntegrandTerm) -> NodeId {
     if let Some(weight) = term.weight {
-        return weighted_integral(graph, domain, term, weight);
+        return integrate_with_weight(graph, domain, term, weight);
     }
     let modes = Space::Modes(domain.field);
     match *term.atoms.as_slice() {
@@ -176,13 +176,13 @@ pub(crate) fn integral_of_term(graph: &mut Graph, domain: &Domain, term: &Integr
                 [Some(u), Some(v)] if orthogonal => {
                     let table = domain.table(graph, own);
                     let product = graph.product(&[(table, 1), (u, 1), (v, 1)]);
-                    graph.total_over(modes, product)
+                    graph.sum_over_space(modes, product)
                 }
                 [Some(u), Some(v)] => {
                     let table = domain.table(graph, pair);
                     let applied = graph.apply(table, false, v);
                     let product = graph.multiply(u, applied);
-                    graph.total_over(modes, product)
+                    graph.sum_over_space(modes, product)
                 }
                 [Some(u), None] if orthogonal => {
                     let table = domain.table(graph, own);
@@ -213,7 +213,7 @@ pub(crate) fn integral_of_term(graph: &mut Graph, domain: &Domain, term: &Integr
             match a.amplitudes(graph, domain.field) {
                 Some(u) => {
                     let product = graph.multiply(table, u);
-                    graph.total_over(modes, product)
+                    graph.sum_over_space(modes, product)
                 }
                 None => table,
             }
@@ -222,7 +222,7 @@ pub(crate) fn integral_of_term(graph: &mut Graph, domain: &Domain, term: &Integr
     }
 }
 
-fn weighted_integral(
+fn integrate_with_weight(
     graph: &mut Graph,
     domain: &Domain,
     term: &IntegrandTerm,
@@ -252,12 +252,12 @@ fn weighted_integral(
             });
             let applied = graph.apply(gram, false, v);
             let product = graph.multiply(u, applied);
-            graph.total_over(modes, product)
+            graph.sum_over_space(modes, product)
         }
         (&[Some(u), Some(v)], &[left, right]) => {
             let at_nodes = [graph.apply(left, false, u), graph.apply(right, false, v)];
             let product = graph.product(&[(weight, 1), (at_nodes[0], 1), (at_nodes[1], 1)]);
-            graph.total_over(nodes, product)
+            graph.sum_over_space(nodes, product)
         }
         (&[Some(u), None], &[left, right]) => {
             let at_nodes = graph.apply(left, false, u);
@@ -277,9 +277,9 @@ fn weighted_integral(
         (&[Some(u)], &[shape]) => {
             let moment = graph.apply(shape, true, weight);
             let product = graph.multiply(moment, u);
-            graph.total_over(modes, product)
+            graph.sum_over_space(modes, product)
         }
         (&[None], &[shape]) => graph.apply(shape, true, weight),
-        _ => graph.total_over(nodes, weight),
+        _ => graph.sum_over_space(nodes, weight),
     }
 }

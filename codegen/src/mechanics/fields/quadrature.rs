@@ -19,14 +19,14 @@ pub fn gauss_legendre(n: usize) -> QuadratureRule {
         let guess = std::f64::consts::PI * (k as f64 + 0.75) / (n as f64 + 0.5);
         let mut x = Function::Cos.apply(&[guess]);
         for _ in 0..100 {
-            let (value, slope) = legendre(n, x);
+            let (value, slope) = evaluate_legendre(n, x);
             let step = value / slope;
             x -= step;
             if step.abs() < 1e-16 {
                 break;
             }
         }
-        let (_, slope) = legendre(n, x);
+        let (_, slope) = evaluate_legendre(n, x);
         let weight = 1.0 / ((1.0 - x * x) * slope * slope);
         nodes[k] = 0.5 * (1.0 - x);
         nodes[n - 1 - k] = 0.5 * (1.0 + x);
@@ -37,7 +37,7 @@ pub fn gauss_legendre(n: usize) -> QuadratureRule {
 }
 
 /// Applies the n-point rule between adjacent knots.
-pub fn composite(knots: &[f64], n: usize) -> QuadratureRule {
+pub fn build_composite_rule(knots: &[f64], n: usize) -> QuadratureRule {
     let rule = gauss_legendre(n);
     let pieces = knots.windows(2).map(|ends| (ends[0], ends[1] - ends[0]));
     let (nodes, weights) = pieces
@@ -50,7 +50,7 @@ pub fn composite(knots: &[f64], n: usize) -> QuadratureRule {
 }
 
 /// Returns P_n(x) and its derivative; the derivative is not finite at -1 and 1.
-pub(super) fn legendre(n: usize, x: f64) -> (f64, f64) {
+pub(super) fn evaluate_legendre(n: usize, x: f64) -> (f64, f64) {
     let (mut previous, mut current) = (1.0, x);
     for k in 2..=n {
         let k = k as f64;

@@ -3,16 +3,16 @@
 use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::Model;
 
-use super::breaks::fixed_breaks;
-use super::degree::highest_degree;
-use super::modes::{knots, nodes_of_a_piece};
-use super::quadrature::{QuadratureRule, composite};
+use super::breaks::find_fixed_breaks;
+use super::degree::find_highest_degree;
+use super::modes::{compute_nodes_per_piece, knots};
+use super::quadrature::{QuadratureRule, build_composite_rule};
 
 /// Quadrature rule of a field: knots, and the number of nodes between adjacent knots.
 #[derive(Clone, Debug)]
 pub struct FieldRule {
     knots: Vec<f64>,
-    nodes_of_a_piece: usize,
+    nodes_per_piece: usize,
 }
 
 impl FieldRule {
@@ -20,20 +20,21 @@ impl FieldRule {
     /// at which coefficients switch if they are fixed fractions of the length.
     pub fn new(model: &Model, field: FieldId, order: usize) -> Self {
         let basis = &model.fields[field].basis;
-        let nodes_of_a_piece = nodes_of_a_piece(basis, order, highest_degree(model, field));
+        let nodes_per_piece =
+            compute_nodes_per_piece(basis, order, find_highest_degree(model, field));
         let mut knots = knots(basis);
-        knots.extend(fixed_breaks(model, field));
+        knots.extend(find_fixed_breaks(model, field));
         knots.sort_by(f64::total_cmp);
         knots.dedup();
         Self {
             knots,
-            nodes_of_a_piece,
+            nodes_per_piece,
         }
     }
 
     /// Returns the number of nodes.
     pub fn node_count(&self) -> usize {
-        (self.knots.len() - 1) * self.nodes_of_a_piece
+        (self.knots.len() - 1) * self.nodes_per_piece
     }
 
     /// Returns the knots, ascending from 0 to 1.
@@ -43,6 +44,6 @@ impl FieldRule {
 
     /// Computes nodes and weights.
     pub fn quadrature(&self) -> QuadratureRule {
-        composite(&self.knots, self.nodes_of_a_piece)
+        build_composite_rule(&self.knots, self.nodes_per_piece)
     }
 }

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 /// Rounding error of the factorisation per matrix row, relative to the unit diagonal.
-pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
+pub(super) const ROUNDING_PER_ROW: f64 = 64.0 * f64::EPSILON;
 
 /// Components of a direction below this fraction of the largest are rounding errors.
 const MAX_ROUNDING_COMPONENT: f64 = 1e-6;
@@ -29,22 +29,22 @@ pub(super) fn to_sparse(matrix: &[f64], size: usize) -> SparseRows {
 
 /// Returns the defect of the first connected block that is not positive definite.
 pub(super) fn find_defect(rows: &SparseRows) -> Option<Defect> {
-    for (place, row) in rows.iter().enumerate() {
+    for (index, row) in rows.iter().enumerate() {
         if let Some(bad) = row.values().find(|entry| !entry.is_finite()) {
-            return Some(Defect::Entry(place, *bad));
+            return Some(Defect::Entry(index, *bad));
         }
-        let own = row.get(&place).copied().unwrap_or(0.0);
+        let own = row.get(&index).copied().unwrap_or(0.0);
         if own <= 0.0 {
-            return Some(Defect::Entry(place, own));
+            return Some(Defect::Entry(index, own));
         }
     }
-    blocks(rows)
+    find_blocks(rows)
         .iter()
         .find_map(|block| find_block_defect(rows, block))
 }
 
 /// Returns the connected blocks: sets of indices that nonzero entries connect.
-fn blocks(rows: &SparseRows) -> Vec<Vec<usize>> {
+fn find_blocks(rows: &SparseRows) -> Vec<Vec<usize>> {
     let mut is_seen = vec![false; rows.len()];
     let mut blocks = Vec::new();
     for start in 0..rows.len() {
@@ -53,9 +53,9 @@ fn blocks(rows: &SparseRows) -> Vec<Vec<usize>> {
         }
         let mut block = vec![start];
         let mut next = 0;
-        while let Some(&place) = block.get(next) {
+        while let Some(&index) = block.get(next) {
             next += 1;
-            for &other in rows[place].keys() {
+            for &other in rows[index].keys() {
                 if !std::mem::replace(&mut is_seen[other], true) {
                     block.push(other);
                 }
@@ -70,13 +70,13 @@ fn blocks(rows: &SparseRows) -> Vec<Vec<usize>> {
 fn find_block_defect(rows: &SparseRows, block: &[usize]) -> Option<Defect> {
     let entry = |a: usize, b: usize| rows[block[a]].get(&block[b]).copied().unwrap_or(0.0);
     let scales: Vec<f64> = (0..block.len())
-        .map(|place| entry(place, place).sqrt())
+        .map(|index| entry(index, index).sqrt())
         .collect();
     let mut factor = Factor::new(block.len());
-    while let Some(place) = factor.largest_remaining_pivot() {
-        if factor.rest[place] <= ROUNDING * block.len() as f64 {
-            let (place, negative) = factor.smallest_remaining_pivot();
-            let direction = factor.null_direction(place);
+    while let Some(index) = factor.find_largest_remaining_pivot() {
+        if factor.rest[index] <= ROUNDING_PER_ROW * block.len() as f64 {
+            let (index, negative) = factor.find_smallest_remaining_pivot();
+            let direction = factor.compute_null_direction(index);
             let mut rates = vec![0.0; rows.len()];
             for ((own, part), scale) in block.iter().zip(direction).zip(&scales) {
                 rates[*own] = part / scale;
@@ -84,8 +84,8 @@ fn find_block_defect(rows: &SparseRows, block: &[usize]) -> Option<Defect> {
             let rates = normalise(rates);
             return Some(Defect::Direction { rates, negative });
         }
-        factor.eliminate(place, |row| {
-            entry(place, row) / (scales[place] * scales[row])
+        factor.eliminate(index, |row| {
+            entry(index, row) / (scales[index] * scales[row])
         });
     }
     None
@@ -111,28 +111,28 @@ impl Factor {
         }
     }
 
-    fn largest_remaining_pivot(&self) -> Option<usize> {
+    fn find_largest_remaining_pivot(&self) -> Option<usize> {
         let remaining = self.remaining.iter().copied();
         remaining.max_by(|a, b| self.rest[*a].total_cmp(&self.rest[*b]))
     }
 
     /// Returns the index of the smallest remaining pivot, and true if the pivot is more negative than rounding
     /// explains.
-    fn smallest_remaining_pivot(&self) -> (usize, bool) {
+    fn find_smallest_remaining_pivot(&self) -> (usize, bool) {
         let remaining = self.remaining.iter().copied();
         let smallest = remaining
             .min_by(|a, b| self.rest[*a].total_cmp(&self.rest[*b]))
             .unwrap_or(0);
-        let limit = ROUNDING * self.rest.len() as f64;
+        let limit = ROUNDING_PER_ROW * self.rest.len() as f64;
         (smallest, self.rest[smallest] < -limit)
     }
 
-    fn eliminate(&mut self, place: usize, entry: impl Fn(usize) -> f64) {
-        let pivot = self.rest[place].sqrt();
-        let own = self.rows[place].clone();
-        self.order.push(place);
-        self.rows[place].push(pivot);
-        self.remaining.retain(|other| *other != place);
+    fn eliminate(&mut self, index: usize, entry: impl Fn(usize) -> f64) {
+        let pivot = self.rest[index].sqrt();
+        let own = self.rows[index].clone();
+        self.order.push(index);
+        self.rows[index].push(pivot);
+        self.remaining.retain(|other| *other != index);
         for &row in &self.remaining {
             let known: f64 = own.iter().zip(&self.rows[row]).map(|(a, b)| a * b).sum();
             let element = (entry(row) - known) / pivot;
@@ -143,16 +143,16 @@ impl Factor {
 
     /// Returns the direction with component 1 at `index` and the eliminated components that minimise the quadratic
     /// form.
-    fn null_direction(&self, place: usize) -> Vec<f64> {
+    fn compute_null_direction(&self, index: usize) -> Vec<f64> {
         let mut direction = vec![0.0; self.rest.len()];
-        direction[place] = 1.0;
+        direction[index] = 1.0;
         for (step, &row) in self.order.iter().enumerate().rev() {
             let later = &self.order[step + 1..];
             let known: f64 = later
                 .iter()
                 .map(|&other| self.rows[other][step] * direction[other])
                 .sum();
-            direction[row] = -(self.rows[place][step] + known) / self.rows[row][step];
+            direction[row] = -(self.rows[index][step] + known) / self.rows[row][step];
         }
         direction
     }

@@ -29,11 +29,11 @@ pub fn check(
     equations: &Equations,
     mass: &[f64],
 ) -> Result<(), Diagnostic> {
-    let machine = Machine {
+    let machine = InertiaMessages {
         model,
         names: model.state_names(orders),
         orders,
-        moves: equations.has_variable_inertia(),
+        is_variable: equations.has_variable_inertia(),
     };
     let size = model.coordinates.len() + orders.iter().sum::<usize>();
     machine.check_mass(&to_sparse(mass, size))
@@ -67,11 +67,11 @@ pub fn check_energy(
     if sweep.is_definite {
         return Ok(Some(sweep));
     }
-    let machine = Machine {
+    let machine = InertiaMessages {
         model,
         names: model.state_names(&[]),
         orders: &[],
-        moves: graph.dependence(kinetic).has(VARIABLE_ENERGY_DEPENDENCE),
+        is_variable: graph.dependence(kinetic).has(VARIABLE_ENERGY_DEPENDENCE),
     };
     let mass = velocities.mass_matrix(point.coordinates);
     mass.map_or(Ok(()), |rows| machine.check_mass(&rows))?;
@@ -92,25 +92,25 @@ impl Equations {
         let entries = self.mass.scalars.iter().chain(&self.mass.coupling);
         let mut nodes = entries.flatten().copied();
         let mut blocks = self.modal_blocks.iter().map(|block| block.matrix);
-        let moves = |node| self.graph.dependence(node).has(VARIABLE_INERTIA_DEPENDENCE);
-        nodes.any(moves) || blocks.any(moves)
+        let is_variable = |node| self.graph.dependence(node).has(VARIABLE_INERTIA_DEPENDENCE);
+        nodes.any(is_variable) || blocks.any(is_variable)
     }
 }
 
 /// Model and names for the messages.
-struct Machine<'m> {
+struct InertiaMessages<'m> {
     model: &'m Model,
     orders: &'m [usize],
     names: Vec<String>,
     /// True if the inertia depends on state or time.
-    moves: bool,
+    is_variable: bool,
 }
 
 /// Help text for an inertia that is not finite.
 const NOT_FINITE_HELP: &str = "a term of [kinetic] exceeds 1.8e308 or leaves the domain of a function: look for a parameter \
                                that is too large, a division by 0, or a logarithm of 0";
 
-impl Machine<'_> {
+impl InertiaMessages<'_> {
     fn check_mass(&self, mass: &SparseRows) -> Result<(), Diagnostic> {
         match find_defect(mass) {
             None => Ok(()),
@@ -120,8 +120,8 @@ impl Machine<'_> {
 
     fn diagnostic(&self, lack: &Defect) -> Diagnostic {
         match lack {
-            Defect::Entry(place, value) => self.single_diagnostic(*place, *value),
-            Defect::Direction { rates, negative } => self.combined_diagnostic(rates, *negative),
+            Defect::Entry(index, value) => self.describe_coordinate(*index, *value),
+            Defect::Direction { rates, negative } => self.describe_direction(rates, *negative),
         }
         .with_optional_help(Some(match lack {
             Defect::Entry(_, value) if !value.is_finite() => NOT_FINITE_HELP.to_owned(),
@@ -129,8 +129,8 @@ impl Machine<'_> {
         }))
     }
 
-    fn single_diagnostic(&self, place: usize, value: f64) -> Diagnostic {
-        let name = &self.names[place];
+    fn describe_coordinate(&self, index: usize, value: f64) -> Diagnostic {
+        let name = &self.names[index];
         let what = if !value.is_finite() {
             format!("the inertia {value}")
         } else if value < 0.0 {
@@ -140,28 +140,28 @@ impl Machine<'_> {
         };
         let message = format!(
             "{} `{name}` has {what} at the initial state: the mass matrix is not positive definite",
-            self.kind(place)
+            self.kind(index)
         );
         let label = match value.is_finite() {
             true => "its kinetic energy does not grow with its rate",
             false => "its kinetic energy is not finite",
         };
-        Diagnostic::error(message).with_span(self.span(place), label)
+        Diagnostic::error(message).with_span(self.span(index), label)
     }
 
-    fn combined_diagnostic(&self, rates: &[f64], negative: bool) -> Diagnostic {
+    fn describe_direction(&self, rates: &[f64], negative: bool) -> Diagnostic {
         let moving: Vec<usize> = (0..rates.len()).filter(|at| rates[*at] != 0.0).collect();
         let names: Vec<String> = moving
             .iter()
-            .map(|place| format!("`{}`", self.names[*place]))
+            .map(|index| format!("`{}`", self.names[*index]))
             .collect();
         let direction: Vec<String> = moving
             .iter()
-            .map(|place| {
+            .map(|index| {
                 format!(
                     "dot({}) = {}",
-                    self.names[*place],
-                    format_short(rates[*place])
+                    self.names[*index],
+                    format_short(rates[*index])
                 )
             })
             .collect();
@@ -174,12 +174,12 @@ impl Machine<'_> {
             "kinetic energy does not grow along {}",
             direction.join(", ")
         );
-        let mut places = moving.iter().map(|place| self.span(*place));
+        let mut spans = moving.iter().map(|index| self.span(*index));
         let mut found = Diagnostic::error(message);
-        if let Some(first) = places.next() {
+        if let Some(first) = spans.next() {
             found = found.with_span(first, label);
             // All modes of a field have the same location.
-            let mut others: Vec<Span> = places.filter(|place| *place != first).collect();
+            let mut others: Vec<Span> = spans.filter(|span| *span != first).collect();
             others.dedup();
             for other in others {
                 found = found.with_related_span(other, "moves with it");
@@ -192,14 +192,14 @@ impl Machine<'_> {
         let mut help = "every coordinate, and every combination of them, needs a term of [kinetic] that grows \
                         with its rate; look for a missing term, a wrong sign or a parameter that is 0"
             .to_owned();
-        if self.moves {
+        if self.is_variable {
             help.push_str("; if inertia is missing only at this state, change `initial`");
         }
         help
     }
 
-    fn kind(&self, place: usize) -> &'static str {
-        if place < self.model.coordinates.len() {
+    fn kind(&self, index: usize) -> &'static str {
+        if index < self.model.coordinates.len() {
             "the coordinate"
         } else {
             "the mode"
@@ -207,16 +207,16 @@ impl Machine<'_> {
     }
 
     /// Returns the location of the declaration of a coordinate, or of the field of a mode.
-    fn span(&self, place: usize) -> Span {
+    fn span(&self, index: usize) -> Span {
         let coordinates = &self.model.coordinates;
-        if let Some(coordinate) = coordinates.get(place) {
+        if let Some(coordinate) = coordinates.get(index) {
             return coordinate.span;
         }
         let mut first = coordinates.len();
         let fields = self.model.fields.iter().zip(self.orders);
         for (field, order) in fields {
             first += order;
-            if place < first {
+            if index < first {
                 return field.span;
             }
         }

@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use super::lack::{ROUNDING, SparseRows};
+use super::lack::{ROUNDING_PER_ROW, SparseRows};
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 
 /// Result of a sweep over the velocities.
@@ -27,7 +27,7 @@ pub(crate) struct Velocities<'g> {
     values: &'g [f64],
 }
 
-struct Local {
+struct LocalDerivatives {
     slopes: Vec<(NodeId, f64)>,
     curvatures: Vec<(NodeId, NodeId, f64)>,
 }
@@ -48,15 +48,15 @@ impl<'g> Velocities<'g> {
         let mut composite = Hessian::default();
         let mut articulated = Hessian::default();
         let mut found = Sweep::default();
-        let threshold = ROUNDING * coordinates as f64;
+        let threshold = ROUNDING_PER_ROW * coordinates as f64;
         let mut eliminated = 0;
         let mut is_definite = true;
         self.sweep(&mut |step| match step {
-            Step::Velocity(node, local, adjoint) => {
+            SweepStep::Velocity(node, local, adjoint) => {
                 composite.push(node, local, adjoint);
                 articulated.push(node, local, adjoint);
             }
-            Step::Complete(rate) => {
+            SweepStep::Complete(rate) => {
                 let own = composite.take(rate).remove(&rate).unwrap_or(0.0);
                 let pivot = articulated.eliminate(rate);
                 is_definite &= own > 0.0 && pivot > threshold * own && own.is_finite();
@@ -74,8 +74,8 @@ impl<'g> Velocities<'g> {
         let mut hessian = Hessian::default();
         let mut diagonal = vec![0.0; coordinates];
         self.sweep(&mut |step| match step {
-            Step::Velocity(node, local, adjoint) => hessian.push(node, local, adjoint),
-            Step::Complete(rate) => {
+            SweepStep::Velocity(node, local, adjoint) => hessian.push(node, local, adjoint),
+            SweepStep::Complete(rate) => {
                 let own = hessian.take(rate).remove(&rate);
                 if let (Operation::Rate(index), Some(own)) = (self.graph.operation(rate), own) {
                     diagonal[index.index()] = own;
@@ -90,7 +90,7 @@ impl<'g> Velocities<'g> {
     pub(super) fn mass_matrix(&self, coordinates: usize) -> Option<SparseRows> {
         let mut hessian = Hessian::default();
         self.sweep(&mut |step| {
-            if let Step::Velocity(node, local, adjoint) = step {
+            if let SweepStep::Velocity(node, local, adjoint) = step {
                 hessian.push(node, local, adjoint);
             }
         })?;
@@ -111,7 +111,7 @@ impl<'g> Velocities<'g> {
 
     /// Visits the velocities from the energy to the rates, and each rate after the last velocity that
     /// contains it.
-    fn sweep(&self, see: &mut dyn FnMut(Step<'_>)) -> Option<()> {
+    fn sweep(&self, see: &mut dyn FnMut(SweepStep<'_>)) -> Option<()> {
         let mut uses = vec![0_usize; self.values.len()];
         let mut adjoints = vec![0.0; self.values.len()];
         for node in &self.nodes {
@@ -126,15 +126,15 @@ impl<'g> Velocities<'g> {
             if let Operation::Rate(_) = self.graph.operation(node) {
                 continue;
             }
-            let local = self.local(node)?;
+            let local = self.differentiate_locally(node)?;
             let adjoint = adjoints[node.0 as usize];
-            see(Step::Velocity(node, &local, adjoint));
+            see(SweepStep::Velocity(node, &local, adjoint));
             for (operand, slope) in local.slopes {
                 let place = operand.0 as usize;
                 adjoints[place] += slope * adjoint;
                 uses[place] -= 1;
                 if uses[place] == 0 && matches!(self.graph.operation(operand), Operation::Rate(_)) {
-                    see(Step::Complete(operand));
+                    see(SweepStep::Complete(operand));
                 }
             }
         }
@@ -151,22 +151,22 @@ impl<'g> Velocities<'g> {
         operands
     }
 
-    fn local(&self, node: NodeId) -> Option<Local> {
+    fn differentiate_locally(&self, node: NodeId) -> Option<LocalDerivatives> {
         match self.graph.operation(node) {
             Operation::Sum(terms) => {
                 let moving = terms.iter().filter(|(_, term)| self.is_moving(*term));
-                Some(Local {
+                Some(LocalDerivatives {
                     slopes: moving.map(|(c, term)| (*term, c.value())).collect(),
                     curvatures: Vec::new(),
                 })
             }
-            Operation::Product(factors) => Some(self.local_product(factors)),
+            Operation::Product(factors) => Some(self.differentiate_product_locally(factors)),
             _ => None,
         }
     }
 
     /// Returns the derivatives of a product of powers by its moving factors.
-    fn local_product(&self, factors: &[(NodeId, i32)]) -> Local {
+    fn differentiate_product_locally(&self, factors: &[(NodeId, i32)]) -> LocalDerivatives {
         let product = |lowered: &[usize]| -> f64 {
             let mut value = 1.0;
             for (place, &(factor, power)) in factors.iter().enumerate() {
@@ -177,7 +177,7 @@ impl<'g> Velocities<'g> {
             }
             value
         };
-        let mut local = Local {
+        let mut local = LocalDerivatives {
             slopes: Vec::new(),
             curvatures: Vec::new(),
         };
@@ -199,9 +199,9 @@ impl<'g> Velocities<'g> {
     }
 }
 
-enum Step<'s> {
+enum SweepStep<'s> {
     /// Velocity, its derivatives by its operands, and the derivative of the energy by the velocity.
-    Velocity(NodeId, &'s Local, f64),
+    Velocity(NodeId, &'s LocalDerivatives, f64),
     /// Rate that no unprocessed velocity contains.
     Complete(NodeId),
 }
@@ -233,7 +233,7 @@ impl Hessian {
     }
 
     /// Eliminates a velocity: adds its Hessian entries to those of its operands.
-    fn push(&mut self, node: NodeId, local: &Local, adjoint: f64) {
+    fn push(&mut self, node: NodeId, local: &LocalDerivatives, adjoint: f64) {
         for (other, value) in self.take(node) {
             if other == node {
                 for (place, &(a, by_a)) in local.slopes.iter().enumerate() {

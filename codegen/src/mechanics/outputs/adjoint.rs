@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use super::matrix_derivatives::holds_matrix_of_parameters;
 use crate::mechanics::equations::Equations;
 use crate::symbolic::branches::choice;
-use crate::symbolic::differentiate::partial_derivatives;
+use crate::symbolic::differentiate::derive_partials;
 use crate::symbolic::graph::{
     Argument, Dependence, Graph, NodeId, Operation, Shape, Space, Variable,
 };
@@ -46,7 +46,7 @@ pub fn gradient(graph: &mut Graph, weighted: &[(NodeId, NodeId)]) -> HashMap<Nod
 
 /// Returns the gradient by every independent parameter, in their order, including the dependence through derived
 /// parameters. Returns `None` if a matrix depends on parameters.
-pub fn gradient_by_parameters(
+pub fn derive_gradient_by_parameters(
     graph: &mut Graph,
     weighted: &[(NodeId, NodeId)],
     derived: &[Option<NodeId>],
@@ -58,7 +58,7 @@ pub fn gradient_by_parameters(
     }
     let mut parts: Vec<Vec<(f64, NodeId)>> = vec![Vec::new(); derived.len()];
     propagate_to_parameters(graph, weighted, &mut parts);
-    for index in outermost_first(graph, derived) {
+    for index in order_outermost_first(graph, derived) {
         let received = std::mem::take(&mut parts[index]);
         let adjoint = graph.combine(&received);
         if let (Some(expression), false) = (derived[index], graph.is_zero(adjoint)) {
@@ -90,7 +90,7 @@ fn depends_on_parameters(graph: &Graph, id: NodeId) -> bool {
 }
 
 /// Returns the derived parameters, each before the derived parameters in its expression.
-fn outermost_first(graph: &Graph, derived: &[Option<NodeId>]) -> Vec<ParameterId> {
+fn order_outermost_first(graph: &Graph, derived: &[Option<NodeId>]) -> Vec<ParameterId> {
     let mut order = Vec::new();
     let mut known = vec![false; derived.len()];
     for index in ParameterId::first(derived.len()) {
@@ -131,7 +131,7 @@ fn accumulate(
         follows,
     };
     for &(weight, node) in weighted {
-        adjoints.add(node, Part::from_value(weight));
+        adjoints.add(node, AdjointPart::from_value(weight));
     }
     let mut gradient = HashMap::new();
     for id in graph.reachable(&roots).into_iter().rev() {
@@ -143,7 +143,7 @@ fn accumulate(
             continue;
         }
         if graph.operands(graph.operation(id)).is_empty() {
-            gradient.insert(id, adjoint.chosen(graph));
+            gradient.insert(id, adjoint.select(graph));
         } else {
             adjoints.propagate(graph, id, &adjoint);
         }
@@ -161,7 +161,7 @@ struct Condition {
 
 impl Condition {
     /// Returns `value` if the branch is taken, else 0.
-    fn chosen(self, graph: &mut Graph, value: NodeId) -> NodeId {
+    fn select(self, graph: &mut Graph, value: NodeId) -> NodeId {
         let zero = graph.zero();
         let (then, otherwise) = if self.holds {
             (value, zero)
@@ -182,12 +182,12 @@ impl Condition {
 /// branches are added. A partial derivative in a branch that is not taken can be infinite or NaN, and its product
 /// with 0 would be NaN.
 #[derive(Clone)]
-pub(super) struct Part {
+pub(super) struct AdjointPart {
     conditions: Vec<Condition>,
     pub(super) value: NodeId,
 }
 
-impl Part {
+impl AdjointPart {
     fn from_value(value: NodeId) -> Self {
         Self {
             conditions: Vec::new(),
@@ -208,7 +208,7 @@ impl Part {
         part
     }
 
-    fn chosen(self, graph: &mut Graph) -> NodeId {
+    fn select(self, graph: &mut Graph) -> NodeId {
         self.select_to(graph, 0).value
     }
 
@@ -217,7 +217,7 @@ impl Part {
         while self.conditions.len() > open
             && let Some(condition) = self.conditions.pop()
         {
-            self.value = condition.chosen(graph, self.value);
+            self.value = condition.select(graph, self.value);
         }
         self
     }
@@ -235,18 +235,18 @@ impl Part {
 
 /// Contributions to each node so far.
 pub(super) struct Adjoints {
-    received: HashMap<NodeId, Vec<Part>>,
+    received: HashMap<NodeId, Vec<AdjointPart>>,
     /// Predicate of the nodes to follow.
     pub(super) follows: fn(&Graph, NodeId) -> bool,
 }
 
 impl Adjoints {
-    fn add(&mut self, id: NodeId, part: Part) {
+    fn add(&mut self, id: NodeId, part: AdjointPart) {
         self.received.entry(id).or_default().push(part);
     }
 
     /// Sums the contributions to a node, under their common conditions.
-    fn total(&mut self, graph: &mut Graph, id: NodeId) -> Part {
+    fn total(&mut self, graph: &mut Graph, id: NodeId) -> AdjointPart {
         let parts = self.received.remove(&id).unwrap_or_default();
         let mut common = parts.first().map_or(Vec::new(), |p| p.conditions.clone());
         for part in &parts {
@@ -257,7 +257,7 @@ impl Adjoints {
         for part in parts {
             terms.push((1.0, part.select_to(graph, common.len()).value));
         }
-        Part {
+        AdjointPart {
             conditions: common,
             value: graph.combine(&terms),
         }
@@ -269,12 +269,12 @@ impl Adjoints {
         graph: &mut Graph,
         space: Space,
         operand: NodeId,
-        part: Part,
+        part: AdjointPart,
     ) {
         let part = match graph.shape(operand) {
             Shape::Scalar => {
                 let part = part.select_by_element(graph);
-                let total = graph.total_over(space, part.value);
+                let total = graph.sum_over_space(space, part.value);
                 part.with_value(total)
             }
             _ => part,
@@ -283,7 +283,7 @@ impl Adjoints {
     }
 
     /// Passes the adjoint of `id` to its operands.
-    fn propagate(&mut self, graph: &mut Graph, id: NodeId, adjoint: &Part) {
+    fn propagate(&mut self, graph: &mut Graph, id: NodeId, adjoint: &AdjointPart) {
         match graph.operation(id).clone() {
             Operation::Total(a) => self.add(a, adjoint.clone()),
             Operation::Apply {
@@ -315,19 +315,20 @@ impl Adjoints {
         }
     }
 
-    fn propagate_element_wise(&mut self, graph: &mut Graph, id: NodeId, adjoint: &Part) {
-        let parts: Vec<(NodeId, Part)> = if let Some([a, b, then, otherwise]) = choice(graph, id) {
-            let branch = |holds| adjoint.add_condition(Condition { a, b, holds });
-            vec![(then, branch(true)), (otherwise, branch(false))]
-        } else {
-            partial_derivatives(graph, id, self.follows)
-                .into_iter()
-                .map(|(operand, partial)| {
-                    let product = graph.derivative_term(partial, adjoint.value);
-                    (operand, adjoint.with_value(product))
-                })
-                .collect()
-        };
+    fn propagate_element_wise(&mut self, graph: &mut Graph, id: NodeId, adjoint: &AdjointPart) {
+        let parts: Vec<(NodeId, AdjointPart)> =
+            if let Some([a, b, then, otherwise]) = choice(graph, id) {
+                let branch = |holds| adjoint.add_condition(Condition { a, b, holds });
+                vec![(then, branch(true)), (otherwise, branch(false))]
+            } else {
+                derive_partials(graph, id, self.follows)
+                    .into_iter()
+                    .map(|(operand, partial)| {
+                        let product = graph.build_derivative_term(partial, adjoint.value);
+                        (operand, adjoint.with_value(product))
+                    })
+                    .collect()
+            };
         for (operand, part) in parts {
             if !(self.follows)(graph, operand) {
                 continue;

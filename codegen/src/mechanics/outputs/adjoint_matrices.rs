@@ -1,7 +1,7 @@
 //! Reverse accumulation through matrices that depend on the state. The contribution of a matrix M is the gradient of
 //! the bilinear form y^T M x, in which x is the solution of a linear system.
 
-use super::adjoint::{Adjoints, Part};
+use super::adjoint::{AdjointPart, Adjoints};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 
 impl Adjoints {
@@ -11,7 +11,7 @@ impl Adjoints {
         &mut self,
         graph: &mut Graph,
         matrix: NodeId,
-        y: Part,
+        y: AdjointPart,
         x: NodeId,
     ) {
         match graph.operation(matrix).clone() {
@@ -20,9 +20,9 @@ impl Adjoints {
                     self.propagate_product(graph, assembly.rows, diagonal, &y, x);
                 }
                 for &(u, v) in &assembly.outer {
-                    let along_v = total_product(graph, assembly.columns, v, x);
+                    let along_v = sum_products(graph, assembly.columns, v, x);
                     self.propagate_product(graph, assembly.rows, u, &y, along_v);
-                    let along_u = total_product(graph, assembly.rows, u, y.value);
+                    let along_u = sum_products(graph, assembly.rows, u, y.value);
                     let along_u = y.with_value(along_u);
                     self.propagate_product(graph, assembly.columns, v, &along_u, x);
                 }
@@ -50,7 +50,7 @@ impl Adjoints {
         graph: &mut Graph,
         matrix: NodeId,
         transposed: bool,
-        y: Part,
+        y: AdjointPart,
         x: NodeId,
     ) {
         let Operation::Gram {
@@ -80,7 +80,7 @@ impl Adjoints {
         graph: &mut Graph,
         space: Space,
         to: NodeId,
-        y: &Part,
+        y: &AdjointPart,
         x: NodeId,
     ) {
         if (self.follows)(graph, to) {
@@ -90,9 +90,9 @@ impl Adjoints {
     }
 }
 
-fn total_product(graph: &mut Graph, space: Space, a: NodeId, b: NodeId) -> NodeId {
+fn sum_products(graph: &mut Graph, space: Space, a: NodeId, b: NodeId) -> NodeId {
     let product = graph.multiply(a, b);
-    graph.total_over(space, product)
+    graph.sum_over_space(space, product)
 }
 
 fn rows(graph: &Graph, matrix: NodeId) -> Option<Space> {

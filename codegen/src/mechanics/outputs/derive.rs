@@ -4,18 +4,19 @@
 use super::adjoint::{self, pair_weights};
 use super::hessian::gradient_derivative;
 use super::jacobian::{
-    JacobianRows, along_direction, by_parameters, by_time, by_variables, observable_rows,
-    rate_rows, single_row_jacobian, stacked_rows,
+    JacobianRows, build_single_row_jacobian, collect_observable_rows, collect_rate_rows,
+    differentiate_along_direction, differentiate_by_parameters, differentiate_by_time,
+    differentiate_by_variables, stack_rows,
 };
 use super::matrix_derivatives::holds_moving_diagonal;
 use super::output::Output;
 use super::reactions::{StepObstacle, derive_reactions};
-use super::regimes::switches;
+use super::regimes::find_switches;
 use super::types::{Jacobian, Outputs, Products};
 use crate::mechanics::equations::Equations;
-use crate::mechanics::function_rates::guard_rate;
+use crate::mechanics::function_rates::derive_guard_rate;
 use crate::mechanics::rows::RowNodes;
-use crate::symbolic::association::shared_operations;
+use crate::symbolic::association::count_shared_operations;
 use crate::symbolic::differentiate::Direction;
 use crate::symbolic::factor::factor_if_cheaper;
 use crate::symbolic::graph::{Argument, Graph, NodeId, Operation, Shape, Space, Variable};
@@ -59,36 +60,38 @@ pub fn derive_outputs(
         }
     }
     if has(Output::BiasForces) || has(Output::InverseDynamics) {
-        let bias = bias_forces(equations);
+        let bias = derive_bias_forces(equations);
         result.inverse_dynamics =
-            has(Output::InverseDynamics).then(|| inverse_dynamics(equations, &bias));
+            has(Output::InverseDynamics).then(|| derive_inverse_dynamics(equations, &bias));
         result.bias_forces = has(Output::BiasForces).then_some(bias);
     }
-    result.guard_rates = has(Output::GuardRates).then(|| guard_rates(equations));
-    result.jacobians = jacobians(equations, has_jacobians_by);
+    result.guard_rates = has(Output::GuardRates).then(|| derive_guard_rates(equations));
+    result.jacobians = derive_jacobians(equations, has_jacobians_by);
     if has(Output::Tangents) {
-        result
-            .jacobians
-            .push(along_direction(equations, &direction_component, TANGENTS));
+        result.jacobians.push(differentiate_along_direction(
+            equations,
+            &find_direction_component,
+            TANGENTS,
+        ));
     }
     if has(Output::TimeDerivatives) {
-        let rows = rate_rows(equations);
+        let rows = collect_rate_rows(equations);
         result
             .jacobians
-            .push(by_time(equations, &rows, "rates_by_time"));
+            .push(differentiate_by_time(equations, &rows, "rates_by_time"));
     }
     if has(Output::TrajectoryGradients) {
-        result.jacobians.extend(event_jacobians(equations));
+        result.jacobians.extend(derive_event_jacobians(equations));
     }
     if has(Output::Products) || has(Output::Hessians) || has(Output::TrajectoryGradients) {
-        let products = products(equations);
+        let products = derive_products(equations);
         if has(Output::Hessians) {
             let derivative = gradient_derivative(equations, &products.by_parameters);
             result.gradient_derivative = Some(derivative);
         }
         result.products = Some(products);
     }
-    result.regimes = has(Output::Regimes).then(|| switches(equations));
+    result.regimes = has(Output::Regimes).then(|| find_switches(equations));
     if has(Output::Step) {
         result.reactions = derive_reactions(equations).map_err(OutputError::Step)?;
     }
@@ -150,7 +153,7 @@ impl std::fmt::Display for MovingDiagonal {
     }
 }
 
-fn bias_forces(equations: &mut Equations) -> RowNodes {
+fn derive_bias_forces(equations: &mut Equations) -> RowNodes {
     let graph = &mut equations.graph;
     let pairs = |terms: &[NodeId], forces: &[NodeId], graph: &mut Graph| -> Vec<NodeId> {
         let rows = terms.iter().zip(forces);
@@ -167,15 +170,16 @@ fn bias_forces(equations: &mut Equations) -> RowNodes {
 /// Returns the rows of M a + bias with the accelerations as an argument. Of three forms, the one with the fewest
 /// operations is used: by the mass matrix, by a sweep, or by recursion along the tree of frames. The last two need no
 /// mass matrix.
-fn inverse_dynamics(equations: &mut Equations, bias: &RowNodes) -> RowNodes {
-    let mut best = inverse_dynamics_by_mass(equations, bias);
+fn derive_inverse_dynamics(equations: &mut Equations, bias: &RowNodes) -> RowNodes {
+    let mut best = derive_inverse_dynamics_by_mass(equations, bias);
     let scalars = [
-        inverse_dynamics_by_sweep(equations),
-        inverse_dynamics_by_recursion(equations),
+        derive_inverse_dynamics_by_sweep(equations),
+        derive_inverse_dynamics_by_recursion(equations),
     ];
     let graph = &equations.graph;
     for scalars in scalars.into_iter().flatten() {
-        if shared_operations(graph, &scalars) < shared_operations(graph, &best.scalars) {
+        if count_shared_operations(graph, &scalars) < count_shared_operations(graph, &best.scalars)
+        {
             best = RowNodes {
                 scalars,
                 modal: Vec::new(),
@@ -185,15 +189,15 @@ fn inverse_dynamics(equations: &mut Equations, bias: &RowNodes) -> RowNodes {
     best
 }
 
-fn given_acceleration(graph: &mut Graph, index: CoordinateId) -> NodeId {
+fn acceleration_argument(graph: &mut Graph, index: CoordinateId) -> NodeId {
     let variable = Variable::Coordinate(index);
     graph.intern(Operation::Argument(Argument::Accelerations, variable))
 }
 
-fn inverse_dynamics_by_sweep(equations: &mut Equations) -> Option<Vec<NodeId>> {
+fn derive_inverse_dynamics_by_sweep(equations: &mut Equations) -> Option<Vec<NodeId>> {
     let momenta = equations.sweep.clone()?;
     let graph = &mut equations.graph;
-    let rows = momenta.rates(graph, &given_acceleration);
+    let rows = momenta.rates(graph, &acceleration_argument);
     let rows = factor_if_cheaper(graph, rows);
     let rows = rows.iter().zip(&equations.forces.scalars);
     Some(
@@ -202,15 +206,15 @@ fn inverse_dynamics_by_sweep(equations: &mut Equations) -> Option<Vec<NodeId>> {
     )
 }
 
-fn inverse_dynamics_by_recursion(equations: &mut Equations) -> Option<Vec<NodeId>> {
+fn derive_inverse_dynamics_by_recursion(equations: &mut Equations) -> Option<Vec<NodeId>> {
     let bodies = equations.rigid_bodies.clone()?;
     let coordinates = equations.forces.scalars.len();
     let graph = &mut equations.graph;
-    let rows = bodies.inverse_dynamics(graph, coordinates, &given_acceleration)?;
+    let rows = bodies.inverse_dynamics(graph, coordinates, &acceleration_argument)?;
     Some(factor_if_cheaper(graph, rows))
 }
 
-fn inverse_dynamics_by_mass(equations: &mut Equations, bias: &RowNodes) -> RowNodes {
+fn derive_inverse_dynamics_by_mass(equations: &mut Equations, bias: &RowNodes) -> RowNodes {
     let (graph, mass) = (&mut equations.graph, &equations.mass);
     let argument = |graph: &mut Graph, variable| {
         graph.intern(Operation::Argument(Argument::Accelerations, variable))
@@ -229,7 +233,7 @@ fn inverse_dynamics_by_mass(equations: &mut Equations, bias: &RowNodes) -> RowNo
         }
         for (field, entry) in FieldId::first(modal.len()).zip(&mass.coupling[row]) {
             let product = graph.multiply(*entry, modal[field]);
-            terms.push((1.0, graph.total_over(Space::Modes(field), product)));
+            terms.push((1.0, graph.sum_over_space(Space::Modes(field), product)));
         }
         *slot = graph.combine(&terms);
     }
@@ -248,26 +252,26 @@ fn inverse_dynamics_by_mass(equations: &mut Equations, bias: &RowNodes) -> RowNo
 }
 
 /// Returns the rates of the guards along the motion, with constant inputs.
-fn guard_rates(equations: &mut Equations) -> Vec<NodeId> {
+fn derive_guard_rates(equations: &mut Equations) -> Vec<NodeId> {
     let values: Vec<NodeId> = equations.guards.iter().map(|guard| guard.value).collect();
-    let mut rate = |value: &NodeId| guard_rate(equations, *value);
+    let mut rate = |value: &NodeId| derive_guard_rate(equations, *value);
     values.iter().map(&mut rate).collect()
 }
 
-fn products(equations: &mut Equations) -> Products<NodeId, RowNodes> {
+fn derive_products(equations: &mut Equations) -> Products<NodeId, RowNodes> {
     let rows = equations.accelerations.rows.clone();
     let graph = &mut equations.graph;
-    let mut direction = Direction::new(&direction_component);
+    let mut direction = Direction::new(&find_direction_component);
     let forward = RowNodes {
-        scalars: derivatives(graph, &mut direction, &rows.scalars),
-        modal: derivatives(graph, &mut direction, &rows.modal),
+        scalars: differentiate_nodes(graph, &mut direction, &rows.scalars),
+        modal: differentiate_nodes(graph, &mut direction, &rows.modal),
     };
-    let first_order = derivatives(graph, &mut direction, &equations.state_rates);
+    let first_order = differentiate_nodes(graph, &mut direction, &equations.state_rates);
     let weighted = pair_weights(equations);
     let gradient = adjoint::gradient(&mut equations.graph, &weighted);
     let mut reverse: Vec<(Variable, NodeId)> = gradient
         .into_iter()
-        .filter_map(|(leaf, node)| Some((variable_of(&equations.graph, leaf)?, node)))
+        .filter_map(|(leaf, node)| Some((find_variable(&equations.graph, leaf)?, node)))
         .collect();
     reverse.sort_by_key(|(_, node)| *node);
     Products {
@@ -286,21 +290,21 @@ fn derive_weighted_by_parameters(
 ) -> Jacobian<NodeId> {
     const NAME: &str = "weighted_rates_by_parameters";
     let graph = &mut equations.graph;
-    match adjoint::gradient_by_parameters(graph, weighted, &equations.derived_parameters) {
-        Some(gradient) => single_row_jacobian(graph, NAME, &gradient),
+    match adjoint::derive_gradient_by_parameters(graph, weighted, &equations.derived_parameters) {
+        Some(gradient) => build_single_row_jacobian(graph, NAME, &gradient),
         None => {
-            let sum = JacobianRows::from_scalars(&[weighted_sum(graph, weighted)]);
-            by_parameters(equations, &sum, NAME)
+            let sum = JacobianRows::from_scalars(&[sum_weighted_nodes(graph, weighted)]);
+            differentiate_by_parameters(equations, &sum, NAME)
         }
     }
 }
 
-fn weighted_sum(graph: &mut Graph, weighted: &[(NodeId, NodeId)]) -> NodeId {
+fn sum_weighted_nodes(graph: &mut Graph, weighted: &[(NodeId, NodeId)]) -> NodeId {
     let mut terms = Vec::new();
     for &(weight, row) in weighted {
         let product = graph.multiply(weight, row);
         let term = match graph.shape(weight) {
-            Shape::Vector(space) => graph.total_over(space, product),
+            Shape::Vector(space) => graph.sum_over_space(space, product),
             _ => product,
         };
         terms.push((1.0, term));
@@ -308,7 +312,11 @@ fn weighted_sum(graph: &mut Graph, weighted: &[(NodeId, NodeId)]) -> NodeId {
     graph.combine(&terms)
 }
 
-fn derivatives(graph: &mut Graph, direction: &mut Direction<'_>, nodes: &[NodeId]) -> Vec<NodeId> {
+fn differentiate_nodes(
+    graph: &mut Graph,
+    direction: &mut Direction<'_>,
+    nodes: &[NodeId],
+) -> Vec<NodeId> {
     nodes
         .iter()
         .map(|node| direction.derivative(graph, *node))
@@ -316,14 +324,14 @@ fn derivatives(graph: &mut Graph, direction: &mut Direction<'_>, nodes: &[NodeId
 }
 
 /// Returns the component of the direction for a leaf; it is 0 for time and parameters.
-fn direction_component(graph: &mut Graph, leaf: NodeId) -> NodeId {
-    match variable_of(graph, leaf) {
+fn find_direction_component(graph: &mut Graph, leaf: NodeId) -> NodeId {
+    match find_variable(graph, leaf) {
         Some(variable) => graph.intern(Operation::Argument(Argument::Direction, variable)),
         None => graph.zero(),
     }
 }
 
-fn variable_of(graph: &Graph, leaf: NodeId) -> Option<Variable> {
+fn find_variable(graph: &Graph, leaf: NodeId) -> Option<Variable> {
     Some(match *graph.operation(leaf) {
         Operation::Coordinate(index) => Variable::Coordinate(index),
         Operation::ModeCoordinates(field) => Variable::ModeCoordinates(field),
@@ -336,7 +344,7 @@ fn variable_of(graph: &Graph, leaf: NodeId) -> Option<Variable> {
 }
 
 /// Derives the Jacobians by the requested variables, first those of the rates, then those of the observables.
-fn jacobians(
+fn derive_jacobians(
     equations: &mut Equations,
     is_requested_by: impl Fn(&str) -> bool,
 ) -> Vec<Jacobian<NodeId>> {
@@ -345,7 +353,10 @@ fn jacobians(
     if !(by_state || by_inputs || by_all_parameters) {
         return Vec::new();
     }
-    let (rates, observables) = (rate_rows(equations), observable_rows(equations));
+    let (rates, observables) = (
+        collect_rate_rows(equations),
+        collect_observable_rows(equations),
+    );
     let mut found = Vec::new();
     for (rows, names) in [
         (
@@ -355,13 +366,13 @@ fn jacobians(
         (&observables, OBSERVABLES_BY),
     ] {
         if by_state {
-            found.push(by_variables(equations, rows, names[0], false));
+            found.push(differentiate_by_variables(equations, rows, names[0], false));
         }
         if by_inputs {
-            found.push(by_variables(equations, rows, names[1], true));
+            found.push(differentiate_by_variables(equations, rows, names[1], true));
         }
         if by_all_parameters {
-            found.push(by_parameters(equations, rows, names[2]));
+            found.push(differentiate_by_parameters(equations, rows, names[2]));
         }
     }
     found
@@ -376,23 +387,23 @@ const OBSERVABLES_BY: [&str; 3] = [
 /// Derives Jacobians of observables and of the quantities at events. These are scalar guards and their rates,
 /// distances of impacts, residuals of constraints and their rates, and the jumps of the rates by impacts without
 /// friction.
-fn event_jacobians(equations: &mut Equations) -> Vec<Jacobian<NodeId>> {
+fn derive_event_jacobians(equations: &mut Equations) -> Vec<Jacobian<NodeId>> {
     let guards = equations.guards.iter().map(|guard| guard.value);
     let guards: Vec<NodeId> = guards
         .filter(|value| equations.graph.shape(*value) == Shape::Scalar)
         .collect();
     let rates: Vec<NodeId> = guards
         .iter()
-        .map(|value| guard_rate(equations, *value))
+        .map(|value| derive_guard_rate(equations, *value))
         .collect();
     let distances = equations.impacts.iter().map(|impact| impact.distance);
     let distances: Vec<NodeId> = distances.collect();
     let residuals = equations.residuals.clone();
     let residual_rates: Vec<NodeId> = residuals
         .iter()
-        .map(|value| guard_rate(equations, *value))
+        .map(|value| derive_guard_rate(equations, *value))
         .collect();
-    let observables = observable_rows(equations);
+    let observables = collect_observable_rows(equations);
     let mut found = Vec::new();
     for (rows, [by_state, by_inputs, by_all_parameters]) in [
         (observables, OBSERVABLES_BY),
@@ -437,23 +448,45 @@ fn event_jacobians(equations: &mut Equations) -> Vec<Jacobian<NodeId>> {
             ],
         ),
     ] {
-        found.push(by_variables(equations, &rows, by_state, false));
-        found.push(by_variables(equations, &rows, by_inputs, true));
-        found.push(by_parameters(equations, &rows, by_all_parameters));
+        found.push(differentiate_by_variables(
+            equations, &rows, by_state, false,
+        ));
+        found.push(differentiate_by_variables(
+            equations, &rows, by_inputs, true,
+        ));
+        found.push(differentiate_by_parameters(
+            equations,
+            &rows,
+            by_all_parameters,
+        ));
     }
     let jumps: Vec<RowNodes> = (0..equations.impacts.len())
-        .map(|impact| impact_jump(equations, impact))
+        .map(|impact| derive_impact_jump(equations, impact))
         .collect();
-    let rows = stacked_rows(equations, &jumps);
-    found.push(by_variables(equations, &rows, "jumps_by_state", false));
-    found.push(by_variables(equations, &rows, "jumps_by_inputs", true));
-    found.push(by_parameters(equations, &rows, "jumps_by_parameters"));
-    found.push(by_time(equations, &rows, "jumps_by_time"));
+    let rows = stack_rows(equations, &jumps);
+    found.push(differentiate_by_variables(
+        equations,
+        &rows,
+        "jumps_by_state",
+        false,
+    ));
+    found.push(differentiate_by_variables(
+        equations,
+        &rows,
+        "jumps_by_inputs",
+        true,
+    ));
+    found.push(differentiate_by_parameters(
+        equations,
+        &rows,
+        "jumps_by_parameters",
+    ));
+    found.push(differentiate_by_time(equations, &rows, "jumps_by_time"));
     found
 }
 
 /// Returns the jump of the rates by an impact without friction, according to Newton's law of restitution.
-fn impact_jump(equations: &mut Equations, place: usize) -> RowNodes {
+fn derive_impact_jump(equations: &mut Equations, place: usize) -> RowNodes {
     let impact = &equations.impacts[place];
     let graph = &mut equations.graph;
     let one = graph.one();

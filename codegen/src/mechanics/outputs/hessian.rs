@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use super::adjoint::{self, pair_weights};
-use super::jacobian::{degrees_of_freedom, mode_offset, seed_derived, state_variables};
+use super::jacobian::{degrees_of_freedom, list_state_variables, mode_offset, seed_derived};
 use super::types::{GradientDerivative, GradientRow, Jacobian};
 use crate::mechanics::equations::Equations;
 use crate::symbolic::differentiate::Direction;
@@ -14,7 +14,7 @@ use crate::symbolic::graph::{Argument, NodeId, Operation, Variable};
 use eomgen_model_spec::ids::{InputId, ParameterId};
 
 /// Variables with their index ranges, in the order time, state, inputs, independent parameters.
-type Places = Vec<(Variable, Range<usize>)>;
+type IndexRanges = Vec<(Variable, Range<usize>)>;
 
 /// Derives the derivative of the gradient along a direction. `weighted_by_parameters` is the gradient by the
 /// parameters.
@@ -22,9 +22,9 @@ pub(crate) fn gradient_derivative(
     equations: &mut Equations,
     weighted_by_parameters: &Jacobian<NodeId>,
 ) -> GradientDerivative<NodeId> {
-    let places = places(equations);
-    let gradient = gradient(equations, &places, weighted_by_parameters);
-    let columns = columns(equations, &places);
+    let places = find_index_ranges(equations);
+    let gradient = derive_gradient(equations, &places, weighted_by_parameters);
+    let columns = find_columns(equations, &places);
     let mut direction = Direction::default();
     for (variable, _) in &places {
         let leaf = equations.graph.variable(*variable);
@@ -60,13 +60,13 @@ pub(crate) fn gradient_derivative(
     GradientDerivative { rows }
 }
 
-fn places(equations: &Equations) -> Places {
+fn find_index_ranges(equations: &Equations) -> IndexRanges {
     let degrees = degrees_of_freedom(equations);
     let before_inputs = 1 + 2 * degrees + equations.state_rates.len();
     let before_parameters = before_inputs + equations.inputs;
     let one = |first: usize| first..first + 1;
     let mut places = vec![(Variable::Time, one(0))];
-    for variable in state_variables(equations) {
+    for variable in list_state_variables(equations) {
         let modes = |field, before: usize| {
             let first = 1 + before + mode_offset(equations, field);
             first..first + equations.graph.orders()[field]
@@ -97,9 +97,9 @@ fn independent_parameters(equations: &Equations) -> impl Iterator<Item = Paramet
 }
 
 /// Returns the gradient, without the constant contribution of the weights of the coordinates' rates.
-fn gradient(
+fn derive_gradient(
     equations: &mut Equations,
-    places: &Places,
+    places: &IndexRanges,
     weighted_by_parameters: &Jacobian<NodeId>,
 ) -> Vec<(Range<usize>, NodeId)> {
     let weighted = pair_weights(equations);
@@ -125,7 +125,10 @@ fn gradient(
 
 /// Returns the Hessian columns of each leaf: its own columns, or for a derived parameter the columns of the
 /// independent parameters in its expression.
-fn columns(equations: &mut Equations, places: &Places) -> HashMap<NodeId, Vec<Range<usize>>> {
+fn find_columns(
+    equations: &mut Equations,
+    places: &IndexRanges,
+) -> HashMap<NodeId, Vec<Range<usize>>> {
     let mut columns = HashMap::new();
     for (variable, place) in places {
         let leaf = equations.graph.variable(*variable);

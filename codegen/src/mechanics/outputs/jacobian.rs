@@ -47,7 +47,7 @@ impl JacobianRows {
 }
 
 /// Returns rows of the degrees of freedom, from the row `first` on.
-fn rows_of_degrees(equations: &Equations, nodes: &RowNodes, first: usize) -> Vec<EquationRow> {
+fn collect_rows(equations: &Equations, nodes: &RowNodes, first: usize) -> Vec<EquationRow> {
     let scalars = nodes.scalars.iter().enumerate();
     let scalars = scalars.map(|(index, node)| EquationRow {
         first: first + index,
@@ -66,10 +66,10 @@ fn rows_of_degrees(equations: &Equations, nodes: &RowNodes, first: usize) -> Vec
 }
 
 /// Returns the rows of several lists, each with a row for each degree of freedom.
-pub(super) fn stacked_rows(equations: &Equations, lists: &[RowNodes]) -> JacobianRows {
+pub(super) fn stack_rows(equations: &Equations, lists: &[RowNodes]) -> JacobianRows {
     let degrees = degrees_of_freedom(equations);
     let rows = lists.iter().enumerate();
-    let rows = rows.flat_map(|(index, nodes)| rows_of_degrees(equations, nodes, index * degrees));
+    let rows = rows.flat_map(|(index, nodes)| collect_rows(equations, nodes, index * degrees));
     JacobianRows {
         count: lists.len() * degrees,
         identity: None,
@@ -78,9 +78,9 @@ pub(super) fn stacked_rows(equations: &Equations, lists: &[RowNodes]) -> Jacobia
 }
 
 /// Returns the rows of the state's rates. The rates of coordinates are themselves states and give the block of ones.
-pub(crate) fn rate_rows(equations: &Equations) -> JacobianRows {
+pub(crate) fn collect_rate_rows(equations: &Equations) -> JacobianRows {
     let degrees = degrees_of_freedom(equations);
-    let mut rows = rows_of_degrees(equations, &equations.accelerations.rows, degrees);
+    let mut rows = collect_rows(equations, &equations.accelerations.rows, degrees);
     let first_order = equations.state_rates.iter().enumerate();
     rows.extend(first_order.map(|(index, node)| EquationRow {
         first: 2 * degrees + index,
@@ -96,14 +96,14 @@ pub(crate) fn rate_rows(equations: &Equations) -> JacobianRows {
 }
 
 /// Returns the rows of the observables, then of energy and power.
-pub(crate) fn observable_rows(equations: &mut Equations) -> JacobianRows {
+pub(crate) fn collect_observable_rows(equations: &mut Equations) -> JacobianRows {
     let energy = equations.graph.add(equations.kinetic, equations.potential);
     let nodes = equations.observables.iter().copied();
     let nodes: Vec<NodeId> = nodes.chain([energy, equations.power]).collect();
     JacobianRows::from_scalars(&nodes)
 }
 
-pub(crate) fn by_variables(
+pub(crate) fn differentiate_by_variables(
     equations: &mut Equations,
     rows: &JacobianRows,
     name: &'static str,
@@ -114,17 +114,17 @@ pub(crate) fn by_variables(
             .map(Variable::Input)
             .collect()
     } else {
-        state_variables(equations)
+        list_state_variables(equations)
     };
     let mut blocks = Blocks::new(&mut equations.graph, rows, inputs);
     let mut column = 0;
     for variable in variables {
-        column += blocks.by_variable(variable, column);
+        column += blocks.add_variable_columns(variable, column);
     }
     blocks.jacobian(name, column)
 }
 
-pub(crate) fn by_parameters(
+pub(crate) fn differentiate_by_parameters(
     equations: &mut Equations,
     rows: &JacobianRows,
     name: &'static str,
@@ -134,13 +134,13 @@ pub(crate) fn by_parameters(
         .collect();
     let mut blocks = Blocks::new(&mut equations.graph, rows, true);
     for (column, parameter) in independent.iter().enumerate() {
-        blocks.by_parameter(&equations.derived_parameters, *parameter, column);
+        blocks.add_parameter_column(&equations.derived_parameters, *parameter, column);
     }
     blocks.jacobian(name, independent.len())
 }
 
 /// Derives the derivative by time, with constant state and inputs: a Jacobian of one column.
-pub(crate) fn by_time(
+pub(crate) fn differentiate_by_time(
     equations: &mut Equations,
     rows: &JacobianRows,
     name: &'static str,
@@ -156,13 +156,13 @@ pub(crate) fn by_time(
 
 /// Derives the derivatives of rates and observables along a direction, as one column. The rows of the coordinates are
 /// left out, because they are components of the direction.
-pub(super) fn along_direction(
+pub(super) fn differentiate_along_direction(
     equations: &mut Equations,
     tangent: &Tangent<'_>,
     name: &'static str,
 ) -> Jacobian<NodeId> {
-    let mut rows = rate_rows(equations);
-    let observables = observable_rows(equations);
+    let mut rows = collect_rate_rows(equations);
+    let observables = collect_observable_rows(equations);
     let first = rows.count;
     rows.count += observables.count;
     let shifted = observables.rows.into_iter().map(|row| EquationRow {
@@ -175,7 +175,7 @@ pub(super) fn along_direction(
     blocks.jacobian(name, 1)
 }
 
-pub(crate) fn single_row_jacobian(
+pub(crate) fn build_single_row_jacobian(
     graph: &Graph,
     name: &'static str,
     row: &[NodeId],
@@ -209,7 +209,7 @@ pub(super) fn mode_offset(equations: &Equations, field: FieldId) -> usize {
     equations.forces.scalars.len() + modes
 }
 
-pub(super) fn state_variables(equations: &Equations) -> Vec<Variable> {
+pub(super) fn list_state_variables(equations: &Equations) -> Vec<Variable> {
     let (coordinates, fields) = (equations.forces.scalars.len(), equations.forces.modal.len());
     CoordinateId::first(coordinates)
         .map(Variable::Coordinate)
@@ -259,12 +259,12 @@ impl<'a> Blocks<'a> {
     }
 
     /// Adds the blocks of a variable, starting at this column; returns the number of its columns.
-    fn by_variable(&mut self, variable: Variable, column: usize) -> usize {
+    fn add_variable_columns(&mut self, variable: Variable, column: usize) -> usize {
         let leaf = self.graph.variable(variable);
         if let Some(mut derivative) = ModalDerivative::new(self.graph, leaf) {
             let columns = self.graph.length(self.graph.shape(leaf));
             for row in &self.rows.rows {
-                self.by_modes(&mut derivative, *row, column, columns);
+                self.add_mode_columns(&mut derivative, *row, column, columns);
             }
             return columns;
         }
@@ -274,7 +274,12 @@ impl<'a> Blocks<'a> {
         1
     }
 
-    fn by_parameter(&mut self, derived: &[Option<NodeId>], parameter: ParameterId, column: usize) {
+    fn add_parameter_column(
+        &mut self,
+        derived: &[Option<NodeId>],
+        parameter: ParameterId,
+        column: usize,
+    ) {
         let mut direction = Direction::default();
         let leaf = self.graph.intern(Operation::Parameter(parameter));
         direction.seed(leaf, self.graph.one());
@@ -293,7 +298,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    fn by_modes(
+    fn add_mode_columns(
         &mut self,
         derivative: &mut ModalDerivative,
         row: EquationRow,
@@ -305,7 +310,7 @@ impl<'a> Blocks<'a> {
             self.push(row, (column, columns), false, value);
             return;
         };
-        let matrix = derivative.element_jacobian(self.graph, row.node, Space::Modes(field));
+        let matrix = derivative.derive_element_jacobian(self.graph, row.node, Space::Modes(field));
         match matrix {
             StructuredMatrix {
                 diagonal: Some(diagonal),

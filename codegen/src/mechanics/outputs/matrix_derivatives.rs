@@ -88,7 +88,7 @@ impl Direction<'_> {
             let (moved_u, moved_v) = (self.derivative(graph, u), self.derivative(graph, v));
             for (u, v) in [(moved_u, v), (u, moved_v)] {
                 let product = graph.multiply(v, vector);
-                let total = graph.total_over(assembly.columns, product);
+                let total = graph.sum_over_space(assembly.columns, product);
                 terms.push((1.0, graph.multiply(u, total)));
             }
         }
@@ -109,7 +109,7 @@ impl Direction<'_> {
     }
 
     /// Returns d(diagonal of left^T diag(weight) right) along the direction.
-    pub(crate) fn gram_diagonal(
+    pub(crate) fn differentiate_gram_diagonal(
         &mut self,
         graph: &mut Graph,
         left: NodeId,

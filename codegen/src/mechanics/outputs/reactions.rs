@@ -6,7 +6,7 @@ use crate::mechanics::discs::find_discs;
 use crate::mechanics::equations::Equations;
 use crate::mechanics::function_rates::{Column, derive_along};
 use crate::mechanics::rows::RowNodes;
-use crate::mechanics::sliding::hold_frictions;
+use crate::mechanics::sliding::derive_friction_rates;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
 /// Property of a model for which there are no steps of fixed length.
@@ -49,7 +49,7 @@ pub(crate) fn derive_reactions(
     if !find_discs(&mut equations.graph, &rates).is_empty() {
         return Err(StepObstacle::Direction);
     }
-    let held = hold_frictions(equations);
+    let held = derive_friction_rates(equations);
     let graph = &mut equations.graph;
     if held.columns.iter().any(|column| has_sides(graph, column)) {
         return Err(StepObstacle::Nonlinear);

@@ -2,15 +2,15 @@
 //! given regime, the rates need no comparisons.
 
 use crate::mechanics::equations::Equations;
-use crate::mechanics::forces::{Surfaces, surfaces};
+use crate::mechanics::forces::{Surfaces, find_surfaces};
 use crate::mechanics::outputs::types::{Decision, SURFACES_OF_A_REGIME, Switch};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 
 /// Finds the piecewise functions of the accelerations whose branches are determined by surfaces. Functions of vectors
 /// over modes are excluded, and functions whose surfaces have no bit in the regime number.
-pub(crate) fn switches(equations: &mut Equations) -> Vec<Switch<NodeId>> {
+pub(crate) fn find_switches(equations: &mut Equations) -> Vec<Switch<NodeId>> {
     let roots = equations.rate_nodes();
-    let places = places(equations);
+    let places = find_surface_indices(equations);
     let graph = &mut equations.graph;
     let place = |surface: NodeId| {
         let mut known = places.iter();
@@ -29,7 +29,7 @@ pub(crate) fn switches(equations: &mut Equations) -> Vec<Switch<NodeId>> {
 }
 
 /// Returns the scalar surfaces with their indices.
-fn places(equations: &Equations) -> Vec<(NodeId, usize)> {
+fn find_surface_indices(equations: &Equations) -> Vec<(NodeId, usize)> {
     let graph = &equations.graph;
     let mut places = Vec::new();
     let mut next = 0;
@@ -52,7 +52,7 @@ fn find_decision(
     place: &dyn Fn(NodeId) -> Option<usize>,
 ) -> Option<Decision> {
     match graph.operation(id).clone() {
-        Operation::Call(function, arguments) => match surfaces(graph, function, &arguments) {
+        Operation::Call(function, arguments) => match find_surfaces(graph, function, &arguments) {
             Surfaces::TwoSided { above, beyond } => Some(Decision::Between {
                 above: place(above)?,
                 beyond: place(beyond)?,

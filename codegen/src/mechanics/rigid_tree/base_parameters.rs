@@ -8,12 +8,12 @@ use crate::symbolic::graph::Graph;
 
 /// Regroups inertial parameters, outermost links first.
 pub(super) fn regroup(graph: &mut Graph, links: &mut [Link]) {
-    for place in (0..links.len()).rev() {
+    for index in (0..links.len()).rev() {
         let Link {
             parent,
             joint,
             mass,
-        } = &links[place];
+        } = &links[index];
         let parent = *parent;
         let (passed, kept) = match joint {
             Joint::Rotation(turn) if joint.is_constant(graph) => {
@@ -25,7 +25,7 @@ pub(super) fn regroup(graph: &mut Graph, links: &mut [Link]) {
             }
             Joint::Shift(_) => mass.split_by_shift(graph),
         };
-        links[place].mass = kept;
+        links[index].mass = kept;
         // Inertial parameters of the fixed axes have no effect on the motion.
         if let Some(parent) = parent {
             links[parent].mass = links[parent].mass.add(graph, &passed);

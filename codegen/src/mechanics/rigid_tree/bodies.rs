@@ -5,9 +5,9 @@ use eomgen_model_spec::model::Term;
 use eomgen_model_spec::rigid_tree::RigidTree;
 
 use super::base_parameters::regroup;
-use super::inward::generalised_forces;
-use super::links::links;
-use super::outward::motions;
+use super::inward::derive_generalised_forces;
+use super::links::build_links;
+use super::outward::derive_motions;
 use crate::mechanics::lagrange::Variables;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::sweeps::Velocities;
@@ -72,10 +72,10 @@ impl RigidBodies {
                 momenta.rates(graph, acceleration)
             }
         };
-        let mut links = links(graph, &self.tree);
+        let mut links = build_links(graph, &self.tree);
         regroup(graph, &mut links);
-        let motions = motions(graph, &links, &self.tree.gravity, acceleration);
-        let bodies = generalised_forces(graph, &links, &motions, coordinates);
+        let motions = derive_motions(graph, &links, &self.tree.gravity, acceleration);
+        let bodies = derive_generalised_forces(graph, &links, &motions, coordinates);
         let rows = bodies.iter().zip(&others).zip(&self.other_forces.scalars);
         Some(
             rows.map(|((body, other), force)| {

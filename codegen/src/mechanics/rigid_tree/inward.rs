@@ -5,7 +5,7 @@ use eomgen_model_spec::ids::CoordinateId;
 use super::links::{Joint, Link};
 use super::mass_properties::MassProperties;
 use super::outward::Motion;
-use super::vector::{VectorTerms, cross, multiply, next_axes, rotate_back, signed_sums};
+use super::vector::{VectorTerms, build_signed_sums, cross, find_next_axes, multiply, rotate_back};
 use crate::symbolic::differentiate::derive_by_scalar;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
@@ -17,7 +17,7 @@ struct Wrench {
 }
 
 /// Returns the generalised force of each coordinate for this motion of the links.
-pub(super) fn generalised_forces(
+pub(super) fn derive_generalised_forces(
     graph: &mut Graph,
     links: &[Link],
     motions: &[Motion],
@@ -28,8 +28,8 @@ pub(super) fn generalised_forces(
     for (place, link) in links.iter().enumerate().rev() {
         let mut wrench = std::mem::take(&mut carried[place]);
         wrench.add_inertia(graph, &link.mass, &motions[place]);
-        let force = signed_sums(graph, &wrench.force);
-        let moment = signed_sums(graph, &wrench.moment);
+        let force = build_signed_sums(graph, &wrench.force);
+        let moment = build_signed_sums(graph, &wrench.moment);
         // Pairs of force and displacement (or moment and angle) whose product is the virtual work.
         let pairs = match &link.joint {
             Joint::Rotation(turn) => vec![(moment[turn.axis], turn.angle)],
@@ -75,7 +75,7 @@ impl Wrench {
             self.force[axis].push((1.0, product));
             self.force[axis].extend(&carried[axis]);
             self.moment[axis].extend(&lever[axis]);
-            let rotation = moment_of_rotation(graph, mass, motion, axis);
+            let rotation = derive_rotation_moment(graph, mass, motion, axis);
             self.moment[axis].extend(rotation);
         }
     }
@@ -84,14 +84,14 @@ impl Wrench {
 /// Returns the terms of J alpha + omega x J omega along axis i. Products of inertia multiply entries of the
 /// gradient U, which forces need as well: with j and k the axes after i, J_ij alpha_j - J_ij omega_i omega_k
 /// = -J_ij U_ki.
-fn moment_of_rotation(
+fn derive_rotation_moment(
     graph: &mut Graph,
     mass: &MassProperties,
     motion: &Motion,
     axis: usize,
 ) -> Vec<(f64, NodeId)> {
     let (inertia, omega, gradient) = (&mass.inertia, &motion.omega, &motion.gradient);
-    let [j, k] = next_axes(axis);
+    let [j, k] = find_next_axes(axis);
     let difference = graph.combine_flat(&[(1.0, inertia[k][k]), (-1.0, inertia[j][j])]);
     let squares = [k, j].map(|other| graph.multiply(omega[other], omega[other]));
     let squares = graph.subtract(squares[0], squares[1]);

@@ -44,7 +44,7 @@ struct Placement {
 
 /// Returns the links of a tree, parents first. A constant rotation becomes a link only if a moving link follows.
 /// Otherwise, its bodies are expressed along the axes before the rotation, along which velocities are already known.
-pub(super) fn links(graph: &mut Graph, tree: &RigidTree<NodeId>) -> Vec<Link> {
+pub(super) fn build_links(graph: &mut Graph, tree: &RigidTree<NodeId>) -> Vec<Link> {
     let mut links: Vec<Link> = Vec::new();
     let mut placements: Vec<Placement> = Vec::with_capacity(tree.frames.len());
     for frame in &tree.frames {

@@ -3,7 +3,7 @@
 
 use eomgen_model_spec::rigid_tree::{AxisTurn, RigidBody};
 
-use super::vector::{Matrix, Vector, next_axes, rotate_back};
+use super::vector::{Matrix, Vector, find_next_axes, rotate_back};
 use crate::symbolic::graph::{Graph, NodeId};
 
 /// Inertial parameters of a body along the axes of a frame, about the frame's origin; all depend only on
@@ -101,7 +101,7 @@ impl MassProperties {
     /// rest. The first part has the mass, the first moment along the axis, and the inertia of a thin rod along the
     /// axis.
     pub(super) fn split_by_rotation(&self, graph: &mut Graph, axis: usize) -> (Self, Self) {
-        let [i, j] = next_axes(axis);
+        let [i, j] = find_next_axes(axis);
         let (mut symmetric, mut rest) = (Self::zero(graph), self.clone());
         symmetric.mass = self.mass;
         rest.mass = graph.zero();

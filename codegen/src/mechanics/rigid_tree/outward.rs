@@ -3,7 +3,9 @@
 use eomgen_model_spec::ids::CoordinateId;
 
 use super::links::{Joint, Link};
-use super::vector::{Matrix, Vector, cross, multiply, next_axes, rotate, signed_sum, zero};
+use super::vector::{
+    Matrix, Vector, build_signed_sum, cross, find_next_axes, multiply, rotate, zero,
+};
 use crate::mechanics::translate::along_motion;
 use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
@@ -25,7 +27,7 @@ pub(super) struct Motion {
 
 /// Returns the motion of every link. An acceleration of the fixed axes opposite to gravity replaces the weights of
 /// all bodies.
-pub(super) fn motions(
+pub(super) fn derive_motions(
     graph: &mut Graph,
     links: &[Link],
     gravity: &Vector,
@@ -84,7 +86,7 @@ fn shift_motion(
                 .iter()
                 .map(|(factor, term)| (2.0 * factor, *term)),
         );
-        signed_sum(graph, &terms)
+        build_signed_sum(graph, &terms)
     });
     motion
 }
@@ -96,13 +98,13 @@ fn add_rotation(
     axis: usize,
     [rate, second]: [NodeId; 2],
 ) -> Motion {
-    let [i, j] = next_axes(axis);
+    let [i, j] = find_next_axes(axis);
     for (to, other, sign) in [(i, j, 1.0), (j, i, -1.0)] {
         let product = graph.multiply(omega[other], rate);
-        alpha[to] = signed_sum(graph, &[(1.0, alpha[to]), (sign, product)]);
+        alpha[to] = build_signed_sum(graph, &[(1.0, alpha[to]), (sign, product)]);
     }
-    alpha[axis] = signed_sum(graph, &[(1.0, alpha[axis]), (1.0, second)]);
-    omega[axis] = signed_sum(graph, &[(1.0, omega[axis]), (1.0, rate)]);
+    alpha[axis] = build_signed_sum(graph, &[(1.0, alpha[axis]), (1.0, second)]);
+    omega[axis] = build_signed_sum(graph, &[(1.0, omega[axis]), (1.0, rate)]);
     Motion {
         gradient: gradient(graph, &omega, &alpha),
         omega,
@@ -115,12 +117,12 @@ fn add_rotation(
 fn gradient(graph: &mut Graph, omega: &Vector, alpha: &Vector) -> Matrix {
     let mut gradient = [*omega; 3];
     for axis in 0..3 {
-        let [i, j] = next_axes(axis);
+        let [i, j] = find_next_axes(axis);
         let squares = [i, j].map(|other| (-1.0, graph.multiply(omega[other], omega[other])));
-        gradient[axis][axis] = signed_sum(graph, &squares);
+        gradient[axis][axis] = build_signed_sum(graph, &squares);
         let product = graph.multiply(omega[i], omega[j]);
-        gradient[i][j] = signed_sum(graph, &[(1.0, product), (-1.0, alpha[axis])]);
-        gradient[j][i] = signed_sum(graph, &[(1.0, product), (1.0, alpha[axis])]);
+        gradient[i][j] = build_signed_sum(graph, &[(1.0, product), (-1.0, alpha[axis])]);
+        gradient[j][i] = build_signed_sum(graph, &[(1.0, product), (1.0, alpha[axis])]);
     }
     gradient
 }

@@ -17,13 +17,13 @@ pub(super) fn zero(graph: &mut Graph) -> Vector {
 }
 
 /// Returns the next two axes (i, j) in cyclic order, with axis = i x j.
-pub(super) fn next_axes(axis: usize) -> [usize; 2] {
+pub(super) fn find_next_axes(axis: usize) -> [usize; 2] {
     [(axis + 1) % 3, (axis + 2) % 3]
 }
 
 /// Returns a sum. A sum of only negative terms becomes the negative of a sum, because later operations can absorb the
 /// sign.
-pub(super) fn signed_sum(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
+pub(super) fn build_signed_sum(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
     let sum = graph.combine(terms);
     let positive: Vec<(f64, NodeId)> = match graph.operation(sum) {
         Operation::Sum(parts) if parts.iter().all(|(factor, _)| factor.value() < 0.0) => {
@@ -36,14 +36,14 @@ pub(super) fn signed_sum(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
     graph.negate(positive)
 }
 
-pub(super) fn signed_sums(graph: &mut Graph, terms: &VectorTerms) -> Vector {
-    terms.each_ref().map(|terms| signed_sum(graph, terms))
+pub(super) fn build_signed_sums(graph: &mut Graph, terms: &VectorTerms) -> Vector {
+    terms.each_ref().map(|terms| build_signed_sum(graph, terms))
 }
 
 /// Returns the terms of the vector product, by component.
 pub(super) fn cross(graph: &mut Graph, a: &Vector, b: &Vector) -> VectorTerms {
     [0, 1, 2].map(|axis| {
-        let [i, j] = next_axes(axis);
+        let [i, j] = find_next_axes(axis);
         vec![
             (1.0, graph.multiply(a[i], b[j])),
             (-1.0, graph.multiply(a[j], b[i])),
@@ -77,12 +77,12 @@ fn rotate_by_angle(
     vector: &Vector,
     way: f64,
 ) -> Vector {
-    let [i, j] = next_axes(turn.axis);
+    let [i, j] = find_next_axes(turn.axis);
     let mut result = *vector;
     for (to, other, sign) in [(i, j, way), (j, i, -way)] {
         let along = graph.multiply(turn.cosine, vector[to]);
         let across = graph.multiply(turn.sine, vector[other]);
-        result[to] = signed_sum(graph, &[(1.0, along), (sign, across)]);
+        result[to] = build_signed_sum(graph, &[(1.0, along), (sign, across)]);
     }
     result
 }

@@ -22,7 +22,7 @@ pub(super) fn shorten_critical_path(graph: &mut Graph, rows: &RowNodes) -> RowNo
             let mut parts = Vec::new();
             pull_out(graph, &uses, (1.0, one), row, &mut parts);
             let critical_path = graph.critical_path(row);
-            let terms = terms_by_scale(graph, &uses, critical_path, parts);
+            let terms = collect_terms_by_scale(graph, &uses, critical_path, parts);
             graph.combine(&terms)
         })
         .collect();
@@ -82,7 +82,7 @@ fn pull_out(
 
 /// Returns the parts as terms of a sum. Terms on the critical path and terms that absorb their scale stay
 /// separate; the others are collected by their scale.
-fn terms_by_scale(
+fn collect_terms_by_scale(
     graph: &mut Graph,
     uses: &HashMap<NodeId, usize>,
     critical_path: u32,
@@ -109,7 +109,7 @@ fn terms_by_scale(
             terms.push((factor, graph.multiply(scale, node)));
         }
         if !bound.is_empty() {
-            terms.push(scaled_sum(graph, scale, &bound));
+            terms.push(build_scaled_sum(graph, scale, &bound));
         }
     }
     terms
@@ -149,7 +149,7 @@ fn absorbs_scale(graph: &Graph, uses: &HashMap<NodeId, usize>, node: NodeId) -> 
 }
 
 /// Returns the scaled sum of terms as one term; if all terms are negative, its factor is -1.
-fn scaled_sum(graph: &mut Graph, scale: NodeId, terms: &[(f64, NodeId)]) -> (f64, NodeId) {
+fn build_scaled_sum(graph: &mut Graph, scale: NodeId, terms: &[(f64, NodeId)]) -> (f64, NodeId) {
     let negative = terms.iter().all(|(c, _)| *c < 0.0);
     let sign = if negative { -1.0 } else { 1.0 };
     let terms: Vec<(f64, NodeId)> = terms.iter().map(|(c, id)| (sign * c, *id)).collect();

@@ -120,14 +120,14 @@ pub(super) fn inner_product(graph: &mut Graph, field: FieldId, a: NodeId, b: Nod
                 .iter()
                 .map(|&(c, term)| {
                     let product = graph.multiply(a, term);
-                    (c.value(), graph.total_over(space, product))
+                    (c.value(), graph.sum_over_space(space, product))
                 })
                 .collect();
             graph.combine(&terms)
         }
         _ => {
             let product = graph.multiply(a, b);
-            graph.total_over(space, product)
+            graph.sum_over_space(space, product)
         }
     }
 }

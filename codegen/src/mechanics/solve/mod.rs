@@ -84,7 +84,7 @@ pub(crate) fn solve(
     };
     let mut best = solved_in((0..coordinates).collect());
     let mut dearest = best.0;
-    for order in other_orders(coordinates) {
+    for order in list_other_orders(coordinates) {
         let other = solved_in(order);
         dearest = dearest.max(other.0);
         if other.0 < best.0 {
@@ -146,7 +146,7 @@ fn border_matrix(
 
 /// Returns the elimination orders to try in addition to the natural order: all other orders for up to four
 /// coordinates, else the reverse order.
-fn other_orders(count: usize) -> Vec<Vec<usize>> {
+fn list_other_orders(count: usize) -> Vec<Vec<usize>> {
     if count > 4 {
         return vec![(0..count).rev().collect()];
     }

@@ -172,19 +172,19 @@ impl ModalBlock {
         for (row, parts) in separated.into_iter().enumerate() {
             self.direct_coupling[row][field] = graph.zero();
             for part in parts {
-                if let Some(place) = self.interface(graph, field, part.vector) {
-                    self.coupling[row][place] = part.scalar;
+                if let Some(index) = self.interface(graph, field, part.vector) {
+                    self.coupling[row][index] = part.scalar;
                 }
             }
         }
         let mut direct = Vec::new();
         for part in separate(graph, self.direct_forces[field]) {
-            let place = self
+            let index = self
                 .interfaces
                 .iter()
                 .position(|i| i.field == field && i.shape == part.vector);
-            match place {
-                Some(place) => self.forces[place] = part.scalar,
+            match index {
+                Some(index) => self.forces[index] = part.scalar,
                 None => direct.push((1.0, graph.multiply(part.scalar, part.vector))),
             }
         }
@@ -208,28 +208,28 @@ impl ModalBlock {
     /// diagonal, a pivot can be negative, for example for a mass on a lever between two points of a beam.
     fn orthogonalise(&mut self, graph: &mut Graph, field: FieldId) {
         let places: Vec<usize> = (0..self.interfaces.len())
-            .filter(|place| self.interfaces[*place].field == field)
+            .filter(|index| self.interfaces[*index].field == field)
             .collect();
-        for (count, &place) in places.iter().enumerate() {
+        for (count, &index) in places.iter().enumerate() {
             let shares: Vec<(usize, NodeId)> = places[..count]
                 .iter()
-                .map(|&earlier| (earlier, self.share(graph, place, earlier)))
+                .map(|&earlier| (earlier, self.compute_share(graph, index, earlier)))
                 .collect();
-            let mut terms = vec![(1.0, self.interfaces[place].shape)];
+            let mut terms = vec![(1.0, self.interfaces[index].shape)];
             for &(earlier, share) in &shares {
                 terms.push((-1.0, graph.multiply(share, self.interfaces[earlier].shape)));
-                self.move_weight(graph, place, earlier, share);
+                self.move_weight(graph, index, earlier, share);
             }
             let shape = graph.combine(&terms);
-            self.interfaces[place].shape = shape;
-            self.interfaces[place].solved = self.solve_field(graph, field, shape);
+            self.interfaces[index].shape = shape;
+            self.interfaces[index].solved = self.solve_field(graph, field, shape);
         }
     }
 
     /// Returns mu, the component of the interface `index` along the orthogonal interface `earlier`. The result is 0
     /// if `earlier` depends on other interfaces, because then it contains only rounding errors.
-    fn share(&self, graph: &mut Graph, place: usize, earlier: usize) -> NodeId {
-        let (own, other) = (&self.interfaces[place], &self.interfaces[earlier]);
+    fn compute_share(&self, graph: &mut Graph, index: usize, earlier: usize) -> NodeId {
+        let (own, other) = (&self.interfaces[index], &self.interfaces[earlier]);
         let product = inner_product(graph, own.field, own.shape, other.solved);
         let square = inner_product(graph, own.field, other.shape, other.solved);
         let share = graph.divide(product, square);
@@ -239,17 +239,17 @@ impl ModalBlock {
     }
 
     /// Updates the weights for phi_index = psi + share psi_earlier.
-    fn move_weight(&mut self, graph: &mut Graph, place: usize, earlier: usize, share: NodeId) {
+    fn move_weight(&mut self, graph: &mut Graph, index: usize, earlier: usize, share: NodeId) {
         for column in 0..self.interfaces.len() {
-            let moved = graph.multiply(share, self.weights[place][column]);
+            let moved = graph.multiply(share, self.weights[index][column]);
             self.weights[earlier][column] = graph.add(self.weights[earlier][column], moved);
         }
         for row in 0..self.interfaces.len() {
-            let moved = graph.multiply(share, self.weights[row][place]);
+            let moved = graph.multiply(share, self.weights[row][index]);
             self.weights[row][earlier] = graph.add(self.weights[row][earlier], moved);
         }
         for row in self.coupling.iter_mut().chain([&mut self.forces]) {
-            let moved = graph.multiply(share, row[place]);
+            let moved = graph.multiply(share, row[index]);
             row[earlier] = graph.add(row[earlier], moved);
         }
     }

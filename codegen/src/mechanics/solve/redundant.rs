@@ -120,9 +120,9 @@ fn select_column(graph: &mut Graph, rows: &[Vec<NodeId>], weights: &[NodeId]) ->
         pivot: rows[0][first],
     };
     let mut largest = graph.multiply(best.pivot, weights[0]);
-    for (place, row) in rows.iter().enumerate().skip(1) {
-        let pivot = row[first + place];
-        let size = graph.multiply(pivot, weights[place]);
+    for (index, row) in rows.iter().enumerate().skip(1) {
+        let pivot = row[first + index];
+        let size = graph.multiply(pivot, weights[index]);
         let mut choose =
             |here: NodeId, other: NodeId| graph.select_equivalent(size, largest, here, other);
         for (entry, here) in best.column.iter_mut().zip(row) {

@@ -34,7 +34,7 @@ pub(super) fn separate(graph: &mut Graph, vector: NodeId) -> Vec<SeparatedTerm> 
                 }
             }
             Operation::Product(factors) => {
-                let (scalars, mut vectors) = graph.scalar_factors(&factors);
+                let (scalars, mut vectors) = graph.split_scalar_factors(&factors);
                 let scalar = graph.product(&scalars);
                 let weight = graph.multiply(weight, scalar);
                 let opened = remove_sum(graph, &mut vectors);
@@ -65,13 +65,13 @@ pub(super) fn separate(graph: &mut Graph, vector: NodeId) -> Vec<SeparatedTerm> 
 
 /// Removes a sum from the factors and returns its terms; returns no terms if no factor is a sum.
 fn remove_sum(graph: &Graph, factors: &mut Vec<(NodeId, i32)>) -> Vec<(f64, NodeId)> {
-    let place = factors.iter().position(|(factor, exponent)| {
+    let index = factors.iter().position(|(factor, exponent)| {
         *exponent == 1 && matches!(graph.operation(*factor), Operation::Sum(_))
     });
-    let Some(place) = place else {
+    let Some(index) = index else {
         return Vec::new();
     };
-    match graph.operation(factors.remove(place).0) {
+    match graph.operation(factors.remove(index).0) {
         Operation::Sum(terms) => terms.iter().map(|(c, term)| (c.value(), *term)).collect(),
         _ => Vec::new(),
     }

@@ -62,7 +62,7 @@ impl SmallSystem {
             free_modes,
             solved_coupling,
         };
-        let response = system.response(graph, modal);
+        let response = system.derive_response(graph, modal);
         for place in 0..system.interfaces {
             system.push_interface_row(graph, place, modal, &response);
         }
@@ -72,7 +72,7 @@ impl SmallSystem {
         system
     }
 
-    fn response(&self, graph: &mut Graph, modal: &ModalBlock) -> Response {
+    fn derive_response(&self, graph: &mut Graph, modal: &ModalBlock) -> Response {
         let mut response = Response {
             compliance: Vec::new(),
             coupling: Vec::new(),
@@ -97,7 +97,7 @@ impl SmallSystem {
             // A sum of many terms is computed before its products with the shapes.
             response.free.push(if orthogonal && !graph.is_zero(free) {
                 let product = graph.multiply(shape, free);
-                graph.total_over(Space::Modes(field), product)
+                graph.sum_over_space(Space::Modes(field), product)
             } else {
                 inner_product(graph, field, shape, free)
             });
@@ -122,17 +122,17 @@ impl SmallSystem {
                     graph.zero()
                 };
                 let compliance = response.compliance.iter().map(|row| row[column]);
-                plus_products(graph, one, 1.0, weights, compliance)
+                add_term_products(graph, one, 1.0, weights, compliance)
             })
             .collect();
         for (coordinate, coupling) in modal.coupling.iter().enumerate() {
             let own = graph.negate(coupling[place]);
             let moved = response.coupling.iter().map(|row| row[coordinate]);
-            row.push(plus_products(graph, own, 1.0, weights, moved));
+            row.push(add_term_products(graph, own, 1.0, weights, moved));
         }
         let force = graph.negate(modal.forces[place]);
         let free = response.free.iter().copied();
-        let right = plus_products(graph, force, 1.0, weights, free);
+        let right = add_term_products(graph, force, 1.0, weights, free);
         self.right.push(right);
         self.matrix.push(row);
     }
@@ -154,7 +154,7 @@ impl SmallSystem {
             .map(|column| {
                 let own = graph.negate(response.coupling[column][row]);
                 let compliance = response.compliance.iter().map(|row| row[column]);
-                plus_products(graph, own, -1.0, through, compliance)
+                add_term_products(graph, own, -1.0, through, compliance)
             })
             .collect();
         for (column, solved) in self.solved_coupling.iter().enumerate() {
@@ -270,7 +270,7 @@ impl SmallSystem {
 }
 
 /// Returns start + sign * sum of a_k b_k.
-fn plus_products(
+fn add_term_products(
     graph: &mut Graph,
     start: NodeId,
     sign: f64,

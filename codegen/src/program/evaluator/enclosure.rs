@@ -190,14 +190,14 @@ impl Enclosure {
 
     /// Returns the bounds of a function of the expression language.
     pub(super) fn call(function: Function, arguments: &[Self]) -> Self {
-        if let Some(branch) = linear_branch(function, arguments) {
+        if let Some(branch) = select_linear_branch(function, arguments) {
             return branch;
         }
         let values: Vec<Interval> = arguments.iter().map(Self::value).collect();
         let value = Interval::apply_function(function, &values);
         let rate = match arguments {
             [x] => slope(function, values[0], value).multiply(x.rate()),
-            [x, y] => binary_rate(function, *x, *y),
+            [x, y] => bound_binary_rate(function, *x, *y),
             _ => Interval::ALL,
         };
         Self::from_bounds(value, rate)
@@ -223,7 +223,7 @@ fn exact(value: f64) -> Interval {
 }
 
 /// Returns the bounds of a piecewise linear function if its arguments stay on one side of its kinks.
-fn linear_branch(function: Function, arguments: &[Enclosure]) -> Option<Enclosure> {
+fn select_linear_branch(function: Function, arguments: &[Enclosure]) -> Option<Enclosure> {
     let is_positive = |x: Enclosure| x.value().low >= 0.0;
     match (function, arguments) {
         (Function::Abs, &[x]) if is_positive(x) => Some(x),
@@ -269,7 +269,7 @@ fn slope(function: Function, x: Interval, value: Interval) -> Interval {
     })
 }
 
-fn binary_rate(function: Function, x: Enclosure, y: Enclosure) -> Interval {
+fn bound_binary_rate(function: Function, x: Enclosure, y: Enclosure) -> Interval {
     let (x_value, y_value) = (x.value(), y.value());
     match function {
         Function::Atan2 => {

@@ -209,10 +209,10 @@ impl Evaluator {
         advance(state, h, k3, stage, round);
         rates(round(t + h), stage, k4);
         let sixth = round(h / 6.0);
-        for (place, next) in next.iter_mut().enumerate() {
-            let inner = round(k2[place] + k3[place]);
-            let sum = round(round(k1[place] + k4[place]) + 2.0 * inner);
-            *next = round(state[place] + round(sixth * sum));
+        for (index, next) in next.iter_mut().enumerate() {
+            let inner = round(k2[index] + k3[index]);
+            let sum = round(round(k1[index] + k4[index]) + 2.0 * inner);
+            *next = round(state[index] + round(sixth * sum));
         }
     }
 
@@ -324,10 +324,10 @@ fn close_contacts(
         let own = sides + contact;
         let before = memory.before[count + contact];
         let mut after = memory.functions[count + contact];
-        for place in 0..count {
-            let change = round(memory.reactions[place] - memory.applied[place]);
-            let moved = round(memory.effects[own * count + place] * change);
-            after = round(after + round(memory.delays[place] * moved));
+        for index in 0..count {
+            let change = round(memory.reactions[index] - memory.applied[index]);
+            let moved = round(memory.effects[own * count + index] * change);
+            after = round(after + round(memory.delays[index] * moved));
         }
         let (rate_before, rate) = (memory.before[own], memory.functions[own]);
         let restitution = memory.effects[known.effects.len() + contact];
@@ -352,8 +352,8 @@ fn close_contacts(
         closes = select(own_closes, 0.5, 1.0, closes);
     }
     let first = sides + known.distances.len();
-    for (place, (contact, _)) in known.coefficients.iter().enumerate() {
-        memory.delays[first + place] = memory.delays[sides + contact];
+    for (index, (contact, _)) in known.coefficients.iter().enumerate() {
+        memory.delays[first + index] = memory.delays[sides + contact];
     }
     closes > 0.5
 }
@@ -381,8 +381,8 @@ fn find_reactions(
     let settled = MAX_SETTLED_ROUNDINGS * magnitude(round(round(3.0 * third) - 1.0));
     for own in 0..count {
         let mut size = magnitude(functions[own]);
-        for (place, reaction) in reactions.iter().enumerate() {
-            let part = round(effects[own * count + place] * reaction);
+        for (index, reaction) in reactions.iter().enumerate() {
+            let part = round(effects[own * count + index] * reaction);
             size = round(size + magnitude(part));
         }
         sizes[own] = size;
@@ -399,17 +399,17 @@ fn find_reactions(
             } else if own < sides + contacts {
                 select(effect, 0.0, select(wanted, 0.0, wanted, 0.0), 0.0)
             } else {
-                let place = own - sides - contacts;
-                let contact = known.coefficients[place].0;
-                let limit = round(coefficients[place] * reactions[sides + contact]);
+                let index = own - sides - contacts;
+                let contact = known.coefficients[index].0;
+                let limit = round(coefficients[index] * reactions[sides + contact]);
                 select(effect, 0.0, clamp(wanted, -limit, limit), 0.0)
             };
             let change = round(next - reactions[own]);
             reactions[own] = next;
-            for (place, function) in functions[..count].iter_mut().enumerate() {
-                let moved = round(effects[place * count + own] * change);
+            for (index, function) in functions[..count].iter_mut().enumerate() {
+                let moved = round(effects[index * count + own] * change);
                 *function = round(*function + moved);
-                sizes[place] = round(sizes[place] + magnitude(moved));
+                sizes[index] = round(sizes[index] + magnitude(moved));
             }
             let moved = magnitude(round(change * effect));
             unsettled = select(moved, round(settled * sizes[own]), 1.0, unsettled);
@@ -439,9 +439,9 @@ fn separate_contacts(
         let overlap = select(0.0, distance, round(-distance / effect), 0.0);
         let push = select(memory.targets[own], f64::NEG_INFINITY, overlap, 0.0);
         let first = known.first_column() + own * length;
-        for place in 0..degrees {
-            let moved = round(memory.effects[first + place] * push);
-            memory.next[place] = round(memory.next[place] + moved);
+        for index in 0..degrees {
+            let moved = round(memory.effects[first + index] * push);
+            memory.next[index] = round(memory.next[index] + moved);
         }
         for other in 0..known.distances.len() {
             let moved = round(memory.effects[(sides + other) * count + own] * push);
@@ -462,12 +462,12 @@ fn apply_reactions(
     let length = memory.next.len() - degrees;
     for own in 0..known.functions.len() {
         let change = round(memory.reactions[own] - memory.applied[own]);
-        for place in 0..length {
-            let moved = round(memory.effects[first + own * length + place] * change);
-            memory.next[degrees + place] = round(memory.next[degrees + place] + moved);
-            if place < degrees {
+        for index in 0..length {
+            let moved = round(memory.effects[first + own * length + index] * change);
+            memory.next[degrees + index] = round(memory.next[degrees + index] + moved);
+            if index < degrees {
                 let moved = round(memory.delays[own] * moved);
-                memory.next[place] = round(memory.next[place] + moved);
+                memory.next[index] = round(memory.next[index] + moved);
             }
         }
     }

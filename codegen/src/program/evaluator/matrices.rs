@@ -78,8 +78,8 @@ pub(super) fn assemble<N: Number>(
     }
     for (u, v) in outer {
         let (u, v) = (operands.strided(*u), operands.strided(*v));
-        for (place, slot) in out.iter_mut().enumerate() {
-            *slot += u.0[place / columns * u.1] * v.0[place % columns * v.1];
+        for (index, slot) in out.iter_mut().enumerate() {
+            *slot += u.0[index / columns * u.1] * v.0[index % columns * v.1];
         }
     }
     for scaled in matrices {
@@ -88,8 +88,8 @@ pub(super) fn assemble<N: Number>(
             operands.strided(scaled.row),
             operands.strided(scaled.column),
         );
-        for (place, slot) in out.iter_mut().enumerate() {
-            let (r, c) = (place / columns, place % columns);
+        for (index, slot) in out.iter_mut().enumerate() {
+            let (r, c) = (index / columns, index % columns);
             let entry = if scaled.transposed {
                 matrix[c * width + r]
             } else {

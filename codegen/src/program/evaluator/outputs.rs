@@ -62,7 +62,7 @@ impl Evaluator {
 
     /// Computes the structural nonzeros of the Jacobian with this index, whose only column is the derivative along a
     /// direction of state and inputs.
-    pub fn derivatives_along(
+    pub fn compute_derivatives_along(
         &mut self,
         place: usize,
         point: Point<'_>,

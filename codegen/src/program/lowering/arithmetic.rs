@@ -96,7 +96,7 @@ impl Lowering<'_> {
         let (parameter_only, live): (Vec<_>, Vec<_>) = factors
             .into_iter()
             .partition(|(id, _)| graph.dependence(*id).is_parameter_only());
-        if let Some(total) = self.scaled_total(magnitude, &parameter_only, &live) {
+        if let Some(total) = self.scale_total(magnitude, &parameter_only, &live) {
             return (negative, total);
         }
         let coefficient = self.powers(magnitude, &parameter_only);
@@ -138,12 +138,12 @@ impl Lowering<'_> {
     fn factor(&mut self, factor: Factor) -> ValueId {
         match factor {
             Factor::Node(id) => self.value(id),
-            Factor::Pair(place) => {
-                let (a, b) = self.association.pair(place);
+            Factor::Pair(index) => {
+                let (a, b) = self.association.pair(index);
                 self.multiply_in_order(&[a, b])
             }
-            Factor::Coefficient(place) => {
-                let prepared = self.association.coefficient(place).clone();
+            Factor::Coefficient(index) => {
+                let prepared = self.association.coefficient(index).clone();
                 let value = self.powers(prepared.number, &prepared.powers);
                 value.unwrap_or_else(|| self.constant(1.0))
             }
@@ -152,7 +152,7 @@ impl Lowering<'_> {
 
     /// Moves a prepared factor of a sum over modes into the sum, if no other value uses the sum without this factor.
     /// Vector factors stay outside the sum.
-    fn scaled_total(
+    fn scale_total(
         &mut self,
         number: f64,
         parameter_only: &[(NodeId, i32)],
@@ -192,16 +192,16 @@ impl Lowering<'_> {
         let contact = |(id, _): &(NodeId, i32)| {
             matches!(graph.operation(*id), Operation::Call(Function::Contact, _))
         };
-        let Some(place) = factors.iter().position(contact) else {
+        let Some(index) = factors.iter().position(contact) else {
             return self.powers(1.0, factors);
         };
-        if factors.len() == 1 || factors[place].1 < 0 {
+        if factors.len() == 1 || factors[index].1 < 0 {
             return self.powers(1.0, factors);
         }
         let mut others = factors.to_vec();
-        others.remove(place);
+        others.remove(index);
         let then = self.select_by_contact(&others)?;
-        let a = self.value(factors[place].0);
+        let a = self.value(factors[index].0);
         let b = self.constant(0.0);
         let otherwise = b;
         let extent = self.join(a, then);

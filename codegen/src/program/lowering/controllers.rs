@@ -66,7 +66,7 @@ fn lower_controller(
         states: states
             .map(|state| quantity(&state.name, &state.unit.text, &state.doc))
             .collect(),
-        outputs: (driven.iter().map(|place| program.inputs[*place].clone())).collect(),
+        outputs: (driven.iter().map(|index| program.inputs[*index].clone())).collect(),
         driven,
         times,
         initial,
@@ -93,8 +93,8 @@ impl ControlLowering<'_> {
     fn push(&mut self, op: ControlOp) -> usize {
         let is_leaf = op.operands().is_empty() && !matches!(op, ControlOp::Constant(_));
         let mut known = self.values.iter();
-        if let Some(place) = known.position(|known| is_leaf && *known == op) {
-            return place;
+        if let Some(index) = known.position(|known| is_leaf && *known == op) {
+            return index;
         }
         self.values.push(op);
         self.values.len() - 1
@@ -116,9 +116,9 @@ impl ControlLowering<'_> {
         let value = match &parameter.value {
             ParameterValue::Number(_) => {
                 let independent = &self.program.parameters;
-                let place = (independent.iter()).position(|p| p.quantity.name == parameter.name);
-                match place {
-                    Some(place) => self.push(ControlOp::Parameter(place)),
+                let index = (independent.iter()).position(|p| p.quantity.name == parameter.name);
+                match index {
+                    Some(index) => self.push(ControlOp::Parameter(index)),
                     None => self.push(ControlOp::Constant(f64::NAN)),
                 }
             }
@@ -174,9 +174,9 @@ impl ControlLowering<'_> {
     fn sampled(&mut self, expr: &SampledExpression) -> Result<usize, Diagnostic> {
         Ok(match &expr.kind {
             SampledKind::Number(value) => self.push(ControlOp::Constant(*value)),
-            SampledKind::Measured(place) => {
+            SampledKind::Measured(index) => {
                 let controller = self.controller;
-                self.measured(&controller.measured[*place], expr.span)?
+                self.measured(&controller.measured[*index], expr.span)?
             }
             SampledKind::Negate(operand) => {
                 let operand = self.sampled(operand)?;
@@ -217,35 +217,35 @@ impl ControlLowering<'_> {
         let (source, described) = match measured {
             MeasuredQuantity::Period => return Ok(self.push(ControlOp::Period)),
             MeasuredQuantity::Parameter(id) => return Ok(self.parameter(*id)),
-            MeasuredQuantity::Own(place) => return Ok(self.push(ControlOp::State(*place))),
+            MeasuredQuantity::Own(index) => return Ok(self.push(ControlOp::State(*index))),
             MeasuredQuantity::Time => (MeasuredSource::Time, quantity("t", "s", "time")),
             MeasuredQuantity::Input(id) => {
-                let place = id.index();
-                (MeasuredSource::Input(place), program.inputs[place].clone())
+                let index = id.index();
+                (MeasuredSource::Input(index), program.inputs[index].clone())
             }
             MeasuredQuantity::Observable(name) => {
                 let mut all = program.observables.iter();
-                let place = all.position(|known| known.name == *name);
-                let place = place.unwrap_or_default();
-                let described = program.observables[place].clone();
-                (MeasuredSource::Observable(place), described)
+                let index = all.position(|known| known.name == *name);
+                let index = index.unwrap_or_default();
+                let described = program.observables[index].clone();
+                (MeasuredSource::Observable(index), described)
             }
             part => {
                 let name = part.state_name(self.model).unwrap_or_default();
                 let names = program.state_names();
-                let place = names.iter().position(|known| *known == name);
-                let place = place.ok_or_else(|| self.missing_mode(part, &name, span))?;
+                let index = names.iter().position(|known| *known == name);
+                let index = index.ok_or_else(|| self.describe_missing_mode(part, &name, span))?;
                 let described = quantity(&name, &self.state_unit(part), "");
-                (MeasuredSource::State(place), described)
+                (MeasuredSource::State(index), described)
             }
         };
         let known = self.sources.iter().position(|known| *known == source);
-        let place = known.unwrap_or_else(|| {
+        let index = known.unwrap_or_else(|| {
             self.sources.push(source);
             self.measured.push(described);
             self.sources.len() - 1
         });
-        Ok(self.push(ControlOp::Measured(place)))
+        Ok(self.push(ControlOp::Measured(index)))
     }
 
     fn state_unit(&self, part: &MeasuredQuantity) -> String {
@@ -266,7 +266,7 @@ impl ControlLowering<'_> {
         }
     }
 
-    fn missing_mode(&self, part: &MeasuredQuantity, name: &str, span: Span) -> Diagnostic {
+    fn describe_missing_mode(&self, part: &MeasuredQuantity, name: &str, span: Span) -> Diagnostic {
         let missing = Diagnostic::error(format!("the model has no mode `{name}`"));
         let MeasuredQuantity::Mode { field, number, .. } = part else {
             return missing.with_span(span, "unknown");

@@ -17,7 +17,7 @@ use crate::mechanics::equations::Equations;
 use crate::mechanics::outputs::Outputs;
 use crate::mechanics::rows::RowNodes;
 use crate::program::{Extent, Op, Program, ProgramField, ProgramGuard, Trace, ValueId};
-use crate::symbolic::formula::abridged_formula;
+use crate::symbolic::formula::write_abridged_formula;
 use crate::symbolic::graph::NodeId;
 pub use affine::lower_affine;
 pub use controllers::lower_controllers;
@@ -79,13 +79,13 @@ pub(crate) fn lower_with_values(
         .guards
         .iter()
         .enumerate()
-        .map(|(place, guard)| ProgramGuard {
-            formula: abridged_formula(&equations.graph, model, guard.value).to_string(),
+        .map(|(index, guard)| ProgramGuard {
+            formula: write_abridged_formula(&equations.graph, model, guard.value).to_string(),
             value: lowering.value(guard.value),
             is_corner: equations
                 .corners
                 .iter()
-                .any(|corner| corner.guard == place && corner.moves_rates),
+                .any(|corner| corner.guard == index && corner.moves_rates),
         })
         .collect();
     let pivots = equations

@@ -351,7 +351,7 @@ impl<'g> Lowering<'g> {
             None => {
                 self.tables.push(ProgramTable {
                     doc: crate::symbolic::table_text::doc(table),
-                    name: crate::symbolic::table_text::constant_name(table),
+                    name: crate::symbolic::table_text::write_constant_name(table),
                     extent,
                     values: table.values.clone(),
                 });

@@ -7,7 +7,9 @@ use eomgen_model_spec::model::Function;
 
 use super::letters;
 use super::symbol::Symbol;
-use super::tree::{Choice, Formula, Level, MatrixPart, Term, powers_of_ten, small_fraction};
+use super::tree::{
+    Choice, Formula, Level, MatrixPart, Term, find_small_fraction, split_powers_of_ten,
+};
 use crate::symbolic::table_text;
 
 /// Largest length, in characters of plain text, of a part that TeX must not break.
@@ -21,12 +23,12 @@ const TIMES: &str = "\\,";
 impl Formula {
     /// Returns the formula in LaTeX math mode with amsmath.
     pub fn latex(&self) -> String {
-        latex_at_level(self, Level::Sum)
+        write_latex_at_level(self, Level::Sum)
     }
 }
 
 /// Writes a formula, with parentheses if its context requires them.
-fn latex_at_level(formula: &Formula, level: Level) -> String {
+fn write_latex_at_level(formula: &Formula, level: Level) -> String {
     if formula.set_level() < level {
         return in_parentheses(formula);
     }
@@ -44,19 +46,19 @@ fn latex_at_level(formula: &Formula, level: Level) -> String {
             format!(
                 "\\sum_{{{}}} {}",
                 index.name(),
-                latex_at_level(of, Level::Product)
+                write_latex_at_level(of, Level::Product)
             )
         }
         Formula::Applied(matrix, vector) => {
             format!(
                 "\\left({}{TIMES}{}\\right)_{{i}}",
-                latex_at_level(matrix, Level::Product),
-                latex_at_level(vector, Level::Product)
+                write_latex_at_level(matrix, Level::Product),
+                write_latex_at_level(vector, Level::Product)
             )
         }
         Formula::Transposed(matrix) => format!(
             "{{{}}}^{{\\mathsf{{T}}}}",
-            latex_at_level(matrix, Level::Base)
+            write_latex_at_level(matrix, Level::Base)
         ),
         Formula::Matrix(parts) => {
             let parts: Vec<String> = parts.iter().map(matrix_part).collect();
@@ -83,9 +85,9 @@ fn sum(terms: &[Term]) -> String {
     let with_strokes = terms.len() > MAX_FRACTIONS;
     let at = |of: &Formula, level: Level| match of {
         Formula::Quotient { above, below } if with_strokes && !above.is_empty() => {
-            slash_quotient(above, below)
+            write_slash_quotient(above, below)
         }
-        _ => latex_at_level(of, level),
+        _ => write_latex_at_level(of, level),
     };
     let mut text = String::new();
     for (place, term) in terms.iter().enumerate() {
@@ -120,7 +122,7 @@ fn product(factors: &[Formula]) -> String {
         .enumerate()
         .map(|(place, factor)| match factor {
             Formula::Total(..) if place < last => in_parentheses(factor),
-            _ => latex_at_level(factor, Level::Product),
+            _ => write_latex_at_level(factor, Level::Product),
         })
         .collect();
     factors.join(TIMES)
@@ -134,20 +136,20 @@ fn quotient(above: &[Formula], below: &[Formula]) -> String {
     if below.is_empty() {
         // A single factor gets parentheses only if it would need them outside a product.
         return match above {
-            [only] => latex_at_level(only, Level::Product),
+            [only] => write_latex_at_level(only, Level::Product),
             _ => numerator,
         };
     }
     if !above.is_empty() && above.iter().chain(below).any(is_long) {
-        return slash_quotient(above, below);
+        return write_slash_quotient(above, below);
     }
     format!("\\frac{{{numerator}}}{{{}}}", product(below))
 }
 
 /// Writes a product, or a quotient with a slash, on one line that TeX can break.
-fn slash_quotient(above: &[Formula], below: &[Formula]) -> String {
+fn write_slash_quotient(above: &[Formula], below: &[Formula]) -> String {
     let numerator = match above {
-        [only] => latex_at_level(only, Level::Product),
+        [only] => write_latex_at_level(only, Level::Product),
         several => product(several),
     };
     match below {
@@ -159,7 +161,7 @@ fn slash_quotient(above: &[Formula], below: &[Formula]) -> String {
 
 /// Writes a power. If the base is no symbol, braces separate its superscripts from the exponent.
 fn power(base: &Formula, exponent: &Formula) -> String {
-    let (base_text, exponent) = (latex_at_level(base, Level::Base), exponent.latex());
+    let (base_text, exponent) = (write_latex_at_level(base, Level::Base), exponent.latex());
     match base {
         Formula::Symbol(_) => format!("{base_text}^{{{exponent}}}"),
         _ => format!("{{{base_text}}}^{{{exponent}}}"),
@@ -233,7 +235,7 @@ fn matrix_part(part: &MatrixPart) -> String {
         MatrixPart::Diagonal(diagonal) => {
             format!(
                 "\\delta_{{ij}}{TIMES}{}",
-                latex_at_level(diagonal, Level::Product)
+                write_latex_at_level(diagonal, Level::Product)
             )
         }
         MatrixPart::Outer(u, v) => format!(
@@ -244,7 +246,7 @@ fn matrix_part(part: &MatrixPart) -> String {
         MatrixPart::Scaled(row, matrix, column) => format!(
             "\\left[{}\\right]_{{i}}{TIMES}{}{TIMES}\\left[{}\\right]_{{j}}",
             row.latex(),
-            latex_at_level(matrix, Level::Product),
+            write_latex_at_level(matrix, Level::Product),
             column.latex()
         ),
     }
@@ -289,14 +291,14 @@ fn word(head: &str) -> String {
 
 /// Writes the numeric factor of a product, as a small fraction if the fraction is exact.
 fn factor(magnitude: f64) -> String {
-    match small_fraction(magnitude) {
+    match find_small_fraction(magnitude) {
         Some((numerator, denominator)) => format!("\\tfrac{{{numerator}}}{{{denominator}}}"),
         None => number(magnitude),
     }
 }
 
 fn number(value: f64) -> String {
-    match powers_of_ten(value) {
+    match split_powers_of_ten(value) {
         Some((mantissa, exponent)) if mantissa == "1" => format!("10^{{{exponent}}}"),
         Some((mantissa, exponent)) => format!("{mantissa}\\cdot 10^{{{exponent}}}"),
         None => format!("{value}"),
@@ -318,7 +320,7 @@ fn prose_letter(c: char) -> String {
         c if c.is_whitespace() || c.is_control() => " ".to_owned(),
         'Ð' | 'Þ' | 'ð' | 'þ' | '×' | '÷' => by_number(c),
         'À'..='ÿ' | '–' | '—' | '‘' | '’' | '“' | '”' => c.to_string(),
-        _ => match letters::command_of(c) {
+        _ => match letters::find_command(c) {
             Some(command) => format!("${command}$"),
             None => by_number(c),
         },

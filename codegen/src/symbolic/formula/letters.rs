@@ -48,7 +48,7 @@ pub fn letter(name: &str) -> Option<&'static str> {
     entry(name).map(|(_, _, letter)| *letter)
 }
 
-pub(super) fn command_of(letter: char) -> Option<&'static str> {
+pub(super) fn find_command(letter: char) -> Option<&'static str> {
     GREEK
         .iter()
         .find(|(_, _, known)| known.chars().eq([letter]))

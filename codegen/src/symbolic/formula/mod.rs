@@ -15,9 +15,10 @@ mod tree;
 
 pub(crate) use latex::prose;
 pub use letters::letter;
-pub use read::{Reader, abridged_formula, full_formula};
+pub use read::{Reader, write_abridged_formula, write_full_formula};
 pub use shared::SharedExpressions;
 pub use symbol::{Index, Symbol};
 pub use tree::{
-    Choice, Formula, Level, MatrixPart, Term, multiple_of_pi, powers_of_ten, small_fraction,
+    Choice, Formula, Level, MatrixPart, Term, find_multiple_of_pi, find_small_fraction,
+    split_powers_of_ten,
 };

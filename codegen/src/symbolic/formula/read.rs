@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::{Model, ParameterValue};
 
-use super::shared::{SharedExpressions, is_leaf, own_length};
+use super::shared::{SharedExpressions, estimate_length, is_leaf};
 use super::symbol::{Index, Symbol};
 use super::tree::{Choice, Formula, MatrixPart, Term};
 use crate::symbolic::graph::{Argument, Assembly, Bits, Graph, NodeId, Operation, Shape, Variable};
@@ -26,18 +26,18 @@ pub struct Reader<'a> {
 
 /// Returns the complete formula of a node; only named nodes are abbreviated. For large models, the formula can be
 /// exponentially longer than the graph.
-pub fn full_formula(graph: &Graph, model: &Model, id: NodeId) -> Formula {
+pub fn write_full_formula(graph: &Graph, model: &Model, id: NodeId) -> Formula {
     Reader::new(graph, model, &SharedExpressions::default()).formula(id)
 }
 
 /// Returns the formula of a node for a message or a comment; parts of a very long formula are omitted.
-pub fn abridged_formula(graph: &Graph, model: &Model, id: NodeId) -> Formula {
+pub fn write_abridged_formula(graph: &Graph, model: &Model, id: NodeId) -> Formula {
     let shared = SharedExpressions::default();
     let mut reader = Reader::new(graph, model, &shared);
     let mut lengths = HashMap::new();
     for node in graph.reachable(&[id]) {
         if node == id || (graph.name(node).is_none() && !is_leaf(graph, node)) {
-            let length = own_length(graph, node, &lengths);
+            let length = estimate_length(graph, node, &lengths);
             lengths.insert(node, length);
         }
     }
@@ -83,7 +83,7 @@ impl<'a> Reader<'a> {
 
     /// Returns the symbol for a name of the graph. The suffixes `_dot` and `_ddot` of rates become dots.
     pub fn symbol(&self, name: &str) -> Symbol {
-        if let Some(entry) = self.factorisation_symbol(name) {
+        if let Some(entry) = self.read_factorisation_symbol(name) {
             return entry;
         }
         for (ending, dots) in [("_dot", 1), ("_ddot", 2)] {
@@ -98,7 +98,7 @@ impl<'a> Reader<'a> {
 
     /// Returns the symbol for the name of an entry of the mass matrix or of a pivot; its subscripts are the
     /// symbols of the rows.
-    fn factorisation_symbol(&self, name: &str) -> Option<Symbol> {
+    fn read_factorisation_symbol(&self, name: &str) -> Option<Symbol> {
         let (head, rows) = name.split_once('_')?;
         match head {
             "pivot" => Some(Symbol::part_of(head, vec![self.row(rows, Index::I)?])),

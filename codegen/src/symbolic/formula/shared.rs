@@ -82,7 +82,7 @@ impl Lengths<'_> {
         let mut chosen = Vec::new();
         let mut total = 0_u64;
         for id in ids {
-            let length = own_length(self.graph, id, &written);
+            let length = estimate_length(self.graph, id, &written);
             let is_shared = self.uses.get(&id).is_some_and(|uses| *uses > 1);
             if is_shared && length > longest {
                 total = total.saturating_add(length);
@@ -95,7 +95,7 @@ impl Lengths<'_> {
         for &root in roots {
             let length = match written.get(&root) {
                 Some(known) => *known,
-                None => own_length(self.graph, root, &written),
+                None => estimate_length(self.graph, root, &written),
             };
             total = total.saturating_add(length);
         }
@@ -131,11 +131,11 @@ pub(super) fn is_leaf(graph: &Graph, id: NodeId) -> bool {
 
 /// Returns the approximate length of a node's formula in characters; `written` has the lengths of its unnamed
 /// operands.
-pub(super) fn own_length(graph: &Graph, id: NodeId, written: &HashMap<NodeId, u64>) -> u64 {
+pub(super) fn estimate_length(graph: &Graph, id: NodeId, written: &HashMap<NodeId, u64>) -> u64 {
     let part = |id: &NodeId| match (written.get(id), graph.name(*id)) {
         (Some(known), _) => *known,
         (None, Some(name)) => name.len() as u64,
-        (None, None) => leaf_length(graph, *id),
+        (None, None) => estimate_leaf_length(graph, *id),
     };
     let parts = |ids: &mut dyn Iterator<Item = &NodeId>, around: u64| {
         ids.fold(around, |sum, id| sum.saturating_add(part(id)))
@@ -157,7 +157,7 @@ pub(super) fn own_length(graph: &Graph, id: NodeId, written: &HashMap<NodeId, u6
     }
 }
 
-fn leaf_length(graph: &Graph, id: NodeId) -> u64 {
+fn estimate_leaf_length(graph: &Graph, id: NodeId) -> u64 {
     match graph.operation(id) {
         Operation::Constant(_) => 2,
         Operation::Table(_) => 14,

@@ -2,7 +2,9 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::tree::{Choice, Formula, Level, MatrixPart, Term, powers_of_ten, small_fraction};
+use super::tree::{
+    Choice, Formula, Level, MatrixPart, Term, find_small_fraction, split_powers_of_ten,
+};
 use crate::symbolic::table_text;
 
 /// Formula with the level of its context.
@@ -132,14 +134,14 @@ fn matrix(f: &mut Formatter<'_>, parts: &[MatrixPart]) -> fmt::Result {
 
 /// Writes the numeric factor of a product, as a small fraction if the fraction is exact.
 fn factor(magnitude: f64) -> String {
-    match small_fraction(magnitude) {
+    match find_small_fraction(magnitude) {
         Some((numerator, denominator)) => format!("{numerator}/{denominator}"),
         None => number(magnitude),
     }
 }
 
 fn number(value: f64) -> String {
-    match powers_of_ten(value) {
+    match split_powers_of_ten(value) {
         Some((mantissa, exponent)) => format!("{mantissa}e{exponent}"),
         None => format!("{value}"),
     }

@@ -145,7 +145,7 @@ impl Formula {
             Self::Sum(_) | Self::Choice(_) => Level::Sum,
             Self::Number(value) if *value < 0.0 => Level::Sum,
             Self::Matrix(parts) if parts.len() > 1 => Level::Sum,
-            Self::Number(value) if powers_of_ten(*value).is_some() => Level::Product,
+            Self::Number(value) if split_powers_of_ten(*value).is_some() => Level::Product,
             Self::Quotient { .. } | Self::Matrix(_) | Self::Total(..) => Level::Product,
             Self::Table(TableKind::GrowingAmplitude) => Level::Product,
             Self::Power(..) | Self::Table(_) | Self::Transposed(_) => Level::Divisor,
@@ -202,7 +202,7 @@ impl Serialize for Formula {
 
 /// Returns numerator and denominator if the magnitude is exactly a fraction with small integers; `None` for integers
 /// and other numbers.
-pub fn small_fraction(value: f64) -> Option<(f64, u32)> {
+pub fn find_small_fraction(value: f64) -> Option<(f64, u32)> {
     if value.fract() == 0.0 {
         return None;
     }
@@ -213,12 +213,12 @@ pub fn small_fraction(value: f64) -> Option<(f64, u32)> {
     })
 }
 
-/// Largest power of pi that [`multiple_of_pi`] finds.
+/// Largest power of pi that [`find_multiple_of_pi`] finds.
 const MAX_POWER_OF_PI: i32 = 4;
 
 /// Returns factor and exponent if a magnitude equals, up to rounding, a small integer or fraction times a power of
 /// pi: 39.478... is 4 pi^2.
-pub fn multiple_of_pi(magnitude: f64) -> Option<(f64, i32)> {
+pub fn find_multiple_of_pi(magnitude: f64) -> Option<(f64, i32)> {
     (1..=MAX_POWER_OF_PI).find_map(|power| {
         let rough = magnitude / std::f64::consts::PI.powi(power);
         let exact = (1..=12_u32).find_map(|denominator| {
@@ -233,7 +233,7 @@ pub fn multiple_of_pi(magnitude: f64) -> Option<(f64, i32)> {
 }
 
 /// Returns mantissa and exponent of ten of a very small or large number; `None` for other numbers.
-pub fn powers_of_ten(value: f64) -> Option<(String, String)> {
+pub fn split_powers_of_ten(value: f64) -> Option<(String, String)> {
     let magnitude = value.abs();
     if magnitude == 0.0 || (1e-4..1e6).contains(&magnitude) {
         return None;
@@ -245,16 +245,16 @@ pub fn powers_of_ten(value: f64) -> Option<(String, String)> {
 
 #[cfg(test)]
 mod tests {
-    use super::multiple_of_pi;
+    use super::find_multiple_of_pi;
     use std::f64::consts::{PI, TAU};
 
     #[test]
     fn multiples_of_pi_are_found() {
-        assert_eq!(multiple_of_pi(39.47841760435743), Some((4.0, 2)));
-        assert_eq!(multiple_of_pi(TAU), Some((2.0, 1)));
-        assert_eq!(multiple_of_pi(PI / 6.0), Some((1.0 / 6.0, 1)));
+        assert_eq!(find_multiple_of_pi(39.47841760435743), Some((4.0, 2)));
+        assert_eq!(find_multiple_of_pi(TAU), Some((2.0, 1)));
+        assert_eq!(find_multiple_of_pi(PI / 6.0), Some((1.0 / 6.0, 1)));
         for other in [0.0, 1.0, 39.478, 9.81, 1e6 * PI, f64::NAN] {
-            assert_eq!(multiple_of_pi(other), None, "{other}");
+            assert_eq!(find_multiple_of_pi(other), None, "{other}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Linear complementarity problems: impulses or forces that prevent penetration and do not pull.
 //! The Delassus matrix is symmetric and positive semidefinite.
 
-use eomgen_codegen::independence::vectors::{dot, max_magnitude};
+use eomgen_codegen::independence::vectors::{dot, find_max_magnitude};
 
 /// A pivot below this fraction of its diagonal entry is rounding: its row depends on earlier rows.
 pub(super) const MIN_INDEPENDENT_PIVOT: f64 = 1e-10;
@@ -14,7 +14,7 @@ const ZERO_FRACTION: f64 = 1e-12;
 pub(crate) fn solve_complementarity(w: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
     let mut x = vec![0.0; c.len()];
     let mut pushing: Vec<usize> = Vec::new();
-    let zero = ZERO_FRACTION * max_magnitude(c);
+    let zero = ZERO_FRACTION * find_max_magnitude(c);
     let mut follows = vec![false; c.len()];
     // Each iteration lowers a convex function of x, so the loop ends; the limit guards against rounding.
     for _ in 0..10 * (c.len() + 1) {

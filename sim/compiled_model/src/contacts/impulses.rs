@@ -1,6 +1,6 @@
 //! Impacts: impulses of touching contacts, jumps of rates, and contacts that close after an impact.
 
-use eomgen_codegen::independence::vectors::{dot, max_magnitude};
+use eomgen_codegen::independence::vectors::{dot, find_max_magnitude};
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::complementarity::solve_complementarity;
@@ -339,7 +339,7 @@ impl Contacts {
 
 /// Returns true if no rate is negative after the given impulses.
 fn is_solution(delassus: &[Vec<f64>], rates: &[f64], impulses: &[f64]) -> bool {
-    let unsolved = MAX_UNSOLVED_RATE_FRACTION * max_magnitude(rates);
+    let unsolved = MAX_UNSOLVED_RATE_FRACTION * find_max_magnitude(rates);
     let mut rows = delassus.iter().zip(rates);
     rows.all(|(row, rate)| dot(row, impulses) + rate >= -unsolved)
 }

@@ -1,6 +1,6 @@
 //! Model at a position and time with given sides of its surfaces: rates for given momenta.
 
-use eomgen_codegen::independence::dependence::dependent_rows;
+use eomgen_codegen::independence::dependence::find_dependent_rows;
 use eomgen_codegen::independence::vectors::norm;
 use eomgen_codegen::program::evaluator::{CornerValues, Evaluator, Point};
 use nalgebra::{DMatrix, DVector};
@@ -111,7 +111,7 @@ fn select_independent_rows(rows: Vec<Row>, mass: &DMatrix<f64>) -> Vec<Row> {
         scaled.iter_mut().for_each(|entry| *entry /= length);
         scaled
     });
-    let dependent = dependent_rows(&scaled.collect::<Vec<_>>(), MAX_DEPENDENT_REMAINDER);
+    let dependent = find_dependent_rows(&scaled.collect::<Vec<_>>(), MAX_DEPENDENT_REMAINDER);
     let places = rows.into_iter().enumerate();
     let independent = places.filter(|(place, _)| !dependent.contains(place));
     independent.map(|(_, row)| row).collect()

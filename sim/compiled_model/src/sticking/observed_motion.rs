@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use eomgen_codegen::independence::vectors::max_magnitude;
+use eomgen_codegen::independence::vectors::find_max_magnitude;
 use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, Point, Stretch};
 use eomgen_sim::friction_discs::DiscArrival;
 use eomgen_sim::inputs::HeldInputs;
@@ -112,7 +112,7 @@ impl StickingMotion {
         let degrees = self.sided.degrees_of_freedom();
         let (coordinates, rates) = state[..2 * degrees].split_at(degrees);
         for (size, entries) in self.state_sizes.iter_mut().zip([coordinates, rates]) {
-            *size = size.max(max_magnitude(entries));
+            *size = size.max(find_max_magnitude(entries));
         }
         let (begin, _) = self.span.unwrap_or((t, t));
         self.span = Some((begin, t));

@@ -8,7 +8,8 @@ mod basis;
 mod products;
 
 use eomgen_codegen::symbolic::formula::{
-    Choice, Formula, Level, MatrixPart, Symbol, Term, letter, multiple_of_pi, powers_of_ten,
+    Choice, Formula, Level, MatrixPart, Symbol, Term, find_multiple_of_pi, letter,
+    split_powers_of_ten,
 };
 use eomgen_model_spec::model::Function;
 use maud::{Markup, html};
@@ -298,7 +299,7 @@ pub fn name_letters(name: &str) -> (String, String) {
 }
 
 fn number(value: f64) -> Markup {
-    match (multiple_of_pi(value.abs()), powers_of_ten(value)) {
+    match (find_multiple_of_pi(value.abs()), split_powers_of_ten(value)) {
         (Some(of), _) if value > 0.0 => products::power_of_pi(of),
         (_, Some((mantissa, exponent))) => power_of_ten(&mantissa, Some(&exponent)),
         (_, None) => power_of_ten(&value.to_string(), None),

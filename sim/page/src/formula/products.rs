@@ -2,7 +2,7 @@
 //! their differential or extend to the end of the product. The number before a quotient is part of its
 //! numerator and denominator.
 
-use eomgen_codegen::symbolic::formula::{Formula, Level, small_fraction};
+use eomgen_codegen::symbolic::formula::{Formula, Level, find_small_fraction};
 use eomgen_codegen::symbolic::tables::TableKind;
 use maud::{Markup, html};
 
@@ -13,7 +13,7 @@ pub(super) fn quotient(magnitude: f64, above: &[Formula], below: &[Formula]) -> 
     if below.is_empty() {
         return multiple(magnitude, above, Level::Product);
     }
-    let (numerator, denominator) = match small_fraction(magnitude) {
+    let (numerator, denominator) = match find_small_fraction(magnitude) {
         Some((numerator, denominator)) => (numerator, f64::from(denominator)),
         None => (magnitude, 1.0),
     };
@@ -65,7 +65,7 @@ fn rank(factor: &Formula) -> u8 {
 
 /// Returns the numerical factor before a product, as a fraction if it equals a small fraction.
 pub(super) fn factor(magnitude: f64) -> Markup {
-    match small_fraction(magnitude) {
+    match find_small_fraction(magnitude) {
         Some((numerator, denominator)) => {
             html! { mfrac { mn { (numerator.to_string()) } mn { (denominator) } } }
         }

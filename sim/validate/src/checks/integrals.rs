@@ -2,7 +2,7 @@
 //! not polynomials of the motion are compared.
 
 use eomgen_codegen::mechanics::fields::resolution::{
-    MAX_ERROR, State, has_nonlinear_integrals, worst_at_state,
+    MAX_ERROR, State, find_largest_error_at_state, has_nonlinear_integrals,
 };
 use eomgen_model_spec::model::Model;
 
@@ -36,7 +36,7 @@ pub fn check(
             state: &sample.state,
             inputs: &sample.inputs,
         };
-        let Some(found) = worst_at_state(model, &orders, at) else {
+        let Some(found) = find_largest_error_at_state(model, &orders, at) else {
             continue;
         };
         states += 1;

@@ -90,7 +90,7 @@ impl DoubleDouble {
         first + (self * (-first).exponential() - ONE)
     }
 
-    fn root(self) -> Self {
+    fn square_root(self) -> Self {
         match self.high == 0.0 {
             true => ZERO,
             false => {
@@ -145,8 +145,8 @@ impl Number for DoubleDouble {
                 let [sine, cosine] = a.sine_and_cosine();
                 sine / cosine
             }
-            Function::Asin => a.angle(((ONE - a) * (ONE + a)).root()),
-            Function::Acos => ((ONE - a) * (ONE + a)).root().angle(a),
+            Function::Asin => a.angle(((ONE - a) * (ONE + a)).square_root()),
+            Function::Acos => ((ONE - a) * (ONE + a)).square_root().angle(a),
             Function::Atan => a.angle(ONE),
             Function::Atan2 => a.angle(b),
             Function::Sinh => a.hyperbolic()[0],
@@ -157,7 +157,7 @@ impl Number for DoubleDouble {
             }
             Function::Exp => a.exponential(),
             Function::Ln => a.logarithm(),
-            Function::Sqrt => a.root(),
+            Function::Sqrt => a.square_root(),
             Function::Abs => larger(a, -a),
             Function::Sign => {
                 Self::indicator(a.is_greater(ZERO)) - Self::indicator(ZERO.is_greater(a))

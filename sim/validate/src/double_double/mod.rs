@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn third_times_three_is_one_to_thirty_digits() {
+    fn one_third_times_three_is_one_to_thirty_digits() {
         let third = DoubleDouble::new(1.0).quotient(DoubleDouble::new(3.0));
         let rest = third * DoubleDouble::new(3.0) - DoubleDouble::new(1.0);
         assert!(third.low != 0.0);

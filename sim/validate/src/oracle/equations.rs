@@ -182,7 +182,7 @@ impl Equations {
     }
 
     /// Returns the multipliers of the constraints with the magnitudes of their terms, from A M^-1 A^T lambda = b - A
-    /// M^-1 (f - c); for dependent constraints, the solution of least norm, scaled with the square roots of the
+    /// M^-1 (f - c). For dependent constraints, it is the solution of least norm, scaled with the square roots of the
     /// diagonal entries. Returns `None` if the accelerations cannot be solved for.
     pub fn multipliers(&self) -> Option<Vec<Conditioned>> {
         if self.constraints.is_empty() {

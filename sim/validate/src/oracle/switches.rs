@@ -1,5 +1,5 @@
 //! Switches of the model: quantities at whose zeros a piecewise function changes its branch. Functions inside integrals
-//! and sums over modes are excluded, because each position or mode has a side of its own.
+//! and sums over modes are excluded, because each position or mode has a separate side.
 
 use super::evaluate::Pass;
 use super::scene::Direction;

@@ -175,16 +175,19 @@ proptest! {
 
     #[test]
     fn scales_do_not_change_the_motion(numbers in numbers(), t in 0.0..10.0_f64) {
-        scales_do_not_matter::<1>(&numbers, t)?;
-        scales_do_not_matter::<4>(&numbers, t)?;
-        scales_do_not_matter::<16>(&numbers, t)?;
-        scales_do_not_matter::<64>(&numbers, t)?;
+        assert_scales_do_not_change_rates::<1>(&numbers, t)?;
+        assert_scales_do_not_change_rates::<4>(&numbers, t)?;
+        assert_scales_do_not_change_rates::<16>(&numbers, t)?;
+        assert_scales_do_not_change_rates::<64>(&numbers, t)?;
     }
 }
 
 /// Compares the prepared right-hand side with the named coefficients, with the scales (1, 1) and with the scales of the
 /// paper.
-fn scales_do_not_matter<const S: usize>(numbers: &[f64], t: f64) -> Result<(), TestCaseError> {
+fn assert_scales_do_not_change_rates<const S: usize>(
+    numbers: &[f64],
+    t: f64,
+) -> Result<(), TestCaseError> {
     let parameters = PlanetaryArmParameters::default();
     for (omega_n, b_c) in [(1.0, 1.0), (3.0885e4, 25e-6)] {
         let equation = Equation22::<S>::new(&parameters, omega_n, b_c);

@@ -23,7 +23,7 @@ fn with(text: &str, from: &str, to: &str) -> String {
 }
 
 /// Returns the names of the references that apply, and the names and reasons of the others.
-fn of(text: &str, order: usize) -> (Vec<String>, Vec<(String, String)>) {
+fn list_references(text: &str, order: usize) -> (Vec<String>, Vec<(String, String)>) {
     let model = model(text);
     let values = model.parameter_values().expect("values");
     let found = reference_equations(&model, order, &values);
@@ -38,20 +38,20 @@ fn of(text: &str, order: usize) -> (Vec<String>, Vec<(String, String)>) {
 #[test]
 fn comments_numbers_and_observables_keep_the_reference() {
     let closed = (vec!["closed_form".to_owned()], Vec::new());
-    assert_eq!(of(EMPS, 0), closed);
+    assert_eq!(list_references(EMPS, 0), closed);
     let commented = format!("# mine\n{EMPS}");
-    assert_eq!(of(&commented, 0), closed);
+    assert_eq!(list_references(&commented, 0), closed);
     let observed =
         format!("{EMPS}\n[observables]\nmomentum = {{ value = \"M*dot(q)\", unit = \"N s\" }}\n");
-    assert_eq!(of(&observed, 0), closed);
+    assert_eq!(list_references(&observed, 0), closed);
     let unused = with(
         EMPS,
         "[coordinates]",
         "offset = { value = 3, unit = \"N\" }\n[coordinates]",
     );
-    assert_eq!(of(&unused, 0), closed);
+    assert_eq!(list_references(&unused, 0), closed);
     let renamed = with(EMPS, "name  = \"emps\"", "name = \"axis_3\"");
-    assert_eq!(of(&renamed, 0), closed);
+    assert_eq!(list_references(&renamed, 0), closed);
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn references_use_the_values_of_the_model() {
 
 #[test]
 fn other_equations_have_no_reference_but_a_reason() {
-    let (names, absent) = of(&with(EMPS, "1/2*M*dot(q)^2", "3/2*M*dot(q)^2"), 0);
+    let (names, absent) = list_references(&with(EMPS, "1/2*M*dot(q)^2", "3/2*M*dot(q)^2"), 0);
     assert!(names.is_empty());
     let [(name, reason)] = &absent[..] else {
         panic!("{absent:?}");
@@ -88,7 +88,7 @@ fn other_equations_have_no_reference_but_a_reason() {
     assert_eq!(reason, expected);
     let spring = "[model]\nname = \"spring\"\ntitle = \"Spring\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
                   [coordinates]\nx = { unit = \"m\" }\n[kinetic]\nm = \"1/2*m*dot(x)^2\"\n";
-    let (names, absent) = of(spring, 0);
+    let (names, absent) = list_references(spring, 0);
     assert!(names.is_empty());
     assert_eq!(absent[0].1, "there are no hand-written equations of spring");
 }
@@ -97,7 +97,7 @@ fn other_equations_have_no_reference_but_a_reason() {
 fn another_machine_of_a_shipped_name_is_not_compared() {
     let namesake = "[model]\nname = \"crane\"\ntitle = \"Trolley\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
                     [coordinates]\nx = { unit = \"m\" }\n[kinetic]\nm = \"1/2*m*dot(x)^2\"\n";
-    let (names, absent) = of(namesake, 0);
+    let (names, absent) = list_references(namesake, 0);
     assert!(names.is_empty());
     assert_eq!(absent[0].1, "there are no hand-written equations of crane");
 }
@@ -106,14 +106,17 @@ fn another_machine_of_a_shipped_name_is_not_compared() {
 fn arm_references_allow_other_plays_but_not_other_radii() {
     let wider = with(ARM, "b_sp = { value = 25e-6", "b_sp = { value = 80e-6");
     let heavier = with(&wider, "value = \"M_s*r_s^2\"", "value = 1e-3");
-    let (names, absent) = of(&heavier, 4);
+    let (names, absent) = list_references(&heavier, 4);
     assert_eq!(names, ["equation_22", "equation_22_dimensionless"]);
     assert!(absent.is_empty());
-    let (names, absent) = of(&heavier, 9);
+    let (names, absent) = list_references(&heavier, 9);
     assert_eq!(names, ["equation_22"]);
     assert_eq!(absent[0].0, "reference equation_22_dimensionless");
-    assert_eq!(of(&heavier, 0).0, ["equation_12", "equation_10"]);
-    let (names, absent) = of(&with(ARM, "\"m*z_s*cos(alpha)/2\"", "\"m*z_s/2\""), 4);
+    assert_eq!(
+        list_references(&heavier, 0).0,
+        ["equation_12", "equation_10"]
+    );
+    let (names, absent) = list_references(&with(ARM, "\"m*z_s*cos(alpha)/2\"", "\"m*z_s/2\""), 4);
     assert!(names.is_empty());
     assert!(
         absent[0]
@@ -124,8 +127,8 @@ fn arm_references_allow_other_plays_but_not_other_radii() {
 
 #[test]
 fn flexible_links_have_no_closed_form() {
-    assert_eq!(of(TWO_LINKS, 0).0, ["closed_form"]);
-    let (names, absent) = of(TWO_LINKS, 2);
+    assert_eq!(list_references(TWO_LINKS, 0).0, ["closed_form"]);
+    let (names, absent) = list_references(TWO_LINKS, 2);
     assert!(names.is_empty());
     assert_eq!(absent[0].1, "the closed form needs a state of 4 entries");
 }

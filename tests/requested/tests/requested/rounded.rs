@@ -23,7 +23,7 @@ impl<const DIGITS: u32> Rounded<DIGITS> {
     }
 
     /// Returns a result; its error is the propagated error plus the rounding error of the operation.
-    pub fn result(number: f64, error: f64) -> Self {
+    pub fn with_rounding(number: f64, error: f64) -> Self {
         Self {
             number,
             error: error + Self::UNIT * number.abs(),
@@ -34,14 +34,14 @@ impl<const DIGITS: u32> Rounded<DIGITS> {
 impl<const DIGITS: u32> Add for Rounded<DIGITS> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        Self::result(self.number + other.number, self.error + other.error)
+        Self::with_rounding(self.number + other.number, self.error + other.error)
     }
 }
 
 impl<const DIGITS: u32> Sub for Rounded<DIGITS> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
-        Self::result(self.number - other.number, self.error + other.error)
+        Self::with_rounding(self.number - other.number, self.error + other.error)
     }
 }
 
@@ -49,7 +49,7 @@ impl<const DIGITS: u32> Mul for Rounded<DIGITS> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         let error = self.number.abs() * other.error + other.number.abs() * self.error;
-        Self::result(self.number * other.number, error)
+        Self::with_rounding(self.number * other.number, error)
     }
 }
 
@@ -58,7 +58,7 @@ impl<const DIGITS: u32> Div for Rounded<DIGITS> {
     fn div(self, other: Self) -> Self {
         let quotient = self.number / other.number;
         let error = (self.error + quotient.abs() * other.error) / other.number.abs();
-        Self::result(quotient, error)
+        Self::with_rounding(quotient, error)
     }
 }
 

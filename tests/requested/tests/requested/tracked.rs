@@ -22,13 +22,13 @@ macro_rules! tracked_scalar_of {
             fn function<F: $module::Function>(self) -> Self {
                 let value = F::value(self.number);
                 let slope = F::slope(self.number, value);
-                Self::result(value, slope.abs() * self.error + f64::EPSILON * value.abs())
+                Self::with_rounding(value, slope.abs() * self.error + f64::EPSILON * value.abs())
             }
             fn function_of_two<F: $module::FunctionOfTwo>(self, other: Self) -> Self {
                 let value = F::value(self.number, other.number);
                 let [first, second] = F::slopes(self.number, other.number, value);
                 let error = first.abs() * self.error + second.abs() * other.error;
-                Self::result(value, error + f64::EPSILON * value.abs())
+                Self::with_rounding(value, error + f64::EPSILON * value.abs())
             }
         }
     )*};

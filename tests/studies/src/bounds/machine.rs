@@ -23,7 +23,7 @@ const STATES: usize = 1000;
 const KINDS: [&str; 4] = ["mass_matrix", "velocity_terms", "forces", "rates"];
 
 /// Bounds and errors of the quantities of one kind, for one machine in one precision.
-pub struct Judged {
+pub struct KindSummary {
     machine: String,
     format: Format,
     kind: String,
@@ -35,7 +35,7 @@ pub struct Judged {
     pub failures: String,
 }
 
-impl fmt::Display for Judged {
+impl fmt::Display for KindSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [bounded, all] = self.counts;
         let (machine, kind) = (&self.machine, &self.kind);
@@ -76,7 +76,7 @@ pub fn machines() -> Result<Vec<PathBuf>, String> {
 ///
 /// # Errors
 /// A machine that cannot be derived, or whose recorded operations are not bit-identical to the evaluator.
-pub fn judge(path: &Path, sample: &Sample) -> Result<Vec<Judged>, String> {
+pub fn judge(path: &Path, sample: &Sample) -> Result<Vec<KindSummary>, String> {
     let name = path
         .file_stem()
         .unwrap_or_default()
@@ -148,7 +148,7 @@ fn judge_states(
     Ok(found)
 }
 
-fn row(machine: &str, format: Format, kind: &str, pairs: &[(RoundingBound, f64)]) -> Judged {
+fn row(machine: &str, format: Format, kind: &str, pairs: &[(RoundingBound, f64)]) -> KindSummary {
     let own = pairs
         .iter()
         .filter(|(bound, _)| bound.quantity.name.starts_with(kind));
@@ -156,14 +156,19 @@ fn row(machine: &str, format: Format, kind: &str, pairs: &[(RoundingBound, f64)]
         let number = bound.bound.as_ref().copied().unwrap_or(f64::INFINITY);
         (bound.quantity.name.clone(), number, *error)
     });
-    judged(machine, format, kind, &numbers.collect::<Vec<_>>())
+    summarise_kind(machine, format, kind, &numbers.collect::<Vec<_>>())
 }
 
-fn row_of_states(machine: &str, format: Format, found: &[(String, f64, f64)]) -> Judged {
-    judged(machine, format, "rates at single states", found)
+fn row_of_states(machine: &str, format: Format, found: &[(String, f64, f64)]) -> KindSummary {
+    summarise_kind(machine, format, "rates at single states", found)
 }
 
-fn judged(machine: &str, format: Format, kind: &str, found: &[(String, f64, f64)]) -> Judged {
+fn summarise_kind(
+    machine: &str,
+    format: Format,
+    kind: &str,
+    found: &[(String, f64, f64)],
+) -> KindSummary {
     let bounded = found.iter().filter(|(_, bound, _)| bound.is_finite());
     let above = found.iter().filter(|(_, bound, error)| error > bound);
     let failures = above.map(|(name, bound, error)| {
@@ -177,7 +182,7 @@ fn judged(machine: &str, format: Format, kind: &str, found: &[(String, f64, f64)
         .map(|(_, bound, error)| (*bound, *error))
         .collect();
     pairs.sort_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)));
-    Judged {
+    KindSummary {
         machine: machine.to_owned(),
         format,
         kind: kind.to_owned(),

@@ -8,7 +8,7 @@ use std::fmt::Write;
 use rayon::prelude::*;
 
 use crate::sample::Sample;
-use machine::{Judged, judge, machines};
+use machine::{KindSummary, judge, machines};
 
 /// Runs the study with `count` points for each machine and precision, and returns its table.
 ///
@@ -16,7 +16,7 @@ use machine::{Judged, judge, machines};
 /// Returns the table and a report of all errors above their bounds.
 pub fn run(sample: &Sample) -> Result<String, String> {
     let machines = machines()?;
-    let judged: Vec<Result<Vec<Judged>, String>> = machines
+    let judged: Vec<Result<Vec<KindSummary>, String>> = machines
         .par_iter()
         .map(|path| judge(path, sample))
         .collect();

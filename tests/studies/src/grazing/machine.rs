@@ -54,7 +54,7 @@ impl Numbers {
         (self.0.next_u64() >> 11) as f64 * 0.5_f64.powi(53)
     }
 
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    fn draw_between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
@@ -91,7 +91,7 @@ impl Machine {
         ];
         let stop = laws[numbers.below(laws.len())];
         let hardening = match numbers.happens(0.3) {
-            true => springs[0] / (size * size) * numbers.between(0.1, 2.0),
+            true => springs[0] / (size * size) * numbers.draw_between(0.1, 2.0),
             false => 0.0,
         };
         // Solvers do not support sticking friction together with impacts.
@@ -99,7 +99,9 @@ impl Machine {
             true => springs[0] * size * numbers.scale(1e-3, 5e-2),
             false => 0.0,
         };
-        let mut initial: Vec<f64> = (0..2 * count).map(|_| numbers.between(-1.0, 1.0)).collect();
+        let mut initial: Vec<f64> = (0..2 * count)
+            .map(|_| numbers.draw_between(-1.0, 1.0))
+            .collect();
         let frequency = (springs[0] / masses.iter().sum::<f64>()).sqrt();
         let at = numbers.below(count);
         if stop == Stop::Impact {
@@ -117,10 +119,10 @@ impl Machine {
             name: format!("seed {seed}, machine {place}"),
             at,
             stiffness_ratio: numbers.scale(1e2, 1e6),
-            restitution: numbers.between(0.1, 1.0),
+            restitution: numbers.draw_between(0.1, 1.0),
             depth: sign * numbers.scale(1e-12, 1e-2),
             choice: numbers.unit(),
-            duration: numbers.between(5.0, 12.0) * TAU / frequency,
+            duration: numbers.draw_between(5.0, 12.0) * TAU / frequency,
             masses,
             springs,
             hardening,

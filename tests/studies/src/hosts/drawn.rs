@@ -56,19 +56,25 @@ fn write(name: &str, parameters: &[(&str, &str, f64)], rest: &str) -> String {
     text + rest
 }
 
-fn between(random: &mut Random, low: f64, high: f64) -> f64 {
+fn draw_between(random: &mut Random, low: f64, high: f64) -> f64 {
     low + (high - low) * random.unit()
 }
 
 fn puck(random: &mut Random) -> Drawn {
     let parameters = [
-        ("m", "kg", between(random, 0.5, 2.0)),
-        ("mu", "1", between(random, 0.1, 0.5)),
+        ("m", "kg", draw_between(random, 0.5, 2.0)),
+        ("mu", "1", draw_between(random, 0.1, 0.5)),
         ("g", "m/s^2", 9.81),
-        ("k", "N/m", between(random, 1.0, 30.0)),
+        ("k", "N/m", draw_between(random, 1.0, 30.0)),
     ];
-    let (x, y) = (between(random, 0.2, 1.0), between(random, -1.0, 1.0));
-    let (v_x, v_y) = (between(random, 0.5, 2.0), between(random, -2.0, 2.0));
+    let (x, y) = (
+        draw_between(random, 0.2, 1.0),
+        draw_between(random, -1.0, 1.0),
+    );
+    let (v_x, v_y) = (
+        draw_between(random, 0.5, 2.0),
+        draw_between(random, -2.0, 2.0),
+    );
     let rest = format!(
         "[coordinates]\n\
          x = {{ unit = \"m\", initial = {x}, initial_rate = {v_x} }}\n\
@@ -88,15 +94,18 @@ fn puck(random: &mut Random) -> Drawn {
 
 fn box_on_floor(random: &mut Random) -> Drawn {
     let parameters = [
-        ("m", "kg", between(random, 0.5, 3.0)),
-        ("J", "kg m^2", between(random, 0.02, 0.1)),
-        ("b", "m", between(random, 0.1, 0.3)),
-        ("h", "m", between(random, 0.1, 0.3)),
+        ("m", "kg", draw_between(random, 0.5, 3.0)),
+        ("J", "kg m^2", draw_between(random, 0.02, 0.1)),
+        ("b", "m", draw_between(random, 0.1, 0.3)),
+        ("h", "m", draw_between(random, 0.1, 0.3)),
         ("g", "m/s^2", 9.81),
-        ("e", "1", between(random, 0.1, 0.6)),
-        ("mu", "1", between(random, 0.2, 0.7)),
+        ("e", "1", draw_between(random, 0.1, 0.6)),
+        ("mu", "1", draw_between(random, 0.2, 0.7)),
     ];
-    let (tilt, speed) = (between(random, -0.5, 0.5), between(random, -1.0, 1.0));
+    let (tilt, speed) = (
+        draw_between(random, -0.5, 0.5),
+        draw_between(random, -1.0, 1.0),
+    );
     let rest = format!(
         "[coordinates]\n\
          x = {{ unit = \"m\", initial_rate = {speed} }}\n\
@@ -121,13 +130,16 @@ fn box_on_floor(random: &mut Random) -> Drawn {
 /// Returns a bead on a wire with a corner, which passes a step of the potential energy.
 fn corner(random: &mut Random) -> Drawn {
     let parameters = [
-        ("m", "kg", between(random, 0.5, 2.0)),
-        ("a", "1", between(random, 0.3, 1.5)),
-        ("U", "J", between(random, 0.1, 1.0)),
-        ("s", "m", between(random, 0.2, 0.8)),
-        ("k", "N/m", between(random, 0.5, 3.0)),
+        ("m", "kg", draw_between(random, 0.5, 2.0)),
+        ("a", "1", draw_between(random, 0.3, 1.5)),
+        ("U", "J", draw_between(random, 0.1, 1.0)),
+        ("s", "m", draw_between(random, 0.2, 0.8)),
+        ("k", "N/m", draw_between(random, 0.5, 3.0)),
     ];
-    let (x, v) = (between(random, -1.5, -0.5), between(random, 0.3, 2.0));
+    let (x, v) = (
+        draw_between(random, -1.5, -0.5),
+        draw_between(random, 0.3, 2.0),
+    );
     let rest = format!(
         "[coordinates]\nx = {{ unit = \"m\", initial = {x}, initial_rate = {v} }}\n\
          [definitions]\ny = \"a*max(x, 0)\"\n\
@@ -151,17 +163,17 @@ const PENDULUM: &str = "[coordinates]\ntheta = { unit = \"rad\", initial = 0.3 }
 
 fn pendulum_parameters(random: &mut Random) -> [(&'static str, &'static str, f64); 4] {
     [
-        ("m", "kg", between(random, 0.5, 2.0)),
-        ("l", "m", between(random, 0.3, 1.0)),
+        ("m", "kg", draw_between(random, 0.5, 2.0)),
+        ("l", "m", draw_between(random, 0.3, 1.0)),
         ("g", "m/s^2", 9.81),
-        ("c", "N m s", between(random, 0.05, 0.5)),
+        ("c", "N m s", draw_between(random, 0.05, 0.5)),
     ]
 }
 
 fn driven_pendulum(random: &mut Random) -> Drawn {
     let parameters = pendulum_parameters(random);
-    let amplitude = between(random, 0.5, 3.0);
-    let frequency = between(random, 1.0, 8.0);
+    let amplitude = draw_between(random, 0.5, 3.0);
+    let frequency = draw_between(random, 1.0, 8.0);
     Drawn {
         text: write("driven_pendulum", &parameters, PENDULUM),
         kind: Some(Kind::InputFunction),
@@ -180,12 +192,12 @@ fn driven_pendulum(random: &mut Random) -> Drawn {
 fn servo(random: &mut Random) -> Drawn {
     let mut parameters = pendulum_parameters(random).to_vec();
     parameters.extend([
-        ("k_p", "N m", between(random, 5.0, 20.0)),
-        ("k_d", "N m s", between(random, 0.2, 1.0)),
-        ("r", "rad", between(random, -1.0, 1.0)),
-        ("u_max", "N m", between(random, 5.0, 15.0)),
+        ("k_p", "N m", draw_between(random, 5.0, 20.0)),
+        ("k_d", "N m s", draw_between(random, 0.2, 1.0)),
+        ("r", "rad", draw_between(random, -1.0, 1.0)),
+        ("u_max", "N m", draw_between(random, 5.0, 15.0)),
     ]);
-    let period = between(random, 5e-3, 2e-2);
+    let period = draw_between(random, 5e-3, 2e-2);
     let rest = format!(
         "{PENDULUM}[controllers.servo]\nperiod = {period:e}\ndelay = {:e}\n\
          outputs = {{ u = \"clamp(k_p*(r - quantise(theta, 1e-4)) - k_d*dot(theta), -u_max, u_max)\" }}\n",
@@ -202,16 +214,16 @@ fn servo(random: &mut Random) -> Drawn {
 /// Returns a four-bar linkage. The initial state violates the constraints slightly.
 fn linkage(random: &mut Random) -> Drawn {
     let [a, b, c] =
-        [(0.2, 0.3), (0.7, 0.9), (0.5, 0.7)].map(|(low, high)| between(random, low, high));
+        [(0.2, 0.3), (0.7, 0.9), (0.5, 0.7)].map(|(low, high)| draw_between(random, low, high));
     let parameters = [
         ("a", "m", a),
         ("b", "m", b),
         ("c", "m", c),
         ("d", "m", 0.8),
-        ("m", "kg", between(random, 0.5, 2.0)),
+        ("m", "kg", draw_between(random, 0.5, 2.0)),
         ("g", "m/s^2", 9.81),
     ];
-    let angle = between(random, 0.5, 1.5);
+    let angle = draw_between(random, 0.5, 1.5);
     let rest = format!(
         "[coordinates]\n\
          alpha = {{ unit = \"rad\", initial = {angle} }}\n\

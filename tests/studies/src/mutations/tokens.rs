@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn comments_and_spaces_are_no_tokens() {
+    fn comments_and_spaces_are_not_tokens() {
         let source = "/* 1 */ x = -1.5e-3*s_2; // y\nz(\"a b\")";
         let expected = "x = - 1.5e-3 * s_2 ; z ( \"a b\" )";
         assert_eq!(without_comments(source), expected);

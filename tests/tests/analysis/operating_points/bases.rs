@@ -205,7 +205,7 @@ fn certificate_fails_for_another_basis() {
 
 /// At the highest order the frequencies still match the roots, and the sine shapes are exact.
 #[test]
-fn highest_order_keeps_its_digits() {
+fn highest_order_frequencies_are_accurate() {
     let folder = tempfile::tempdir().expect("a folder");
     for (basis, quarters) in [("free_free", 2.0), ("pinned_clamped", 1.0), ("string", 0.0)] {
         let model = write_model(folder.path(), &uniform(basis, 128));

@@ -248,7 +248,7 @@ contact = { on = "x", value = "-h*sqrt(max(x - d, 0))*d" }
 }
 
 #[test]
-fn moving_base_is_no_equilibrium() {
+fn moving_base_is_not_an_equilibrium() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = "[model]\nname = \"base\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
                 k = { value = 100, unit = \"N/m\" }\n[coordinates]\nx = { unit = \"m\" }\n\
@@ -272,7 +272,7 @@ fn moving_base_is_no_equilibrium() {
 }
 
 #[test]
-fn prescribed_motion_rests_at_an_equilibrium() {
+fn rates_of_prescribed_motion_are_zero_at_an_equilibrium() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = "[model]\nname = \"load\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
                 l = { value = 2, unit = \"m\" }\ng = { value = 9.81, unit = \"m/s^2\" }\n\
@@ -355,7 +355,7 @@ fn order_of_settings_has_no_effect() {
 }
 
 #[test]
-fn free_inputs_are_zero_where_nothing_is_to_be_balanced() {
+fn free_inputs_are_zero_if_no_force_must_be_balanced() {
     let cart = shipped("cart_two_arms");
     for input in ["0", "0.3", "-2", "1e-9", "1e6"] {
         for others in [&[][..], &["--fix", "x_dot=0"], &["--state", "theta_2=0.7"]] {
@@ -394,7 +394,7 @@ motor = { on = "phi", value = "M" }
 "#;
 
 #[test]
-fn speed_of_a_conical_pendulum_holds_its_angle_without_torque() {
+fn conical_pendulum_at_its_speed_is_in_equilibrium_without_torque() {
     let folder = tempfile::tempdir().expect("a folder");
     let model = write_model(folder.path(), CONICAL);
     for (angle, others) in [

@@ -31,7 +31,7 @@ fn lost_stiffness_is_rejected_with_its_name() {
 }
 
 #[test]
-fn frequency_zero_states_the_greatest_frequency_that_rounding_hides() {
+fn frequency_zero_reports_its_accuracy() {
     let folder = tempfile::tempdir().expect("a folder");
     let right = f64::sqrt(12.5) / TAU;
     for stiff in ["1e10", "1e11", "1e12", "1e13", "1e14", "1e15"] {

@@ -86,7 +86,7 @@ fn quadratic_drag_is_linearised_at_rest_and_in_motion() {
 }
 
 #[test]
-fn powers_of_norms_have_the_derivative_0_at_rest() {
+fn powers_of_norms_have_zero_derivative_at_rest() {
     let folder = tempfile::tempdir().expect("a folder");
     for (drag, spring) in [
         ("-c*norm(v)^3/s^2*v", "-k*(norm(r)/l)^3*r"),
@@ -125,7 +125,7 @@ bed = "1/4*integral(a*w^4, w)"
 "#;
 
 #[test]
-fn bed_of_fourth_power_raises_frequencies_with_the_deflection() {
+fn quartic_bed_energy_raises_frequencies_with_the_deflection() {
     let folder = tempfile::tempdir().expect("a folder");
     let model = write_model(folder.path(), STRING_ON_BED);
     let (mu, tension, a, length) = (0.5, 8.0, 30.0, 2.0);

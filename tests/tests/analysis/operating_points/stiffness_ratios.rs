@@ -54,7 +54,7 @@ fn trim(text: &str, options: &[&str]) -> Result<[f64; 2], String> {
     }
 }
 
-fn assert_computed_or_refused(found: Result<[f64; 2], String>, right: [f64; 2], place: &str) {
+fn assert_computed_or_rejected(found: Result<[f64; 2], String>, right: [f64; 2], place: &str) {
     match found {
         Ok(found) => {
             for (found, right) in found.into_iter().zip(right) {
@@ -75,7 +75,7 @@ fn assert_computed_or_refused(found: Result<[f64; 2], String>, right: [f64; 2], 
 }
 
 #[test]
-fn soft_spring_beside_a_stiff_joint_is_computed_or_refused() {
+fn soft_spring_with_a_stiff_joint_is_computed_or_rejected() {
     for exponent in (3..18).chain([30, 100, 150]) {
         let [on_spring, on_joint] = [0.3, 0.3 + 0.3 * 10.0_f64.powi(-exponent)];
         let turned = [
@@ -100,7 +100,7 @@ fn soft_spring_beside_a_stiff_joint_is_computed_or_refused() {
                     let found = trim(&text, &["--state", start]);
                     let place = format!("{x}, {y}, K = {stiffness} {unit}, {start}: {found:?}");
                     assert!(exponent > 8 || found.is_ok(), "{place}");
-                    assert_computed_or_refused(found, right, &place);
+                    assert_computed_or_rejected(found, right, &place);
                 }
             }
         }
@@ -108,11 +108,11 @@ fn soft_spring_beside_a_stiff_joint_is_computed_or_refused() {
 }
 
 #[test]
-fn stiff_joint_beside_a_soft_spring_is_computed_from_rest() {
+fn stiff_joint_with_a_soft_spring_is_computed_from_rest() {
     for exponent in [9, 11, 12] {
         let text = masses("p", "q", &format!("1e{exponent}"), "N/m");
         let found = trim(&text, &[]).unwrap_or_else(|reason| panic!("1e{exponent}: {reason}"));
-        assert_computed_or_refused(Ok(found), [0.3, 0.3], &format!("1e{exponent}"));
+        assert_computed_or_rejected(Ok(found), [0.3, 0.3], &format!("1e{exponent}"));
     }
 }
 

@@ -119,7 +119,7 @@ fn hash_includes_the_table() {
 }
 
 #[test]
-fn table_needs_a_folder() {
+fn specification_text_with_table_needs_a_folder() {
     let found = eomgen_model_spec::check(Source::new("beam.toml", BEAM)).expect_err("no folder");
     let said = found.render(false);
     assert!(
@@ -130,7 +130,7 @@ fn table_needs_a_folder() {
 }
 
 #[test]
-fn edits_keep_the_folder() {
+fn edited_models_find_their_table() {
     let folder = tempfile::tempdir().expect("a folder");
     let force = "[inputs]\nu = { unit = \"N\" }\n[forces]\n\
                  load = { on = \"at(w, x_0 + l/2)\", value = \"u\" }\n[potential]";

@@ -4,7 +4,7 @@ use std::fs;
 
 use eomgen_tests::program::{run, run_accepted, text};
 
-use super::place::{SweepFolder, accept, column, merge_command, refuse, table};
+use super::sweep_folder::{SweepFolder, accept, column, expect_rejection, merge_command, table};
 
 /// Oscillator m x'' + c x' + k x = u with a cubic spring, and a rotating disc that the force does not drive.
 const DRIVEN: &str = r#"
@@ -111,7 +111,7 @@ fn messages(arguments: &[String]) -> String {
     said
 }
 
-fn greatest(values: &[f64]) -> f64 {
+fn find_maximum(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::MIN, f64::max)
 }
 
@@ -170,7 +170,7 @@ fn driven_sweeps_match_rows_of_simulate() {
             let names = ["x", "x_dot", "energy"];
             let [x, rate, energy] = simulated(&place, &more, names);
             let last = |rows: &[f64]| rows.last().copied().expect("a row");
-            let rights = [greatest(&x), last(&rate), last(&energy)];
+            let rights = [find_maximum(&x), last(&rate), last(&energy)];
             for (name, right) in ["max:x", "final:x_dot", "final:energy"]
                 .into_iter()
                 .zip(rights)
@@ -334,7 +334,7 @@ fn record_gives_start_and_end() {
     assert!((exponent + 0.25).abs() < error, "{exponent} +- {error}");
     assert_eq!(column(&swept, "poincare:x_status"), [0.0, 0.0]);
     let late = ["--until", "9"];
-    let message = refuse(&arguments(
+    let message = expect_rejection(&arguments(
         &place,
         "sweep",
         "other",
@@ -431,13 +431,13 @@ fn shards_of_a_driven_sweep_give_the_same_bytes() {
             assert!(bytes(name) == bytes(&shards), "{name}: {file}");
         }
         let other = [&options[..], &["--state", "x_dot=1"]].concat();
-        let message = refuse(&arguments(&place, "sweep", name, &other));
+        let message = expect_rejection(&arguments(&place, "sweep", name, &other));
         assert!(message.contains("differences: --state"), "{message}");
     }
 }
 
 #[test]
-fn invalid_conditions_are_rejected_with_their_place() {
+fn invalid_conditions_are_rejected_with_location() {
     let place = folder(DRIVEN);
     let options = ["--vary", "h=0:5:4", "--measure", "max:x", "--until", "1"];
     for (more, parts) in [
@@ -460,7 +460,7 @@ fn invalid_conditions_are_rejected_with_their_place() {
         ),
         (&["--record-name", "train[1]"], &["--record"]),
     ] {
-        let message = refuse(&arguments(
+        let message = expect_rejection(&arguments(
             &place,
             "sweep",
             "map",

@@ -4,7 +4,7 @@
 use eomgen_tests::models::path;
 use eomgen_tests::program::run_accepted;
 
-use super::place::{SweepFolder, accept, column, refuse, table};
+use super::sweep_folder::{SweepFolder, accept, column, expect_rejection, table};
 
 #[test]
 fn exponent_of_linear_oscillator_is_minus_damping() {
@@ -61,20 +61,20 @@ fn invalid_uses_of_exponents_are_rejected() {
     let place = SweepFolder::new();
     let vary = ["--vary", "c=400:1000:3"];
     let few = ["--measure", "lyapunov", "--periods", "19"];
-    let message = refuse(&place.sweep("never", &[&vary[..], &few[..]].concat()));
+    let message = expect_rejection(&place.sweep("never", &[&vary[..], &few[..]].concat()));
     assert!(message.contains("at least 20 --periods"), "{message}");
     let pendulum = path("pendulum").display().to_string();
     let out = place.path_to("never").display().to_string();
     let given = ["sweep", &pendulum, "--vary", "m=1:2:3", "--out", &out];
     let given = given.iter().chain(&["--measure", "lyapunov"]);
-    let message = refuse(&given.map(|part| (*part).to_owned()).collect::<Vec<_>>());
+    let message = expect_rejection(&given.map(|part| (*part).to_owned()).collect::<Vec<_>>());
     assert!(message.contains("or give --until"), "{message}");
     let sleigh = path("chaplygin_sleigh").display().to_string();
     let given = ["sweep", &sleigh, "--vary", "m=1:2:3", "--out", &out];
     let given = given
         .iter()
         .chain(&["--measure", "lyapunov", "--until", "5"]);
-    let message = refuse(&given.map(|part| (*part).to_owned()).collect::<Vec<_>>());
+    let message = expect_rejection(&given.map(|part| (*part).to_owned()).collect::<Vec<_>>());
     assert!(message.contains("has constraints (`edge`)"), "{message}");
     assert!(!place.path_to("never").exists());
 }

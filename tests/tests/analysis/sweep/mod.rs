@@ -1,13 +1,13 @@
-//! Tests of `eomgen sweep` and `eomgen merge`: byte-identical results for any number of threads and shards and after
-//! kills, comparison with the closed form of a forced oscillator, and rejected options.
+//! Tests of `eomgen sweep` and `eomgen merge`. Results are byte-identical for any number of threads and shards and
+//! after kills. They are compared with the closed form of a forced oscillator. Invalid options are rejected.
 
 mod conditions;
 mod exponents;
 mod over_time;
-mod place;
-mod refusals;
+mod rejections;
 mod samples;
 mod sections;
+mod sweep_folder;
 
 use std::f64::consts::TAU;
 use std::fs;
@@ -18,7 +18,9 @@ use std::time::{Duration, Instant};
 use eomgen_tests::models::path;
 use eomgen_tests::program::{self, run_accepted};
 
-use place::{MAP, SweepFolder, accept, column, merge_command, parts, refuse, results, table};
+use sweep_folder::{
+    MAP, SweepFolder, accept, column, expect_rejection, merge_command, parts, results, table,
+};
 
 #[test]
 fn sweep_matches_closed_form() {
@@ -89,7 +91,7 @@ fn threads_and_shards_give_same_bytes() {
     assert!(results(&one) == results(&two), "two threads");
     for shard in ["3/3", "1/3", "2/3"] {
         let error = merge_command(&shards);
-        assert!(refuse(&error).contains(if shard == "3/3" {
+        assert!(expect_rejection(&error).contains(if shard == "3/3" {
             "sweep.json"
         } else {
             "missing"
@@ -114,7 +116,7 @@ fn shards_in_separate_folders_can_be_merged() {
         accept(&place.sweep(&folder, &[&MAP[..], &["--shard", shard]].concat()));
     }
     let (first, second) = (place.path_to("shard1"), place.path_to("shard2"));
-    let gap = refuse(&merge_command(&first));
+    let gap = expect_rejection(&merge_command(&first));
     assert!(gap.contains("10 of 20 points are missing"), "{gap}");
     for part in parts(&second) {
         let to = first.join("parts").join(&part);
@@ -165,7 +167,7 @@ fn killed_run_resumes_to_same_bytes() {
             .spawn()
             .expect("the program can be run");
         kill_after(child, &killed, some);
-        let refusal = refuse(&merge_command(&killed));
+        let refusal = expect_rejection(&merge_command(&killed));
         assert!(refusal.contains("points are missing"), "{refusal}");
     }
     let text = accept(&place.sweep("killed", &slow));

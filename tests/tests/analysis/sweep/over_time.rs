@@ -10,7 +10,7 @@ use eomgen_sweep::{Sweep, SweepRequest};
 use eomgen_tests::models::{load, path};
 use eomgen_tests::program::run_accepted;
 
-use super::place::{SweepFolder, accept, column, refuse, table};
+use super::sweep_folder::{SweepFolder, accept, column, expect_rejection, table};
 
 /// Returns the amplitude of the forced response, m.
 fn amplitude(damping: f64, omega: f64) -> f64 {
@@ -59,7 +59,7 @@ fn forced_response_has_closed_form_amplitude() {
 
 /// Several statistics of one motion are bit-identical to separate measurements and need one simulation.
 #[test]
-fn measurements_of_one_motion_have_the_bits_of_single_ones() {
+fn measures_of_one_motion_are_bit_identical_to_separate_measures() {
     let model = CompiledModel::derive(load("planetary_arm"), Orders::Declared).expect("a model");
     let run = model.with_declared_parameters().expect("values");
     let (times, inputs) = ([0.0, 0.1], run.default_inputs());
@@ -105,7 +105,7 @@ fn measurements_of_one_motion_have_the_bits_of_single_ones() {
 
 /// Consecutive measures over time share one simulation of each point.
 #[test]
-fn measures_over_time_of_a_sweep_share_the_motion_of_a_point() {
+fn sweep_simulates_each_point_once_for_all_measures_over_time() {
     let request = |measures: &[&str]| SweepRequest {
         vary: vec!["b_sp=10e-6:50e-6:2".to_owned()],
         measures: measures.iter().map(|name| (*name).to_owned()).collect(),
@@ -259,7 +259,7 @@ drive = "u"
 "#;
 
 /// Adds a cubic spring of zero stiffness, so that only the general solvers support the model.
-fn general(specification: &str) -> String {
+fn with_cubic_spring(specification: &str) -> String {
     let declared = "[parameters]\nh = { value = 0, unit = \"N/m^3\" }";
     let cubic = "[potential]\ncubic = \"1/4*h*x^4\"";
     specification
@@ -292,7 +292,7 @@ fn assert_near(found: f64, right: f64, within: f64) {
 }
 
 #[test]
-fn velocity_just_before_an_impact_is_the_maximum() {
+fn maximum_velocity_is_just_before_an_impact() {
     let options = ["--vary", "e=0.5:0.9:3", "--until", "1.2"];
     let found = sweep_columns(BALL, &options, &["max:fall", "max:y_dot", "rms:fall"]);
     for (point, e) in [0.5, 0.7, 0.9].into_iter().enumerate() {
@@ -312,7 +312,7 @@ fn velocity_just_before_an_impact_is_the_maximum() {
 }
 
 #[test]
-fn force_of_a_hard_contact_is_seen_between_samples() {
+fn peak_force_of_a_stiff_contact_between_samples_is_measured() {
     let measures = ["max:contact_force", "rms:contact_force"];
     let options = [
         "--vary",
@@ -322,7 +322,7 @@ fn force_of_a_hard_contact_is_seen_between_samples() {
         "--until",
         "0.8",
     ];
-    for specification in [STOPPED.to_owned(), general(STOPPED)] {
+    for specification in [STOPPED.to_owned(), with_cubic_spring(STOPPED)] {
         let found = sweep_columns(&specification, &options, &measures);
         for (largest, rms) in found[0].iter().zip(&found[1]) {
             // The contact lasts half a period of 1e4 rad/s; the force has the amplitude v sqrt(k m).
@@ -358,7 +358,7 @@ fn decaying_oscillation_and_narrow_pulse_have_closed_forms() {
         "u=F*(above(t-begin)-above(t-begin-width))",
     ];
     let pulse = [&pulse[..], &["--until", "5"]].concat();
-    for specification in [DAMPED.to_owned(), general(DAMPED)] {
+    for specification in [DAMPED.to_owned(), with_cubic_spring(DAMPED)] {
         let found = sweep_columns(&specification, &released, &["rms:x", "max:x_dot"]);
         assert_near(found[0][0], rms, 1e-8);
         assert_near(found[1][0], greatest, 1e-8);
@@ -404,7 +404,7 @@ fn narrow_peaks_between_steps_are_measured() {
         "max:bell",
         "max:steep",
     ];
-    for specification in [PEAKS.to_owned(), general(PEAKS)] {
+    for specification in [PEAKS.to_owned(), with_cubic_spring(PEAKS)] {
         let found = sweep_columns(&specification, &options, &measures);
         for (point, a) in [0.9_f64, 0.945, 0.99].into_iter().enumerate() {
             // x exceeds a over an angle of 2 `half`.
@@ -463,12 +463,14 @@ fn invalid_measures_are_rejected() {
         ),
         (&["--measure", "max:x,max:x", "--until", "1"], "`max:x`"),
     ] {
-        let message = refuse(&place.sweep("map", &[&["--vary", "k=1:2:2"][..], more].concat()));
+        let message =
+            expect_rejection(&place.sweep("map", &[&["--vary", "k=1:2:2"][..], more].concat()));
         assert!(message.contains(what), "{more:?}: {message}");
     }
     for range in ["0:1:3:log", "-1:1:3:log", "1:2:3:lin", "1:2:3:4:5"] {
         let vary = format!("k={range}");
-        let message = refuse(&place.sweep("map", &["--vary", &vary, "--measure", "max:x"]));
+        let message =
+            expect_rejection(&place.sweep("map", &["--vary", &vary, "--measure", "max:x"]));
         assert!(message.contains("FROM:TO:COUNT:log"), "{message}");
     }
 }

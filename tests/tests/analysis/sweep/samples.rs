@@ -7,7 +7,7 @@ use std::path::Path;
 use eomgen_tests::program::{run_accepted, run_rejected};
 use serde_json::Value;
 
-use super::place::{SweepFolder, column, table};
+use super::sweep_folder::{SweepFolder, column, table};
 
 /// Mass on a spring under a force. All parameters are uncertain, and displacements are linear in the force.
 const UNCERTAIN: &str = r#"
@@ -30,7 +30,7 @@ load = { on = "x", value = "F" }
 
 const COUNT: usize = 900;
 
-fn place() -> SweepFolder {
+fn create_sweep_folder() -> SweepFolder {
     let place = SweepFolder::new();
     fs::write(place.path_to("uncertain.toml"), UNCERTAIN).expect("a specification");
     place
@@ -59,7 +59,7 @@ fn accept(arguments: &[String]) -> String {
     run_accepted(&arguments.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
-fn refuse(arguments: &[String]) -> String {
+fn expect_rejection(arguments: &[String]) -> String {
     run_rejected(&arguments.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
@@ -82,8 +82,8 @@ fn result_files(folder: &Path) -> Vec<(String, Vec<u8>)> {
 }
 
 #[test]
-fn mean_and_deviation_of_linear_measure_match_closed_form() {
-    let place = place();
+fn mean_and_standard_deviation_of_linear_measure_match_closed_form() {
+    let place = create_sweep_folder();
     let count = COUNT.to_string();
     accept(&arguments(
         &place,
@@ -133,7 +133,7 @@ fn mean_and_deviation_of_linear_measure_match_closed_form() {
 
 #[test]
 fn samples_depend_on_seed_but_not_on_threads_shards_or_kills() {
-    let place = place();
+    let place = create_sweep_folder();
     let few = ["--samples", "40"];
     let text = accept(&arguments(
         &place,
@@ -171,7 +171,7 @@ fn samples_depend_on_seed_but_not_on_threads_shards_or_kills() {
     let text = accept(&arguments(&place, "two", &few));
     assert!(text.contains("2 points computed, 38 resumed"), "{text}");
     assert!(result_files(&place.path_to("two")) == whole, "after a kill");
-    let message = refuse(&arguments(
+    let message = expect_rejection(&arguments(
         &place,
         "one",
         &[&few[..], &["--seed", "2"]].concat(),
@@ -192,7 +192,7 @@ fn samples_depend_on_seed_but_not_on_threads_shards_or_kills() {
 
 #[test]
 fn set_changes_the_nominal_value_of_uncertain_parameter() {
-    let place = place();
+    let place = create_sweep_folder();
     let few = ["--samples", "60", "--set", "F=-30"];
     accept(&arguments(&place, "out", &few));
     let forces = table(&place.path_to("out"));
@@ -205,7 +205,7 @@ fn set_changes_the_nominal_value_of_uncertain_parameter() {
         "the sign of a force changed"
     );
     for (set, part) in [("F=0", "0.05 of 0"), ("x_0=50", "10 to 40 mm")] {
-        let message = refuse(&arguments(&place, "no", &["--samples", "5", "--set", set]));
+        let message = expect_rejection(&arguments(&place, "no", &["--samples", "5", "--set", set]));
         assert!(
             message.contains(part) && message.contains("uncertainty"),
             "{message}"
@@ -217,7 +217,7 @@ fn set_changes_the_nominal_value_of_uncertain_parameter() {
 
 #[test]
 fn invalid_sample_options_are_rejected() {
-    let place = place();
+    let place = create_sweep_folder();
     for (more, part) in [
         (&["--samples", "0"][..], "expected a number from 1"),
         (
@@ -232,7 +232,7 @@ fn invalid_sample_options_are_rejected() {
         ),
         (&[], "--vary"),
     ] {
-        let message = refuse(&arguments(&place, "never", more));
+        let message = expect_rejection(&arguments(&place, "never", more));
         assert!(message.contains(part), "{more:?}: {message}");
         assert!(!place.path_to("never").exists());
     }
@@ -269,7 +269,7 @@ fn invalid_sample_options_are_rejected() {
     ] {
         let text = UNCERTAIN.replace("{ relative = 0.05 }", wrong);
         fs::write(place.path_to("uncertain.toml"), text).expect("a specification");
-        let message = refuse(&arguments(&place, "never", &["--samples", "5"]));
+        let message = expect_rejection(&arguments(&place, "never", &["--samples", "5"]));
         assert!(message.contains(part), "{wrong}: {message}");
         assert!(message.contains("uncertain.toml:7:"), "{wrong}: {message}");
     }

@@ -2,7 +2,7 @@
 
 use eomgen_tests::program::{run, run_accepted, run_rejected};
 
-use super::place::{SweepFolder, accept, column, table};
+use super::sweep_folder::{SweepFolder, accept, column, table};
 
 /// x = sin(t) and y = cos(1.5 t): two independent free oscillators.
 const TWO: &str = r#"
@@ -109,7 +109,7 @@ fn poincare_of_another_coordinate_samples_once_per_period() {
 /// x crosses 0 downwards at t = pi sqrt(m) (2 k + 1). Before 19 s there are three crossings for m = 1 and two for m =
 /// 1.5.
 #[test]
-fn points_with_few_crossings_are_named() {
+fn points_with_too_few_crossings_are_reported() {
     let section = [
         "--measure",
         "poincare:y",

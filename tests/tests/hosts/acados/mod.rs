@@ -193,7 +193,7 @@ fn motions_and_optimal_control_in_acados_match_simulate() {
 }
 
 #[test]
-fn rates_that_depend_on_time_are_refused_for_acados() {
+fn rates_that_depend_on_time_are_rejected_for_acados() {
     let folder = tempfile::tempdir().expect("a folder");
     let spec = folder.path().join("driven.toml");
     let text = std::fs::read_to_string(models::path("pendulum")).expect("a specification");

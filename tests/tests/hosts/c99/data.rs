@@ -63,26 +63,26 @@ input 24 inf
 const C_PROGRAM: &str = r#"
 #include "motor.h"
 #include <stdio.h>
-static void texts(const char *name, const char *const *all, int count) {
+static void print_texts(const char *name, const char *const *all, int count) {
     printf("%s", name);
     for (int i = 0; i < count; ++i) { printf(" %s", all[i]); }
     printf("\n");
 }
-static void numbers(const char *name, const motor_real *all, int count) {
+static void print_numbers(const char *name, const motor_real *all, int count) {
     printf("%s", name);
     for (int i = 0; i < count; ++i) { printf(" %g", (double)all[i]); }
     printf("\n");
 }
 int main(void) {
-    texts("state", motor_state_units, motor_STATES);
-    texts("input", motor_input_units, motor_INPUTS);
-    texts("parameter", motor_parameter_units, motor_PARAMETERS);
-    texts("observable", motor_observable_units, motor_OBSERVABLES);
-    numbers("initial", motor_initial_state, motor_STATES);
-    numbers("state", motor_state_lower, motor_STATES);
-    numbers("state", motor_state_upper, motor_STATES);
-    numbers("input", motor_input_lower, motor_INPUTS);
-    numbers("input", motor_input_upper, motor_INPUTS);
+    print_texts("state", motor_state_units, motor_STATES);
+    print_texts("input", motor_input_units, motor_INPUTS);
+    print_texts("parameter", motor_parameter_units, motor_PARAMETERS);
+    print_texts("observable", motor_observable_units, motor_OBSERVABLES);
+    print_numbers("initial", motor_initial_state, motor_STATES);
+    print_numbers("state", motor_state_lower, motor_STATES);
+    print_numbers("state", motor_state_upper, motor_STATES);
+    print_numbers("input", motor_input_lower, motor_INPUTS);
+    print_numbers("input", motor_input_upper, motor_INPUTS);
     return 0;
 }
 "#;
@@ -90,23 +90,23 @@ int main(void) {
 const RUST_PROGRAM: &str = r#"
 #[path = "lib.rs"]
 mod motor;
-fn texts(name: &str, all: &[&str]) {
+fn print_texts(name: &str, all: &[&str]) {
     println!("{name} {}", all.join(" "));
 }
-fn numbers(name: &str, all: &[f64]) {
+fn print_numbers(name: &str, all: &[f64]) {
     let all: Vec<String> = all.iter().map(|number| number.to_string()).collect();
     println!("{name} {}", all.join(" "));
 }
 fn main() {
-    texts("state", &motor::STATE_UNITS);
-    texts("input", &motor::INPUT_UNITS);
-    texts("parameter", &motor::PARAMETER_UNITS);
-    texts("observable", &motor::OBSERVABLE_UNITS);
-    numbers("initial", &motor::INITIAL_STATE);
-    numbers("state", &motor::STATE_LOWER);
-    numbers("state", &motor::STATE_UPPER);
-    numbers("input", &motor::INPUT_LOWER);
-    numbers("input", &motor::INPUT_UPPER);
+    print_texts("state", &motor::STATE_UNITS);
+    print_texts("input", &motor::INPUT_UNITS);
+    print_texts("parameter", &motor::PARAMETER_UNITS);
+    print_texts("observable", &motor::OBSERVABLE_UNITS);
+    print_numbers("initial", &motor::INITIAL_STATE);
+    print_numbers("state", &motor::STATE_LOWER);
+    print_numbers("state", &motor::STATE_UPPER);
+    print_numbers("input", &motor::INPUT_LOWER);
+    print_numbers("input", &motor::INPUT_UPPER);
 }
 "#;
 
@@ -129,7 +129,7 @@ fn link(folder: &Path, options: &[&str]) {
 }
 
 #[test]
-fn emitted_data_is_that_of_the_specification() {
+fn emitted_data_equals_the_specification() {
     if !has_compilers() {
         return;
     }

@@ -1,5 +1,5 @@
-//! Tests of header-only C (`--packaging header-only`): results are bit-identical to the source file with its header, in
-//! programs of several files in C and C++, and there are no warnings.
+//! Tests of header-only C (`--packaging header-only`) in programs of several files in C and C++. Results are
+//! bit-identical to the source file with its header, and there are no warnings.
 
 use std::path::Path;
 use std::process::Command;
@@ -43,7 +43,7 @@ const C: [&str; 2] = ["cc", "-std=c99"];
 const CPP: [&str; 2] = ["c++", "-std=c++11"];
 
 #[test]
-fn header_with_the_functions_has_the_bits_of_two_files() {
+fn header_only_code_is_bit_identical_to_header_and_source() {
     if !has_compilers() {
         return;
     }

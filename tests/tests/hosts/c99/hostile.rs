@@ -145,7 +145,7 @@ fn controllers_with_a_common_name_in_c_are_rejected() {
     }
 }
 
-/// In Rust, each controller has a module of its own, so that names cannot collide.
+/// In Rust, each controller has a separate module, so that names cannot collide.
 #[test]
 fn controllers_with_similar_names_compile() {
     if !has_compilers() {

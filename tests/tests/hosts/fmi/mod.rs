@@ -90,7 +90,7 @@ fn both_kinds_of_units_match_simulate() {
 }
 
 #[test]
-fn units_rest_bounce_and_start_on_constraints_like_simulate() {
+fn units_stick_bounce_and_start_on_constraints_like_simulate() {
     let what = "units with friction, impacts and constraints were not simulated";
     if !is_available("fmpy, numpy", what) {
         return;
@@ -105,7 +105,7 @@ fn units_rest_bounce_and_start_on_constraints_like_simulate() {
         (own.join("mass_step.toml"), "3", "1e-5"),
         (own.join("puck.toml"), "3", "1e-5"),
         (own.join("tabulated.toml"), "0.1", "1e-5"),
-        // The ball comes to rest after 4.06 s. Impacts amplify small differences.
+        // The ball stops bouncing after 4.06 s. Impacts amplify small differences.
         (examples.join("bouncing_ball.toml"), "5", "1e-4"),
         (examples.join("box_with_friction.toml"), "1.5", "1e-3"),
     ] {
@@ -143,7 +143,7 @@ fn compare_with_simulate(
 }
 
 #[test]
-fn friction_holds_units_until_inputs_move_them() {
+fn friction_in_units_sticks_until_inputs_change() {
     let what = "units were not moved through rest";
     if !is_available("fmpy, numpy", what) {
         return;
@@ -259,7 +259,7 @@ fn units_contain_settings_and_extended_specifications() {
 
 /// The copy of the program has no library for units, as in an incomplete installation.
 #[test]
-fn missing_library_is_reported_with_its_cure() {
+fn missing_library_is_reported_with_remedy() {
     let folder = tempfile::tempdir().expect("a folder");
     let program = folder.path().join("eomgen");
     std::fs::copy(eomgen_tests::program::path(), &program).expect("a copy");

@@ -1,5 +1,6 @@
-//! Bit-for-bit comparison of the WebAssembly module of a page with the interpreter: rates, observables and guards at
-//! random states in every regime and at non-finite numbers, for shipped models and every language feature.
+//! Bit-for-bit comparison of the WebAssembly module of a page with the interpreter, for shipped models and every
+//! language feature. Rates, observables and guards are compared at random states in every regime and at non-finite
+//! numbers.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -41,7 +41,7 @@ fn bits(program: &Program, numbers: &mut Numbers) -> Vec<u64> {
 }
 
 #[test]
-fn exported_models_survive_their_bytes() {
+fn exported_models_are_imported_unchanged() {
     let mut sided = 0;
     for spec in shipped_specifications().into_iter().chain(examples()) {
         let name = spec.display();

@@ -171,7 +171,7 @@ fn curves_have_different_colours() {
 }
 
 #[test]
-fn pages_without_javascript_have_no_dead_elements() {
+fn pages_without_javascript_have_no_inactive_controls() {
     let Some(browser) = browser() else { return };
     let folder = tempfile::tempdir().expect("a folder");
     let measured = run_report("discover");

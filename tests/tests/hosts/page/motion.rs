@@ -1,6 +1,6 @@
-//! Comparison of the motion of a page with `simulate`: shipped models and examples with sticking, impacts, contact
-//! friction, constraints and corners, random machines, inputs over time, changed parameters, and motions that end
-//! early.
+//! Comparison of the motion of a page with `simulate`. The cases are shipped models and examples with sticking,
+//! impacts, contact friction, constraints and corners, and random machines. Inputs over time, changed parameters, and
+//! motions that end early are tested too.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

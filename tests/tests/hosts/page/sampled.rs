@@ -44,7 +44,7 @@ const SINE: [f64; 8] = [0.0, -1.0, -1.0, 1.0, 0.1, 0.2, 1.6, 1.0];
 const CHANGE: f64 = 0.72;
 
 #[test]
-fn changed_period_keeps_states_and_waiting_outputs() {
+fn changed_period_keeps_states_and_pending_outputs() {
     if !node() {
         return;
     }

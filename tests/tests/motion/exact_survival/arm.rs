@@ -31,9 +31,9 @@ fn moving_arm(
     subject.with_initial_state(&initial)
 }
 
-/// Simulates with the general solver at two tolerances. If it cannot leave the surface on which the motion starts, the
-/// results are replaced by exact motions from states on both sides at a relative distance of 1e-12. The initial regime
-/// of these states is unambiguous.
+/// Simulates with the general solver at two tolerances. If it cannot leave the surface on which the motion starts,
+/// exact motions replace the results. They start on both sides of the surface at a relative distance of 1e-12, so that
+/// their initial regime is unambiguous.
 fn simulate_generally(subject: &TestMotion, until: f64, times: &[f64]) -> (Trajectory, Trajectory) {
     let run = |subject: &TestMotion, tolerance: f64| {
         subject.simulate_generally((0.0, until), times, tolerance)
@@ -62,7 +62,7 @@ fn assert_matches_general_solver(name: &str, subject: &TestMotion, until: f64) -
         exact.events.len()
     );
     // The bound is ten times the difference between the tolerances, plus rounding errors that grow with the number of
-    // switches, because the forces are differences of nearly equal numbers.
+    // switches. Rounding matters because the forces are differences of nearly equal numbers.
     assert!(
         found < 10.0 * doubt + 1e-9,
         "{name}: difference {found:e}, uncertainty {doubt:e}"

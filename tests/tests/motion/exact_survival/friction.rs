@@ -26,7 +26,7 @@ fn sticking_block_stays_at_rest() {
             assert_eq!(state, &[0.25, 0.0], "F = {force}");
         }
     }
-    // The block comes to rest at the finite time v0 m/T_c.
+    // The block stops at the finite time v0 m/T_c.
     let motion = pushed_block(0.0, [0.0, 1.5]).simulate_exactly((0.0, 1e3), &[0.5, 1.0, 2.0, 1e3]);
     assert!((motion.states[0][1] - 0.75).abs() < 1e-14);
     for state in &motion.states[1..] {
@@ -38,7 +38,7 @@ fn sticking_block_stays_at_rest() {
     assert!((motion.events[0].t - 1.0).abs() < 1e-14);
 }
 
-fn root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+fn bisect(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     assert!(f(low) * f(high) < 0.0);
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
@@ -68,7 +68,7 @@ fn pushed_block_slides_and_sticks_as_closed_form() {
                 - 0.5 * dry / m * gone * gone
         };
         let turn = std::f64::consts::PI / omega;
-        let rests = root(speed, 0.5 * turn, leaves + 1.2 * turn);
+        let rests = bisect(speed, 0.5 * turn, leaves + 1.2 * turn);
         assert!(
             (force * (omega * rests).sin()).abs() < dry,
             "it sticks at {force}"
@@ -81,7 +81,7 @@ fn pushed_block_slides_and_sticks_as_closed_form() {
         for (k, switch) in switches.iter().enumerate() {
             let base = if k % 2 == 0 { leaves } else { rests };
             let wanted = base + (k / 2) as f64 * turn;
-            // The rate grows quadratically when the block breaks away or comes to rest.
+            // The rate grows quadratically when the block breaks away or stops.
             assert!(
                 (switch.t - wanted).abs() < 1e-11,
                 "F = {force}, {k}: {}, expected {wanted}",
@@ -226,8 +226,8 @@ fn two_joints_can_stick_at_once() {
 
 #[test]
 fn chain_of_blocks_comes_to_rest_block_by_block() {
-    // A chain of blocks on rough ground is joined by springs, and the first block is pushed. The blocks come to rest
-    // one after the other. The motion is compared with steep smooth friction.
+    // A chain of blocks on rough ground is joined by springs, and the first block is pushed. The blocks stop one after
+    // the other. The motion is compared with steep smooth friction.
     let subject = |sign: &dyn Fn(&str) -> String| {
         let mut spec = Spec::default()
             .parameter("m", 1.0, "kg")

@@ -24,7 +24,7 @@ impl Response {
         self.0.get(row).copied().unwrap_or(f64::NAN)
     }
 
-    fn minus(&self, other: &Self) -> Self {
+    fn subtract(&self, other: &Self) -> Self {
         Self(self.0.iter().zip(&other.0).map(|(a, b)| a - b).collect())
     }
 }
@@ -66,9 +66,9 @@ impl Responses {
             parameters.b_pr + PROBE_COMPRESSION_M,
         ];
         let quarter = std::f64::consts::FRAC_PI_2 / parameters.omega;
-        let constant = probe.at(0.0, &[]);
+        let constant = probe.accelerations_at(0.0, &[]);
         Self {
-            fluctuation: probe.at(quarter, &[]).minus(&constant),
+            fluctuation: probe.accelerations_at(quarter, &[]).subtract(&constant),
             constant,
             rate: [0, 1, 2].map(rate),
             spring: [0, 1]
@@ -77,7 +77,7 @@ impl Responses {
                 let moving = [(probe.rate_of(mesh), 1.0)];
                 probe
                     .slope(&moving, 1.0, &[(mesh, pressed[mesh])])
-                    .minus(&rate(mesh))
+                    .subtract(&rate(mesh))
             }),
             modes: (0..order)
                 .map(|i| probe.slope(&[(3 + i, 1e-3)], 1e-3, &[]))
@@ -102,7 +102,7 @@ impl Probe<'_> {
         3 + self.order + coordinate
     }
 
-    fn at(&self, t: f64, entries: &[(usize, f64)]) -> Response {
+    fn accelerations_at(&self, t: f64, entries: &[(usize, f64)]) -> Response {
         let mut state = vec![0.0; 2 * (3 + self.order)];
         for (index, value) in entries {
             state[*index] = *value;
@@ -115,9 +115,9 @@ impl Probe<'_> {
     fn slope(&self, entries: &[(usize, f64)], unit: f64, held: &[(usize, f64)]) -> Response {
         let with = |sign: f64| {
             let signed = entries.iter().map(|(index, value)| (*index, sign * value));
-            self.at(0.0, &signed.chain(held.iter().copied()).collect::<Vec<_>>())
+            self.accelerations_at(0.0, &signed.chain(held.iter().copied()).collect::<Vec<_>>())
         };
-        let difference = with(1.0).minus(&with(-1.0));
+        let difference = with(1.0).subtract(&with(-1.0));
         Response(
             difference
                 .0

@@ -15,11 +15,11 @@ use super::mode::{Mode, exponential, values_at};
 #[cfg(test)]
 mod tests;
 
-pub(super) fn mode(from: End, to: End, number: usize) -> Mode {
+pub(super) fn compute_mode(from: End, to: End, number: usize) -> Mode {
     let root = Root::solve(from, to, number);
-    let wave = wave(from, to, root);
-    let wave_at_end = wave_at_end(from, to, root, number, wave);
-    let [falling, rising] = exponentials(from, to, root, wave, wave_at_end[0]);
+    let wave = compute_wave_amplitudes(from, to, root);
+    let wave_at_end = compute_wave_at_end(from, to, root, number, wave);
+    let [falling, rising] = compute_exponential_amplitudes(from, to, root, wave, wave_at_end[0]);
     let [sine, cosine] = wave;
     let (falling_at_end, rising_at_start) = (falling * root.decay, rising * root.decay);
     // 4 int phi^2 = phi(1)^2 + phi''(1)^2/k^4 - 2 phi'(1) phi'''(1)/k^4; the same formula holds with the values at
@@ -51,9 +51,9 @@ pub(super) fn mode(from: End, to: End, number: usize) -> Mode {
 
 /// Computes the mode `number` with beta_r l and xi_r as printed in Eq. (18) and (19). This shape does not satisfy the
 /// boundary conditions at its end, and its integrals have no closed form.
-pub(super) fn printed_mode(number: usize) -> Mode {
+pub(super) fn compute_printed_mode(number: usize) -> Mode {
     let wavenumber = std::f64::consts::PI * (number as f64 - 0.5);
-    let sine = -alternating(number);
+    let sine = -alternating_sign(number);
     let decay = exponential(-wavenumber);
     let mixing = (1.0 + decay * decay) / (2.0 * sine * decay + 1.0 - decay * decay);
     Mode {
@@ -84,29 +84,29 @@ struct Root {
 
 impl Root {
     fn solve(from: End, to: End, number: usize) -> Self {
-        let sign = alternating(number);
+        let sign = alternating_sign(number);
         let hyperbolic = |k: f64| -sign * Function::Asin.apply(&[sech(exponential(-k))]);
         let tangent = |k: f64| Function::Atan.apply(&[exponential(-2.0 * k)]);
         match (has_decaying_exponential(from), has_decaying_exponential(to)) {
             (true, true) => {
-                let unlike = end_difference(from, to);
-                let root = Self::near_multiple(number, -2.0 * unlike, hyperbolic);
+                let unlike = sign_of_ends(from, to);
+                let root = Self::solve_near_multiple(number, -2.0 * unlike, hyperbolic);
                 Self {
                     cosine: -unlike * sech(root.decay),
                     ..root
                 }
             }
-            (false, false) if from == to => Self::near_multiple(number, 0.0, |_| 0.0),
-            (false, false) => Self::near_multiple(number, -2.0, |_| 0.0),
+            (false, false) if from == to => Self::solve_near_multiple(number, 0.0, |_| 0.0),
+            (false, false) => Self::solve_near_multiple(number, -2.0, |_| 0.0),
             _ if from == End::Pinned || to == End::Pinned => {
-                Self::near_multiple(number, 1.0, |k| -tangent(k))
+                Self::solve_near_multiple(number, 1.0, |k| -tangent(k))
             }
-            _ => Self::near_multiple(number, -1.0, tangent),
+            _ => Self::solve_near_multiple(number, -1.0, tangent),
         }
     }
 
     /// Finds the fixed point of the contraction k = (r + quarters/4) pi + offset(k).
-    fn near_multiple(number: usize, quarters: f64, offset: impl Fn(f64) -> f64) -> Self {
+    fn solve_near_multiple(number: usize, quarters: f64, offset: impl Fn(f64) -> f64) -> Self {
         let centre = std::f64::consts::PI * (number as f64 + 0.25 * quarters);
         let mut d = 0.0;
         for _ in 0..64 {
@@ -117,7 +117,8 @@ impl Root {
             d = next;
         }
         let (small_sine, small_cosine) = (Function::Sin.apply(&[d]), Function::Cos.apply(&[d]));
-        let [sine, cosine] = quarter_turns(quarters).map(|value| alternating(number) * value);
+        let [sine, cosine] =
+            sine_and_cosine_of_quarters(quarters).map(|value| alternating_sign(number) * value);
         let k = centre + d;
         Self {
             k,
@@ -129,7 +130,7 @@ impl Root {
 }
 
 /// Returns the sine and cosine of `quarters` pi/4 for `quarters` = -2 to 2.
-fn quarter_turns(quarters: f64) -> [f64; 2] {
+fn sine_and_cosine_of_quarters(quarters: f64) -> [f64; 2] {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     if quarters == 0.0 {
         [0.0, 1.0]
@@ -150,13 +151,13 @@ fn has_decaying_exponential(end: End) -> bool {
 }
 
 /// Returns -1 for two equal ends (cos k cosh k = 1), and 1 for a clamped and a free end (cos k cosh k = -1).
-fn end_difference(from: End, to: End) -> f64 {
+fn sign_of_ends(from: End, to: End) -> f64 {
     if from == to { -1.0 } else { 1.0 }
 }
 
 /// Returns the amplitudes of sin z and cos z. The shape is scaled to amplitude 1 of the sine or, without a sine, of
 /// the cosine.
-fn wave(from: End, to: End, root: Root) -> [f64; 2] {
+fn compute_wave_amplitudes(from: End, to: End, root: Root) -> [f64; 2] {
     let square = root.decay * root.decay;
     let mixing = match (from, to) {
         (End::Pinned, _) => return [1.0, 0.0],
@@ -166,24 +167,30 @@ fn wave(from: End, to: End, root: Root) -> [f64; 2] {
         // -(sin - sinh)/(cos - cosh) or -(sin + sinh)/(cos + cosh) at k, with numerator and denominator multiplied by
         // 2 exp(-k)
         _ => {
-            let unlike = end_difference(from, to);
+            let unlike = sign_of_ends(from, to);
             let numerator = 2.0 * root.sine * root.decay + unlike - unlike * square;
-            -numerator / wave_divisor(unlike, root)
+            -numerator / compute_wave_divisor(unlike, root)
         }
     };
     [1.0, mixing]
 }
 
 /// Returns cos k - cosh k or cos k + cosh k, times 2 exp(-k).
-fn wave_divisor(unlike: f64, root: Root) -> f64 {
+fn compute_wave_divisor(unlike: f64, root: Root) -> f64 {
     2.0 * root.cosine * root.decay + unlike + unlike * root.decay * root.decay
 }
 
 /// Returns the wave (the sine and cosine part) at the end, and its first derivative divided by k.
-fn wave_at_end(from: End, to: End, root: Root, number: usize, [a, c]: [f64; 2]) -> [f64; 2] {
+fn compute_wave_at_end(
+    from: End,
+    to: End,
+    root: Root,
+    number: usize,
+    [a, c]: [f64; 2],
+) -> [f64; 2] {
     if has_decaying_exponential(from) && has_decaying_exponential(to) {
         // If both ends are clamped or free, the wave is symmetric or antisymmetric about the middle.
-        let sign = end_difference(from, to) * alternating(number);
+        let sign = sign_of_ends(from, to) * alternating_sign(number);
         return [sign * c, -sign * a];
     }
     [
@@ -193,7 +200,13 @@ fn wave_at_end(from: End, to: End, root: Root, number: usize, [a, c]: [f64; 2]) 
 }
 
 /// Returns the amplitudes of exp(-z) and exp(z - k).
-fn exponentials(from: End, to: End, root: Root, wave: [f64; 2], wave_at_end: f64) -> [f64; 2] {
+fn compute_exponential_amplitudes(
+    from: End,
+    to: End,
+    root: Root,
+    wave: [f64; 2],
+    wave_at_end: f64,
+) -> [f64; 2] {
     let decay = root.decay;
     // The exponential cancels the wave at a clamped end and doubles it at a free end.
     let sense = |end| if end == End::Free { 1.0 } else { -1.0 };
@@ -215,9 +228,9 @@ fn exponentials(from: End, to: End, root: Root, wave: [f64; 2], wave_at_end: f64
                 End::Guided => falling * decay,
                 // -+(1 + xi) exp(k)/2
                 _ => {
-                    let unlike = end_difference(from, to);
+                    let unlike = sign_of_ends(from, to);
                     let above = root.cosine - root.sine + unlike * decay;
-                    sense(start) * (above / wave_divisor(unlike, root))
+                    sense(start) * (above / compute_wave_divisor(unlike, root))
                 }
             };
             [falling, rising]
@@ -225,6 +238,6 @@ fn exponentials(from: End, to: End, root: Root, wave: [f64; 2], wave_at_end: f64
     }
 }
 
-fn alternating(number: usize) -> f64 {
+fn alternating_sign(number: usize) -> f64 {
     if number.is_multiple_of(2) { 1.0 } else { -1.0 }
 }

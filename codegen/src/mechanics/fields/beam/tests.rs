@@ -2,20 +2,20 @@
 
 use eomgen_model_spec::model::End;
 
-use super::mode;
+use super::compute_mode;
 use crate::mechanics::fields::quadrature::gauss_legendre;
 
 const ENDS: [End; 4] = [End::Clamped, End::Pinned, End::Free, End::Guided];
-const NUMBERS: [usize; 6] = [1, 2, 3, 12, 64, 128];
+const MODE_NUMBERS: [usize; 6] = [1, 2, 3, 12, 64, 128];
 
-fn all() -> impl Iterator<Item = (End, End, usize)> {
+fn all_cases() -> impl Iterator<Item = (End, End, usize)> {
     ENDS.into_iter().flat_map(|from| {
         ENDS.into_iter()
-            .flat_map(move |to| NUMBERS.map(|number| (from, to, number)))
+            .flat_map(move |to| MODE_NUMBERS.map(|number| (from, to, number)))
     })
 }
 
-fn vanishing(end: End) -> [u8; 2] {
+fn vanishing_derivatives(end: End) -> [u8; 2] {
     match end {
         End::Clamped => [0, 1],
         End::Pinned => [0, 2],
@@ -43,7 +43,10 @@ fn eigenvalues_match_published_table() {
     ];
     for (from, to, eigenvalues) in published {
         for (number, eigenvalue) in (1..).zip(eigenvalues) {
-            for mode in [mode(from, to, number), mode(to, from, number)] {
+            for mode in [
+                compute_mode(from, to, number),
+                compute_mode(to, from, number),
+            ] {
                 let found = mode.wavenumber;
                 // The tolerance is one unit of the last printed digit.
                 assert!(
@@ -58,8 +61,8 @@ fn eigenvalues_match_published_table() {
 // The phase at the end is up to 403; its rounding error is 3e-14.
 #[test]
 fn shapes_satisfy_the_conditions_at_both_ends() {
-    for (from, to, number) in all() {
-        let mode = mode(from, to, number);
+    for (from, to, number) in all_cases() {
+        let mode = compute_mode(from, to, number);
         for (end, s, values) in [(from, 0.0, mode.at_start), (to, 1.0, mode.at_end)] {
             for derivative in 0..4 {
                 let k = mode.wavenumber.powi(derivative.into());
@@ -67,7 +70,7 @@ fn shapes_satisfy_the_conditions_at_both_ends() {
                 let expected = values[usize::from(derivative)];
                 let what = format!("{from:?}, {to:?}, mode {number} at {s}: {value}");
                 assert!((value - expected).abs() < 1e-13, "{what}, {expected}");
-                if vanishing(end).contains(&derivative) {
+                if vanishing_derivatives(end).contains(&derivative) {
                     assert!(expected == 0.0, "{what}");
                 } else {
                     assert!(expected.abs() > 0.7, "{what}");
@@ -81,8 +84,8 @@ fn shapes_satisfy_the_conditions_at_both_ends() {
 // rounded nodes and phases.
 #[test]
 fn closed_integrals_match_quadrature() {
-    for (from, to, number) in all() {
-        let mode = mode(from, to, number);
+    for (from, to, number) in all_cases() {
+        let mode = compute_mode(from, to, number);
         let rule = gauss_legendre(2 * number + 40);
         let integral = |function: &dyn Fn(f64) -> f64| -> f64 {
             let nodes = rule.nodes.iter().zip(&rule.weights);
@@ -97,7 +100,7 @@ fn closed_integrals_match_quadrature() {
         );
         for power in [0, 1] {
             let expected = integral(&|s| s.powi(power) * mode.shape(0, s));
-            let found = mode.moment(power as u32);
+            let found = mode.compute_moment(power as u32);
             let difference = (found - expected).abs();
             assert!(difference < 1e-14, "{what}: s^{power}: {found} {expected}");
         }
@@ -106,11 +109,14 @@ fn closed_integrals_match_quadrature() {
 
 #[test]
 fn exchanged_ends_have_mirrored_shapes() {
-    for (from, to, number) in all() {
-        let (one, other) = (mode(from, to, number), mode(to, from, number));
+    for (from, to, number) in all_cases() {
+        let (one, other) = (
+            compute_mode(from, to, number),
+            compute_mode(to, from, number),
+        );
         let mirrored = |s: f64| other.shape(0, 1.0 - s);
-        let place = 0.3712;
-        let factor = one.shape(0, place) / mirrored(place);
+        let position = 0.3712;
+        let factor = one.shape(0, position) / mirrored(position);
         for s in [0.05, 0.25, 0.5, 0.8, 0.97] {
             let (found, expected) = (one.shape(0, s), factor * mirrored(s));
             assert!(

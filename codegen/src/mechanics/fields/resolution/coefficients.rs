@@ -15,7 +15,7 @@ use super::panels::{Panels, Profile, divide};
 use super::products::{Coefficient, Product};
 
 /// Number of combinations of all modes that are tested in addition to single modes.
-const COMBINATIONS: usize = 3;
+const MODE_COMBINATIONS: usize = 3;
 
 /// Largest number of shape waves per panel; with 24 nodes, quadrature of their product is exact to rounding.
 const SHAPES_PER_PANEL: usize = 4;
@@ -65,13 +65,13 @@ impl<'m> CheckedField<'m> {
         let mut coefficients = product.coefficients.iter();
         let has_time = coefficients.any(|c| contents(self.model, c.value).time);
         let times = match has_time {
-            true => times(),
+            true => list_checked_times(),
             false => vec![0.0],
         };
         for t in times {
             let (error, narrowest) = self.error_at(product, t);
             if error > MAX_ERROR {
-                return Err(self.refuse(product, (has_time, t), error, narrowest));
+                return Err(self.describe_error(product, (has_time, t), error, narrowest));
             }
         }
         Ok(())
@@ -94,7 +94,7 @@ impl<'m> CheckedField<'m> {
             value: &value,
             bounds: Some(&bounds),
         };
-        let knots = self.panel_ends(product.shapes.len());
+        let knots = self.compute_panel_ends(product.shapes.len());
         let Panels { rule, narrowest } = divide(&knots, &profile);
         let shapes = Shapes::new(&self.field.basis, self.order);
         let own = self.rule.quadrature();
@@ -115,7 +115,7 @@ impl<'m> CheckedField<'m> {
             [&rule, &own].map(|rule| rule.nodes.iter().map(|s| value(*s)).collect::<Vec<f64>>());
         let mut worst = 0.0_f64;
         for amplitudes in self.amplitudes(product) {
-            let scales = fine.scales();
+            let scales = fine.find_largest_magnitudes();
             let (exact, magnitude) = fine.integral(product, &amplitudes, &scales, &fine_values);
             let (found, _) = coarse.integral(product, &amplitudes, &scales, &coarse_values);
             let difference = (found - exact).abs();
@@ -128,7 +128,7 @@ impl<'m> CheckedField<'m> {
     }
 
     /// Returns the ends of panels that resolve a product of this number of shapes.
-    fn panel_ends(&self, shapes: usize) -> Vec<f64> {
+    fn compute_panel_ends(&self, shapes: usize) -> Vec<f64> {
         let knots = self.rule.knots();
         let pieces = (shapes.max(1) * self.order)
             .div_ceil(SHAPES_PER_PANEL)
@@ -156,7 +156,7 @@ impl<'m> CheckedField<'m> {
         let mut all: Vec<Vec<f64>> = numbers.map(|number| single(number - 1)).collect();
         all.push(single(self.order - 1));
         let mut signs = 0x9e37_79b9_7f4a_7c15_u64;
-        for _ in 0..COMBINATIONS {
+        for _ in 0..MODE_COMBINATIONS {
             let combination = (0..self.order).map(|_| {
                 signs = signs
                     .wrapping_mul(6_364_136_223_846_793_005)
@@ -216,7 +216,7 @@ impl<'m> CheckedField<'m> {
         }
     }
 
-    fn refuse(
+    fn describe_error(
         &self,
         product: &Product<'_>,
         (has_time, t): (bool, f64),
@@ -253,7 +253,7 @@ impl<'m> CheckedField<'m> {
 
 impl ShapeTables<'_> {
     /// Returns the largest magnitude of each mode shape for each derivative.
-    fn scales(&self) -> Vec<Vec<f64>> {
+    fn find_largest_magnitudes(&self) -> Vec<Vec<f64>> {
         let largest = |rows: &Vec<Vec<f64>>| {
             let modes = rows.first().map_or(0, Vec::len);
             let of_mode = |r: usize| {
@@ -293,7 +293,7 @@ impl ShapeTables<'_> {
 
 /// Returns the times in s at which coefficients that depend on time are checked: 0, and ten times per decade over six
 /// decades.
-fn times() -> Vec<f64> {
+fn list_checked_times() -> Vec<f64> {
     let decades = (-30..=30).map(|k| 10.0_f64.powf(0.1 * f64::from(k)));
     std::iter::once(0.0).chain(decades).collect()
 }

@@ -17,7 +17,7 @@ use eomgen_model_spec::model::{Expr, ExprKind, Model};
 use eomgen_model_spec::span::Span;
 
 use super::rule::FieldRule;
-use products::{Expansion, expand, moving_jump};
+use products::{Expansion, expand, find_moving_jump};
 
 pub use motion::State;
 
@@ -25,7 +25,7 @@ pub use motion::State;
 pub const MAX_ERROR: f64 = 1e-9;
 
 /// Integral over a field that is computed by quadrature.
-struct Quadrature<'m> {
+struct QuadratureIntegral<'m> {
     field: FieldId,
     integrand: &'m Expr,
     expansion: Expansion<'m>,
@@ -57,7 +57,7 @@ pub fn check_coefficients(model: &Model, orders: &[usize]) -> Result<(), Diagnos
         .parameter_values()
         .map_err(|error| error.diagnostic())?;
     for integral in find_integrals(model) {
-        if let Some(jump) = moving_jump(model, integral.integrand) {
+        if let Some(jump) = find_moving_jump(model, integral.integrand) {
             return Err(Diagnostic::error(
                 "the position of this jump moves along the field, so that the quadrature points switch one after the other",
             )
@@ -79,7 +79,7 @@ pub fn check_coefficients(model: &Model, orders: &[usize]) -> Result<(), Diagnos
 
 /// Returns the largest quadrature error at a state, over the integrals that are not polynomials of the motion.
 /// Returns `None` if the model has no such integral, or none with a finite value at this state.
-pub fn worst_at_state(
+pub fn find_largest_error_at_state(
     model: &Model,
     orders: &[usize],
     state: State<'_>,
@@ -111,15 +111,15 @@ pub fn has_nonlinear_integrals(model: &Model) -> bool {
 }
 
 /// Finds the integrals of the model, each location in the specification once.
-fn find_integrals(model: &Model) -> Vec<Quadrature<'_>> {
-    let mut found: Vec<Quadrature<'_>> = Vec::new();
+fn find_integrals(model: &Model) -> Vec<QuadratureIntegral<'_>> {
+    let mut found: Vec<QuadratureIntegral<'_>> = Vec::new();
     if model.fields.is_empty() {
         return found;
     }
     model.for_each_expression(&mut |expr| {
         expr.visit(&mut |part| {
             if let ExprKind::Integral { field, integrand } = &part.kind {
-                found.push(Quadrature {
+                found.push(QuadratureIntegral {
                     field: *field,
                     integrand,
                     expansion: expand(model, integrand),

@@ -7,7 +7,7 @@ use eomgen_model_spec::model::{Expr, ExprKind, Model};
 use super::super::modes::Shapes;
 use super::super::quadrature::QuadratureRule;
 use super::super::rule::FieldRule;
-use super::Quadrature;
+use super::QuadratureIntegral;
 use super::panels::{Profile, divide};
 
 /// Time, parameters, state and inputs, in SI units.
@@ -24,7 +24,7 @@ pub struct State<'s> {
 }
 
 /// Model at a state.
-struct Scene<'m> {
+struct ModelAtState<'m> {
     model: &'m Model,
     orders: &'m [usize],
     at: State<'m>,
@@ -46,12 +46,12 @@ struct FieldValue {
 pub(super) fn error_at(
     model: &Model,
     orders: &[usize],
-    integral: &Quadrature<'_>,
+    integral: &QuadratureIntegral<'_>,
     at: State<'_>,
 ) -> Option<f64> {
     let order = orders[integral.field.index()];
     let shapes = model.fields.iter().zip(orders);
-    let mut scene = Scene {
+    let mut scene = ModelAtState {
         model,
         orders,
         at,
@@ -79,8 +79,8 @@ fn contains_element(integrand: &Expr) -> bool {
     found
 }
 
-impl Scene<'_> {
-    fn error(&self, integral: &Quadrature<'_>) -> Option<f64> {
+impl ModelAtState<'_> {
+    fn error(&self, integral: &QuadratureIntegral<'_>) -> Option<f64> {
         let field = integral.field;
         let spec = &self.model.fields[field];
         let order = self.orders[field.index()];

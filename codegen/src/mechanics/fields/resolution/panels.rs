@@ -2,29 +2,29 @@
 
 use eomgen_model_spec::interval::Interval;
 
-use super::super::quadrature::{QuadratureRule, gauss_legendre, legendre};
+use super::super::quadrature::{QuadratureRule, evaluate_legendre, gauss_legendre};
 
 /// Number of quadrature nodes per panel.
-const NODES: usize = 24;
+const NODES_PER_PANEL: usize = 24;
 
 /// Number of highest Legendre coefficients that must be zero up to rounding.
-const TAIL: usize = 4;
+const TAIL_COEFFICIENTS: usize = 4;
 
 /// Largest Legendre coefficient that counts as zero, relative to the largest magnitude of the function.
-const MAX_TAIL: f64 = 1e-13;
+const MAX_RELATIVE_TAIL: f64 = 1e-13;
 
 /// Largest fraction of the integral that a panel may miss between its nodes.
-const MAX_UNSEEN: f64 = 1e-11;
+const MAX_MISSED_FRACTION: f64 = 1e-11;
 
 /// Largest accepted ratio of the interval bounds to the range of the sampled values in a panel.
-const MAX_EXCESS: f64 = 4.0;
+const MAX_BOUNDS_RATIO: f64 = 4.0;
 
 /// Width of the shortest panel, relative to the domain. A jump inside it changes integrals by less than this
 /// fraction.
-const MIN_WIDTH: f64 = 1e-14;
+const MIN_PANEL_WIDTH: f64 = 1e-14;
 
 /// Number of panels from which interval bounds are no longer used, because they are too wide for this function.
-const MAX_PANELS: usize = 4000;
+const MAX_PANELS_WITH_BOUNDS: usize = 4000;
 
 /// Quadrature rule over all panels, and the narrowest panel.
 pub(super) struct Panels {
@@ -51,8 +51,8 @@ struct Samples {
 
 /// Divides [0, 1] at the knots, and between them until the function is resolved.
 pub(super) fn divide(knots: &[f64], function: &Profile<'_>) -> Panels {
-    let rule = gauss_legendre(NODES);
-    let tails = legendre_tails(&rule);
+    let rule = gauss_legendre(NODES_PER_PANEL);
+    let tails = compute_legendre_tails(&rule);
     let sample = |[a, b]: [f64; 2]| sample(&rule, &tails, function.value, [a, b]);
     let mut waiting: Vec<[f64; 2]> = knots.windows(2).map(|ends| [ends[0], ends[1]]).collect();
     let (mut total, mut greatest) = (0.0, 0.0_f64);
@@ -65,19 +65,22 @@ pub(super) fn divide(knots: &[f64], function: &Profile<'_>) -> Panels {
     while let Some(panel) = waiting.pop() {
         let samples = sample(panel);
         let width = panel[1] - panel[0];
-        let bounds = match ends.len() + waiting.len() < MAX_PANELS {
+        let bounds = match ends.len() + waiting.len() < MAX_PANELS_WITH_BOUNDS {
             true => function.bounds.map(|bounds| bounds(panel[0], panel[1])),
             false => None,
         };
         greatest = greatest.max(samples.low.abs()).max(samples.high.abs());
-        let is_smooth =
-            samples.tail <= MAX_TAIL * greatest || samples.tail * width <= MAX_TAIL * total;
+        let is_smooth = samples.tail <= MAX_RELATIVE_TAIL * greatest
+            || samples.tail * width <= MAX_RELATIVE_TAIL * total;
         let range = samples.high - samples.low;
         let is_bounded = bounds.is_none_or(|bounds| {
-            let excess = (bounds.high - bounds.low) - MAX_EXCESS * range;
-            excess * width <= MAX_UNSEEN * total
+            let excess = (bounds.high - bounds.low) - MAX_BOUNDS_RATIO * range;
+            excess * width <= MAX_MISSED_FRACTION * total
         });
-        match (is_smooth && is_bounded) || width <= MIN_WIDTH || ends.len() > 4 * MAX_PANELS {
+        match (is_smooth && is_bounded)
+            || width <= MIN_PANEL_WIDTH
+            || ends.len() > 4 * MAX_PANELS_WITH_BOUNDS
+        {
             true => ends.push(panel),
             false => {
                 let middle = 0.5 * (panel[0] + panel[1]);
@@ -127,12 +130,14 @@ fn sample(
 }
 
 /// Returns, for each of the last Legendre coefficients, the factors of the values at the nodes.
-fn legendre_tails(rule: &QuadratureRule) -> Vec<Vec<f64>> {
-    let last = NODES - TAIL..NODES;
+fn compute_legendre_tails(rule: &QuadratureRule) -> Vec<Vec<f64>> {
+    let last = NODES_PER_PANEL - TAIL_COEFFICIENTS..NODES_PER_PANEL;
     last.map(|degree| {
         let nodes = rule.nodes.iter().zip(&rule.weights);
         nodes
-            .map(|(s, weight)| (2 * degree + 1) as f64 * weight * legendre(degree, 2.0 * s - 1.0).0)
+            .map(|(s, weight)| {
+                (2 * degree + 1) as f64 * weight * evaluate_legendre(degree, 2.0 * s - 1.0).0
+            })
             .collect()
     })
     .collect()
@@ -152,18 +157,19 @@ mod tests {
     }
 
     #[test]
-    fn panels_find_a_step_of_a_millionth_between_all_nodes() {
-        let place = 0.287_345_6;
+    fn panels_detect_step_of_width_1e_6_between_nodes() {
+        let position = 0.287_345_6;
         let value = |s: f64| {
-            call(Function::Above, s - place, f64::NAN)
-                * call(Function::Above, place + 1e-6 - s, f64::NAN)
+            call(Function::Above, s - position, f64::NAN)
+                * call(Function::Above, position + 1e-6 - s, f64::NAN)
         };
         let above = |low, high| {
             let argument = Interval::from_ends(low, high);
             Interval::apply_function(Function::Above, &[argument])
         };
         let bounds = |a: f64, b: f64| {
-            above(a - place, b - place).multiply(above(place + 1e-6 - b, place + 1e-6 - a))
+            above(a - position, b - position)
+                .multiply(above(position + 1e-6 - b, position + 1e-6 - a))
         };
         let found = integral(&value, &bounds);
         assert!((found - 1e-6).abs() < 1e-13, "{found}");

@@ -5,7 +5,7 @@ use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::model::{Expr, ExprKind, Model};
 
 use super::super::contents::{Contents, contents};
-use super::super::degree::whole_exponent;
+use super::super::degree::read_integer_exponent;
 
 /// Highest power of the position with exact integrals.
 const MAX_POWER: u32 = 32;
@@ -50,7 +50,7 @@ pub(super) fn expand<'m>(model: &Model, integrand: &'m Expr) -> Expansion<'m> {
 }
 
 /// Returns the first subexpression that jumps at a position which moves along the field with time, motion or inputs.
-pub(super) fn moving_jump<'m>(model: &Model, integrand: &'m Expr) -> Option<&'m Expr> {
+pub(super) fn find_moving_jump<'m>(model: &Model, integrand: &'m Expr) -> Option<&'m Expr> {
     let mut found = None;
     integrand.visit(&mut |part| {
         let arguments = match &part.kind {
@@ -71,7 +71,7 @@ pub(super) fn moving_jump<'m>(model: &Model, integrand: &'m Expr) -> Option<&'m 
 impl Coefficient<'_> {
     /// Returns the degree of a polynomial of the position; `None` for other functions.
     pub fn power(&self) -> Option<u32> {
-        let power = power_of_position(self.value)?;
+        let power = read_position_power(self.value)?;
         (!self.is_divisor).then_some(power)
     }
 }
@@ -79,7 +79,7 @@ impl Coefficient<'_> {
 /// Expands an expression into a sum of products; `None` if this is impossible or takes too many products.
 fn products<'m>(model: &Model, expr: &'m Expr) -> Option<Vec<Product<'m>>> {
     let all = contents(model, expr);
-    if !all.vary_along_field() {
+    if !all.varies_along_field() {
         return Some(vec![Product::default()]);
     }
     if !all.shapes && !all.motion {
@@ -99,13 +99,16 @@ fn products<'m>(model: &Model, expr: &'m Expr) -> Option<Vec<Product<'m>>> {
             BinaryOperator::Add | BinaryOperator::Subtract => {
                 let mut sum = products(model, left)?;
                 sum.extend(products(model, right)?);
-                Some(without_repetition(sum))
+                Some(remove_repetitions(sum))
             }
             BinaryOperator::Multiply => multiply(&products(model, left)?, &products(model, right)?),
             BinaryOperator::Divide => {
                 let divisor = contents(model, right);
                 let numerators = products(model, left)?;
-                match (divisor.vary_along_field(), divisor.shapes || divisor.motion) {
+                match (
+                    divisor.varies_along_field(),
+                    divisor.shapes || divisor.motion,
+                ) {
                     (false, _) => Some(numerators),
                     (true, false) => multiply(&numerators, &[Product::coefficient(right, true)]),
                     (true, true) => None,
@@ -114,7 +117,7 @@ fn products<'m>(model: &Model, expr: &'m Expr) -> Option<Vec<Product<'m>>> {
             BinaryOperator::Power => {
                 let base = products(model, left)?;
                 let mut power = vec![Product::default()];
-                for _ in 0..whole_exponent(right)? {
+                for _ in 0..read_integer_exponent(right)? {
                     power = multiply(&power, &base)?;
                 }
                 Some(power)
@@ -138,11 +141,11 @@ fn multiply<'m>(one: &[Product<'m>], other: &[Product<'m>]) -> Option<Vec<Produc
             }
         })
     });
-    Some(without_repetition(products.collect()))
+    Some(remove_repetitions(products.collect()))
 }
 
 /// Removes repeated products; factors that are constant along the field are ignored.
-fn without_repetition(products: Vec<Product<'_>>) -> Vec<Product<'_>> {
+fn remove_repetitions(products: Vec<Product<'_>>) -> Vec<Product<'_>> {
     let mut distinct: Vec<Product<'_>> = Vec::new();
     for product in products {
         if !distinct.contains(&product) {
@@ -169,25 +172,25 @@ impl<'m> Product<'m> {
 }
 
 /// Returns the degree of a polynomial of the position; `None` for other functions.
-fn power_of_position(expr: &Expr) -> Option<u32> {
+fn read_position_power(expr: &Expr) -> Option<u32> {
     match &expr.kind {
         ExprKind::Position(_) => Some(1),
-        ExprKind::Negate(operand) => power_of_position(operand),
+        ExprKind::Negate(operand) => read_position_power(operand),
         ExprKind::Binary(operator, left, right) => {
-            let one = power_of_position(left)?;
+            let one = read_position_power(left)?;
             match operator {
-                BinaryOperator::Power if one > 0 => Some(one * whole_exponent(right)?),
-                BinaryOperator::Power => (power_of_position(right)? == 0).then_some(0),
-                BinaryOperator::Divide => (power_of_position(right)? == 0).then_some(one),
-                BinaryOperator::Multiply => Some(one + power_of_position(right)?),
+                BinaryOperator::Power if one > 0 => Some(one * read_integer_exponent(right)?),
+                BinaryOperator::Power => (read_position_power(right)? == 0).then_some(0),
+                BinaryOperator::Divide => (read_position_power(right)? == 0).then_some(one),
+                BinaryOperator::Multiply => Some(one + read_position_power(right)?),
                 BinaryOperator::Add | BinaryOperator::Subtract => {
-                    Some(one.max(power_of_position(right)?))
+                    Some(one.max(read_position_power(right)?))
                 }
             }
         }
         ExprKind::Call(_, arguments) => arguments
             .iter()
-            .all(|part| power_of_position(part) == Some(0))
+            .all(|part| read_position_power(part) == Some(0))
             .then_some(0),
         _ => Some(0),
     }

@@ -1,7 +1,7 @@
 //! Impulses of contacts with friction. Restitution at a single contact is energetic (W. J. Stronge). Contacts that are
 //! hit together receive simultaneous impulses, with a common limit of their restitutions.
 
-use eomgen_codegen::independence::vectors::max_magnitude;
+use eomgen_codegen::independence::vectors::find_max_magnitude;
 use eomgen_sim::contact_friction::{SingleImpact, energetic_impulse};
 
 use super::super::Contacts;
@@ -23,7 +23,7 @@ impl Contacts {
         let required: Vec<f64> = required
             .map(|place| self.compute_required_rate_change(*place, time_since_hit, 1.0))
             .collect();
-        let small = RATE_ROUNDING * max_magnitude(&required);
+        let small = RATE_ROUNDING * find_max_magnitude(&required);
         // The rate of a closed contact is only rounding and must not count as a hit.
         let is_hit = |index: &usize| !self.rests(touching[*index]) && required[*index] < -small;
         let mut hit = (0..touching.len()).filter(is_hit);
@@ -114,7 +114,7 @@ impl Contacts {
     ) -> bool {
         let before = self.compute_hit_rates(touching, time_since_hit);
         let changes = self.compute_rate_changes(touching, impulses);
-        let small = RATE_ROUNDING * max_magnitude(&before);
+        let small = RATE_ROUNDING * find_max_magnitude(&before);
         let mut after = touching.iter().zip(before.iter().zip(&changes));
         after.all(|(place, (before, change))| match self.rests(*place) {
             true => *change >= -small,

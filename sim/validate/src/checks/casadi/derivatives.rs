@@ -1,6 +1,6 @@
-//! Comparison of derivatives with finite differences: the time derivatives of the rates with differences of the rates,
-//! the second derivatives of the weighted rates with differences of the Jacobians. Other checks compare the Jacobians
-//! with the oracle.
+//! Comparison of derivatives with finite differences. The time derivatives of the rates are compared with differences
+//! of the rates; the second derivatives of the weighted rates, with differences of the Jacobians. Other checks compare
+//! the Jacobians with the oracle.
 
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
@@ -29,12 +29,12 @@ const STEPS: [f64; 5] = [
 const SMALLEST_ADDEND: f64 = 1e-6;
 
 /// Rates, multiplied by the weights that the harness uses.
-pub struct Weighted {
+pub struct WeightedRates {
     evaluator: Evaluator,
     weights: Vec<f64>,
 }
 
-impl Weighted {
+impl WeightedRates {
     pub fn new(program: &Program) -> Self {
         Self {
             evaluator: Evaluator::new(program.clone()),
@@ -58,7 +58,7 @@ impl Weighted {
             })?;
             Some(deviations(by_time.as_slice(), 1.0, &changes, &[]))
         });
-        best(found).map(|entries| worst_deviation(&entries))
+        smallest_deviations(found).map(|entries| worst_deviation(&entries))
     }
 
     /// Returns the largest deviation of the second derivatives from differences of the gradient; `None` close to a
@@ -96,13 +96,13 @@ impl Weighted {
             let central = STEPS
                 .into_iter()
                 .filter_map(|step| slopes(step, &mut along));
-            let mut entries = best(central.map(compare))?;
+            let mut entries = smallest_deviations(central.map(compare))?;
             let is_parameter = place >= whole.len() - parameters.len();
             if is_parameter && worst_deviation(&entries) > DERIVATIVE_TOLERANCE {
                 let steps = STEPS.into_iter().flat_map(|step| [step, -step]);
                 let one_sided = steps.filter_map(|step| one_sided_slopes(step, &mut along));
                 let all = std::iter::once(entries.clone()).chain(one_sided.map(compare));
-                entries = best(all).unwrap_or(entries);
+                entries = smallest_deviations(all).unwrap_or(entries);
             }
             let found = worst_deviation(&entries);
             worst = Some(worst.map_or(found, |worst| worst.max(found)));
@@ -182,7 +182,7 @@ fn deviations(derivatives: &[f64], size: f64, changes: &[Slope], least: &[f64]) 
 }
 
 /// Returns the smallest deviation of each derivative over all step sizes; `None` without a step.
-fn best(found: impl Iterator<Item = Vec<f64>>) -> Option<Vec<f64>> {
+fn smallest_deviations(found: impl Iterator<Item = Vec<f64>>) -> Option<Vec<f64>> {
     let mut smallest: Option<Vec<f64>> = None;
     for found in found {
         let best = match smallest {

@@ -25,7 +25,7 @@ use super::linked_program::{format_bits, require_success};
 use crate::certificate::{Check, SkipKind, Worst};
 use crate::compiler::{run, write};
 use crate::oracle::{Oracle, OracleError};
-use derivatives::{DERIVATIVE_TOLERANCE, Weighted};
+use derivatives::{DERIVATIVE_TOLERANCE, WeightedRates};
 use expected::{Expected, expected_results};
 use interface::{Function, Sparsity, functions};
 
@@ -93,7 +93,7 @@ pub fn check(
         Precision::Double,
         (true, usize::MAX),
     );
-    let Called {
+    let FunctionComparison {
         differing,
         hessians,
     } = compare_functions(&calls, &called);
@@ -159,7 +159,7 @@ fn run_harness(
 }
 
 /// Result of the comparison of the printed functions.
-struct Called {
+struct FunctionComparison {
     /// Number of differing results, with the first one.
     differing: Worst,
     /// Second derivatives of the weighted rates by time, state, inputs and parameters, for each call.
@@ -183,7 +183,7 @@ impl Differences {
     }
 }
 
-fn compare_functions(calls: &Calls<'_>, printed: &str) -> Called {
+fn compare_functions(calls: &Calls<'_>, printed: &str) -> FunctionComparison {
     let program = calls.program;
     let mut lines = printed.lines();
     let mut next = || lines.next().unwrap_or("nothing");
@@ -265,7 +265,7 @@ fn compare_functions(calls: &Calls<'_>, printed: &str) -> Called {
         Some(first) => format!("first in {first}"),
         None => format!("{} results and names for CasADi", found.compared),
     };
-    Called {
+    FunctionComparison {
         differing: Worst::from_deviation(found.count as f64, detail),
         hessians,
     }
@@ -283,7 +283,7 @@ fn is_equal(expected: &DMatrix<f64>, found: &DMatrix<f64>) -> bool {
 fn compare_derivatives(calls: &Calls<'_>, hessians: &[DMatrix<f64>]) -> Vec<Check> {
     let program = calls.program;
     let has_hessians = program.outputs.gradient_derivative.is_some();
-    let mut weighted = Weighted::new(program);
+    let mut weighted = WeightedRates::new(program);
     let (mut by_time, mut second) = (Worst::default(), Worst::default());
     let states = super::interface::STATES;
     let points = (1..).zip(calls.points().zip(hessians)).take(states);

@@ -1,5 +1,5 @@
-// Prints the interface of emitted Rust, then reads parameters, times, states and inputs as hexadecimal bits, and prints
-// the results of the functions the same way, in double precision and then in single precision.
+// Prints the interface of emitted Rust. Then it reads parameters, times, states and inputs as hexadecimal bits and
+// prints the results of the functions as bits, first in double and then in single precision.
 #![allow(unused_variables)]
 
 fn show<T: Copy + Into<f64>>(numbers: &[T]) {

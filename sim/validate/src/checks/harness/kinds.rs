@@ -39,8 +39,8 @@ const SMALLEST: f64 = 1.0 / ((1_u128 << 100) as f64 * (1_u64 << 50) as f64);
 
 impl Rounded {
     /// Adds the rounding error of an elementary function, at most two units in the last place, to the propagated error.
-    fn of_function(number: f64, error: f64) -> Self {
-        Self::result(number, error + 3.0 * (UNIT * number.abs() + SMALLEST))
+    fn with_function_error(number: f64, error: f64) -> Self {
+        Self::with_rounding(number, error + 3.0 * (UNIT * number.abs() + SMALLEST))
     }
     /// Returns a bound of the error of an angle. An angle above 1e5 has an error of at least one unit in the last
     /// place; an angle above 2^22 has no bound.
@@ -50,7 +50,7 @@ impl Rounded {
         if size >= 4_194_304.0 { f64::INFINITY } else { self.error + last_place }
     }
     /// Adds the rounding error of the result to the propagated error.
-    fn result(number: f64, error: f64) -> Self {
+    fn with_rounding(number: f64, error: f64) -> Self {
         let error = error + UNIT * number.abs() + SMALLEST;
         let beyond = number.abs() + error > f64::from(f32::MAX) || error.is_nan();
         Self { number, error: if beyond { f64::INFINITY } else { error } }
@@ -60,14 +60,14 @@ impl Rounded {
 impl Add for Rounded {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        Self::result(self.number + other.number, self.error + other.error)
+        Self::with_rounding(self.number + other.number, self.error + other.error)
     }
 }
 
 impl Sub for Rounded {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
-        Self::result(self.number - other.number, self.error + other.error)
+        Self::with_rounding(self.number - other.number, self.error + other.error)
     }
 }
 
@@ -77,7 +77,7 @@ impl Mul for Rounded {
         let error = self.number.abs() * other.error
             + other.number.abs() * self.error
             + self.error * other.error;
-        Self::result(self.number * other.number, error)
+        Self::with_rounding(self.number * other.number, error)
     }
 }
 
@@ -91,7 +91,7 @@ impl Div for Rounded {
         } else {
             f64::INFINITY
         };
-        Self::result(quotient, error)
+        Self::with_rounding(quotient, error)
     }
 }
 
@@ -104,7 +104,7 @@ impl Neg for Rounded {
 
 impl Scalar for Rounded {
     fn number(value: f64) -> Self {
-        Self::result(value, 0.0)
+        Self::with_rounding(value, 0.0)
     }
     /// Includes the other branch in the bound if single precision could select it.
     fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
@@ -126,7 +126,7 @@ impl Scalar for Rounded {
             let slope: f64 = F::slope(self.number + error, near);
             worse((near - value).abs(), slope.abs() * bound)
         });
-        Self::of_function(value, worse(worse(error[0], error[1]), error[2]))
+        Self::with_function_error(value, worse(worse(error[0], error[1]), error[2]))
     }
     fn function_of_two<F: FunctionOfTwo>(self, other: Self) -> Self {
         let value = F::value(self.number, other.number);
@@ -140,7 +140,7 @@ impl Scalar for Rounded {
                 error = worse(error, worse((near - value).abs(), bound));
             }
         }
-        Self::of_function(value, error)
+        Self::with_function_error(value, error)
     }
 }
 

@@ -147,7 +147,7 @@ impl UnitSource {
     }
 
     /// Returns the path of the library for this platform.
-    fn library(&self, version: u8, identifier: &str) -> Option<PathBuf> {
+    fn find_library(&self, version: u8, identifier: &str) -> Option<PathBuf> {
         let system = match OS {
             "macos" => "darwin",
             system => system,
@@ -200,7 +200,7 @@ fn run_library(
     let exchange = description.identifiers.get("ModelExchange");
     let identifier = exchange.or(description.identifiers.get("CoSimulation"));
     let identifier = identifier.ok_or_else(|| "the description names no library".to_owned())?;
-    let library = unit.library(version, identifier).ok_or_else(|| {
+    let library = unit.find_library(version, identifier).ok_or_else(|| {
         Obstacle::NotRun("the unit contains no library for this kind of computer".to_owned())
     })?;
     let folder = tempfile::tempdir()

@@ -2,8 +2,8 @@
 //! with slender links).
 //!
 //! An arm of inertia J_a and length L turns by phi about the vertical. At its end, a pendulum of mass m, with its
-//! centre l from the hinge and inertia J about the centre, swings by theta in the plane perpendicular to the arm; theta
-//! = 0 if it hangs down.
+//! centre l from the hinge and inertia J about the centre, swings by theta in the plane perpendicular to the arm. It
+//! hangs down at theta = 0.
 
 use super::linear_system::LinearSystem;
 use super::{NotApplicable, StateAndParameters};

@@ -1,7 +1,6 @@
 //! Quadrotor with a load on a rope: Newton's equations of two points with the rope force, and Euler's equations in the
-//! body frame of the quadrotor (Sreenath, Lee and Kumar, *Proc. 52nd IEEE Conf. Decision and Control*, 2013, with air
-//! drag on the load). With d = s - r, v = d' and a stabilisation rate w, the constraint g = d.d - l^2 follows g'' + 2 w
-//! g' + w^2 g = 0.
+//! body frame (Sreenath, Lee and Kumar, *Proc. 52nd IEEE Conf. Decision and Control*, 2013, with air drag on the load).
+//! With d = s - r, v = d' and a stabilisation rate w, the constraint g = d.d - l^2 follows g'' + 2 w g' + w^2 g = 0.
 
 use super::{NotApplicable, StateAndParameters};
 use crate::references::evaluation::{Evaluation, Row};

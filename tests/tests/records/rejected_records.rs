@@ -474,7 +474,7 @@ fn weaknesses_of_a_record_are_noted() {
 }
 
 #[test]
-fn single_wrong_samples_are_left_out_and_named() {
+fn single_outliers_are_excluded_and_reported() {
     for (lines, error) in [(&[50][..], 1e6), (&[11, 70, 200], -0.4), (&[390], 0.05)] {
         let measured = Measured::stage(0.0);
         let wrong = |place: usize, cell: &str| {

@@ -231,7 +231,7 @@ fn play_in_a_coupling_is_found_as_backlash() {
 }
 
 #[test]
-fn undeclared_stiffness_is_named_before_pairs() {
+fn undeclared_stiffness_is_named_before_pairs_of_effects() {
     let effect =
         oscillator(&|x, v, u| u - 0.82 * 400.0 * x - 4.0 * v).only_effect("parameter_shift", "k");
     assert_near(&effect, "k", 0.82 * 400.0, 0.01);

@@ -91,7 +91,7 @@ fn record(turn: f64) -> String {
 }
 
 #[test]
-fn friction_that_falls_slowly_is_found() {
+fn slowly_decreasing_stribeck_friction_is_found() {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: &str| folder.path().join(name);
     for (name, text) in [

@@ -1,5 +1,5 @@
-//! Tests of correct models that are difficult to check: terms of a row cancel, functions have a domain, a force
-//! increases the energy, the motion comes to rest, switches cancel. Their certificates pass and report the coverage.
+//! Tests of correct models that are difficult to check. Terms of a row cancel, functions have a domain, a force
+//! increases the energy, the motion stops, or switches cancel. The certificates pass and report the coverage.
 
 use eomgen_tests::certified::{certify, check_model};
 use eomgen_validate::certificate::{Certificate, Check, Coverage, SkipKind, Verdict};
@@ -225,7 +225,7 @@ x = "0.2*E/tau*(dot(x)*tau)^2"
 }
 
 #[test]
-fn switches_that_drop_out_of_the_equations_need_no_guard() {
+fn switches_that_cancel_in_the_equations_need_no_guard() {
     let text = masses("k*L^2*contact(x, L/2)*sin(sqrt(k/m)*t)");
     let model = check_model(&text);
     let certificate = certify(&model, &model);

@@ -5,7 +5,9 @@ use std::fs;
 use eomgen_tests::models::path;
 use eomgen_tests::program::{run_accepted, run_rejected};
 
-use super::place::{MAP, OSCILLATOR, SweepFolder, accept, column, refuse, results, table};
+use super::sweep_folder::{
+    MAP, OSCILLATOR, SweepFolder, accept, column, expect_rejection, results, table,
+};
 
 #[test]
 fn different_sweep_in_folder_is_rejected_and_unchanged() {
@@ -17,12 +19,12 @@ fn different_sweep_in_folder_is_rejected_and_unchanged() {
         (["--vary", "k=4:5:1"], "--vary"),
         (["--frequency", "omega2"], "omega2"),
     ] {
-        let message = refuse(&place.sweep("map", &[&MAP[..], &more[..]].concat()));
+        let message = expect_rejection(&place.sweep("map", &[&MAP[..], &more[..]].concat()));
         assert!(message.contains(what), "{message}");
     }
     let changed = OSCILLATOR.replace("value = 3,", "value = 3.5,");
     fs::write(place.path_to("oscillator.toml"), changed).expect("a specification");
-    let message = refuse(&place.sweep("map", &MAP));
+    let message = expect_rejection(&place.sweep("map", &MAP));
     assert!(
         message.contains("differences: the specification"),
         "{message}"
@@ -48,7 +50,7 @@ fn invalid_engine_options_are_rejected() {
         ),
         (&["--engine", "dask"], "DASK_SCHEDULER_ADDRESS"),
     ] {
-        let message = refuse(&place.sweep("map", &[&MAP[..], more].concat()));
+        let message = expect_rejection(&place.sweep("map", &[&MAP[..], more].concat()));
         assert!(message.contains(what), "{more:?}: {message}");
         assert!(!place.path_to("map/sweep.parquet").exists());
     }
@@ -123,7 +125,7 @@ fn invalid_sweeps_are_rejected_before_writing() {
             "name each measure once",
         ),
     ] {
-        let message = refuse(&place.sweep("never", &more));
+        let message = expect_rejection(&place.sweep("never", &more));
         assert!(message.contains(part), "{more:?}: {message}");
         assert!(!place.path_to("never").exists(), "{more:?}");
     }

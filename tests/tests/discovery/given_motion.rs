@@ -329,7 +329,7 @@ fn find_on_pendulum(swing: f64, step: f64, added: fn([f64; 3]) -> f64) -> Vec<Va
 }
 
 #[test]
-fn halves_of_a_pair_form_classes_with_parameters() {
+fn both_effects_of_a_pair_form_classes_with_parameters() {
     // An inertia without weight is equivalent to a heavier bob with less gravity.
     let effects = find_on_pendulum(1.0, 0.005, |[_, _, a]| 0.2 * 1.9 * 0.42 * 0.42 * a);
     let of = |effect: &str| {

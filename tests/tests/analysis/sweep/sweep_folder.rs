@@ -70,7 +70,7 @@ pub fn accept(arguments: &[String]) -> String {
     run_accepted(&arguments.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
-pub fn refuse(arguments: &[String]) -> String {
+pub fn expect_rejection(arguments: &[String]) -> String {
     run_rejected(&arguments.iter().map(String::as_str).collect::<Vec<_>>())
 }
 

@@ -88,7 +88,7 @@ fn body_stops_after_it_passes_the_common_direction() {
 }
 
 #[test]
-fn body_leaves_the_common_direction_from_rest() {
+fn body_starts_from_rest_in_another_direction_than_the_common_one() {
     for_all(|run, frictions| {
         let motion = simulate(run, (0.0, 0.0), (1.0, "y/l", frictions), 1.0);
         let [x, y, speed] = along_axes(run.0, &motion.trajectory.final_state);
@@ -120,7 +120,7 @@ fn body_stops_in_a_direction_that_turns_with_time() {
 }
 
 #[test]
-fn belt_slips_over_a_block_that_the_floor_holds() {
+fn belt_slips_on_a_block_that_sticks_to_the_floor() {
     // While the belt is faster than the block, it pushes with 1 N and the block accelerates with 0.5 m/s^2. Then belt
     // and floor decelerate the block with 1.5 m/s^2.
     let mut reached = 1.0;
@@ -148,7 +148,7 @@ fn belt_slips_over_a_block_that_the_floor_holds() {
 }
 
 #[test]
-fn floor_at_its_limit_holds_a_block_that_a_contact_releases() {
+fn block_released_by_a_contact_sticks_to_the_floor_at_the_friction_bound() {
     // The force of the belt cancels the load. The contact acts with cos(t) < 1 along x, and with sin(t) along y.
     let text = "[model]\nname = \"block\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
          K = { value = 1, unit = \"N\" }\nw = { value = 1, unit = \"1/s\" }\nU = { value = 1, unit = \"m/s\" }\n\
