@@ -4,13 +4,14 @@
 //! `remaining_gap`, `summary`, formatted numbers (`quantity`), `experiment`. Documents: `json`, and
 //! the HTML page (`page`) with `pictures`, `overlay` of measured and simulated motion, and the
 //! interactive model (`playback`). Checks that return notes: wrong units (`units`), noise of a
-//! given motion (`motion_noise`), high noise floor (`high_floor`), common delay, lag and lead of
+//! given motion (`motion_noise`), noise declared too small (`declared_noise`), high noise floor (`high_floor`), common delay, lag and lead of
 //! all channels (`common_delay`, `common_lag`, `held_input`), contradicted initial state
 //! (`initial_states`).
 
 mod certification;
 mod common_delay;
 mod common_lag;
+mod declared_noise;
 mod discovery;
 mod experiment;
 mod held_input;

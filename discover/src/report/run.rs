@@ -22,6 +22,7 @@ use crate::model::stop::StopRequest;
 use crate::model::unknowns::note_input_delay;
 use crate::report::common_delay::note_common_delay;
 use crate::report::common_lag::note_common_lag;
+use crate::report::declared_noise::note_declared_noise;
 use crate::report::discovery::{
     Certainty, compute_closure, compute_gap, describe_deviations, list_nuisances, list_refitted,
     list_rejected, list_sensors, list_steps, summarise_effects,
@@ -106,6 +107,7 @@ pub fn compare(
     notes.extend(note_common_delay(&problem, &fit));
     notes.extend(note_held_input(&problem, &fit));
     notes.extend(note_motion_noise(&problem, &fit));
+    notes.extend(note_declared_noise(&problem, &fit));
     for note in note_high_floor(&problem, &floor) {
         progress(&format!("note: {note}"));
         notes.push(note);
@@ -242,6 +244,7 @@ pub fn discover_until(
         .chain(note_held_input(&problem, best))
         .chain(RemainingGap::from_channels(&gap, ModelStage::Extended).note_missing_in_training())
         .chain(note_motion_noise(&problem, best))
+        .chain(note_declared_noise(&problem, best))
         .chain(note_high_floor(&problem, &floor))
         .chain(note_wrong_units(&problem, &found))
     {

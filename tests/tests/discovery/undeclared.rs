@@ -34,3 +34,17 @@ fn dry_friction_is_reported_without_equivalent_parameter() {
     assert_eq!(effect["effect"], "coulomb_friction", "{effect:#}");
     assert_eq!(effect["status"], "named", "{effect:#}");
 }
+
+#[test]
+fn noise_declared_too_small_is_noted() {
+    let note_of = |declared: &str| {
+        let measured = Measured::stage_with_force(&|_| 0.0);
+        let description = DESCRIPTION.replace("noise = 1e-6", declared);
+        measured.write("dataset.toml", description.as_bytes());
+        let (document, _) = measured.run_command("compare", "compared");
+        let notes = document["notes"].to_string();
+        notes.contains("declared noise is 500 nm")
+    };
+    assert!(note_of("noise = 5e-7"));
+    assert!(!note_of("noise = 1e-6"));
+}
