@@ -21,8 +21,8 @@ pub mod planetary_arm_order_7;
 #[rustfmt::skip]
 pub mod planetary_arm_order_8;
 
-/// Model of any order. One observer, one solver or one test serves all variants: they are types with this trait, such
-/// as `MODULE::Parameters`. Numbers are in SI.
+/// Model of any order. Each variant implements it by a type such as `MODULE::Parameters`, so that one observer, one
+/// solver or one test is generic over all variants. Numbers are in SI.
 pub trait Model: Copy + Default {
     /// Names of the states, in their order.
     const STATE_NAMES: &'static [&'static str];
@@ -40,17 +40,17 @@ pub trait Model: Copy + Default {
     type State: Copy + AsRef<[f64]> + AsMut<[f64]>;
     /// Observables, in their order.
     type Observables: Copy + AsRef<[f64]>;
-    /// Values of the switching surfaces.
+    /// Values of the switching functions.
     type Guards: Copy + AsRef<[f64]>;
     /// Inputs.
     type Inputs: Copy;
     /// Prepared coefficients.
     type Coefficients: Copy;
-    /// Returns parameters with these numbers, in the order of their names; missing ones are 0.
+    /// Returns parameters with these values, in the order of `PARAMETER_NAMES`; missing values are 0.
     fn from_numbers(numbers: &[f64]) -> Self;
-    /// Returns inputs with these numbers, in the order of their names; missing ones are 0.
+    /// Returns inputs with these values, in the order of `INPUT_NAMES`; missing values are 0.
     fn inputs(numbers: &[f64]) -> Self::Inputs;
-    /// Returns the state 0.
+    /// Returns the state with all entries 0.
     fn zero_state() -> Self::State;
     /// Prepares the coefficients; `None` if the mass matrix is not positive definite.
     fn prepare(&self) -> Option<Self::Coefficients>;
@@ -68,7 +68,7 @@ pub trait Model: Copy + Default {
         inputs: &Self::Inputs,
         coefficients: &Self::Coefficients,
     ) -> Self::Observables;
-    /// Returns the values of the switching surfaces.
+    /// Returns the values of the switching functions.
     fn guards(
         t: f64,
         state: &Self::State,
@@ -89,7 +89,7 @@ pub trait Model: Copy + Default {
         inputs: &Self::Inputs,
         coefficients: &Self::Coefficients,
     ) -> f64;
-    /// Returns an entry of the mass matrix; `None` outside of it.
+    /// Returns an entry of the mass matrix; `None` if an index is out of range.
     fn mass(
         t: f64,
         state: &Self::State,

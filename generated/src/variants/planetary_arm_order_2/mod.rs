@@ -310,7 +310,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_2 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=39c21ed71c2b52706cc95411713d844ff3e24d6b6d4933015c6a938257dac6a3 generator=0.2.0;";
+pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_2 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=cde043e14eac8a56505c487c9d244ec0175e4a778840d5b22ee235c9bf0014c4 generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -527,7 +527,7 @@ pub struct Coefficients<T = f64> {
     pub M_x_pr_x_pr: T,
     /// `M_x_sp_x_c + pivot_x_pr` \[kg] kinetic.sun, kinetic.planets
     pub M_x_pr_x_c: T,
-    /// `4.0*I_s/s_r_s_r_s + pivot_x_pr + s_hppb7 + s_f4jtk + s_1u3rt` with values of the preparation \[kg] kinetic.*
+    /// `4.0*I_s/s_r_s_r_s + pivot_x_pr + s_hppb7 + s_f4jtk + s_1u3rt` with prepared intermediate values \[kg] kinetic.*
     pub M_x_c_x_c: T,
     /// `rho*A*l*l*INTEGRAL_S1_PHI/(cos(alpha)*r_c)` \[kg] kinetic.arm
     pub M_x_c_q: [T; 2],
@@ -1240,13 +1240,13 @@ pub trait Real: Scalar {
     fn significand(self) -> Self;
 }
 
-/// Elementary function: plain operations in a fixed order, with the same bits on every machine.
+/// Elementary function: plain operations in a fixed order, bit-identical on every machine.
 pub trait Function {
     /// Computes the value in double precision.
     fn value<T: Real>(x: T) -> T;
     /// Computes the value in single precision.
     fn single<T: Real>(x: T) -> T;
-    /// Computes the derivative at x; `value` is the value there.
+    /// Computes the derivative at x; `value` is the value at x.
     fn slope<T: Scalar>(x: T, value: T) -> T;
 }
 
@@ -1256,7 +1256,7 @@ pub trait FunctionOfTwo {
     fn value<T: Real>(x: T, y: T) -> T;
     /// Computes the value in single precision.
     fn single<T: Real>(x: T, y: T) -> T;
-    /// Computes the derivatives by x and y; `value` is the value there.
+    /// Computes the derivatives by x and y; `value` is the value at (x, y).
     fn slopes<T: Scalar>(x: T, y: T, value: T) -> [T; 2];
 }
 impl Scalar for f64 {
@@ -1377,9 +1377,9 @@ fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
     converted
 }
 
-/// Adds the first `N` of eight numbers, neighbours in pairs.
+/// Returns the pairwise sum of the first `N` of eight numbers.
 #[inline(always)]
-fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
+fn pairwise_sum<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
     let a = if N > 1 { s[0] + s[1] } else { s[0] };
     let b = if N > 3 { s[2] + s[3] } else { s[2] };
     let c = if N > 5 { s[4] + s[5] } else { s[4] };
@@ -1399,7 +1399,7 @@ fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
     for k in 0..N {
         s[k] = element(k);
     }
-    paired::<N, T>(&s)
+    pairwise_sum::<N, T>(&s)
 }
 
 /// Sine for |x| up to 1e9 (4194303 in single precision), NaN beyond.

@@ -324,7 +324,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_3 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=00e9beabd80b38fc1e5d629c9942d30a1577c123d850c41b55428c9a9e5c08bf generator=0.2.0;";
+pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_3 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=3207220e92d790369d61cb91f9bd3d0b236ba72797184990ef3f747710146709 generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -541,7 +541,7 @@ pub struct Coefficients<T = f64> {
     pub M_x_pr_x_pr: T,
     /// `M_x_sp_x_c + pivot_x_pr` \[kg] kinetic.sun, kinetic.planets
     pub M_x_pr_x_c: T,
-    /// `4.0*I_s/s_r_s_r_s + pivot_x_pr + s_hppb7 + s_f4jtk + s_1u3rt` with values of the preparation \[kg] kinetic.*
+    /// `4.0*I_s/s_r_s_r_s + pivot_x_pr + s_hppb7 + s_f4jtk + s_1u3rt` with prepared intermediate values \[kg] kinetic.*
     pub M_x_c_x_c: T,
     /// `rho*A*l*l*INTEGRAL_S1_PHI/(cos(alpha)*r_c)` \[kg] kinetic.arm
     pub M_x_c_q: [T; 3],
@@ -1270,13 +1270,13 @@ pub trait Real: Scalar {
     fn significand(self) -> Self;
 }
 
-/// Elementary function: plain operations in a fixed order, with the same bits on every machine.
+/// Elementary function: plain operations in a fixed order, bit-identical on every machine.
 pub trait Function {
     /// Computes the value in double precision.
     fn value<T: Real>(x: T) -> T;
     /// Computes the value in single precision.
     fn single<T: Real>(x: T) -> T;
-    /// Computes the derivative at x; `value` is the value there.
+    /// Computes the derivative at x; `value` is the value at x.
     fn slope<T: Scalar>(x: T, value: T) -> T;
 }
 
@@ -1286,7 +1286,7 @@ pub trait FunctionOfTwo {
     fn value<T: Real>(x: T, y: T) -> T;
     /// Computes the value in single precision.
     fn single<T: Real>(x: T, y: T) -> T;
-    /// Computes the derivatives by x and y; `value` is the value there.
+    /// Computes the derivatives by x and y; `value` is the value at (x, y).
     fn slopes<T: Scalar>(x: T, y: T, value: T) -> [T; 2];
 }
 impl Scalar for f64 {
@@ -1407,9 +1407,9 @@ fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
     converted
 }
 
-/// Adds the first `N` of eight numbers, neighbours in pairs.
+/// Returns the pairwise sum of the first `N` of eight numbers.
 #[inline(always)]
-fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
+fn pairwise_sum<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
     let a = if N > 1 { s[0] + s[1] } else { s[0] };
     let b = if N > 3 { s[2] + s[3] } else { s[2] };
     let c = if N > 5 { s[4] + s[5] } else { s[4] };
@@ -1429,7 +1429,7 @@ fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
     for k in 0..N {
         s[k] = element(k);
     }
-    paired::<N, T>(&s)
+    pairwise_sum::<N, T>(&s)
 }
 
 /// Sine for |x| up to 1e9 (4194303 in single precision), NaN beyond.

@@ -380,7 +380,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_7 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=64587f79aed22c05c234a592df7f59c8810f980ea68a65d68a0cf89ab5afff1e generator=0.2.0;";
+pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_7 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=0055682447d353f2d90b7881193253fc401136cfd0a75bab949928dab4441e00 generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -597,7 +597,7 @@ pub struct Coefficients<T = f64> {
     pub M_x_pr_x_pr: T,
     /// `M_x_sp_x_c + pivot_x_pr` \[kg] kinetic.sun, kinetic.planets
     pub M_x_pr_x_c: T,
-    /// `4.0*I_s/s_r_s_r_s + pivot_x_pr + s_hppb7 + s_f4jtk + s_1u3rt` with values of the preparation \[kg] kinetic.*
+    /// `4.0*I_s/s_r_s_r_s + pivot_x_pr + s_hppb7 + s_f4jtk + s_1u3rt` with prepared intermediate values \[kg] kinetic.*
     pub M_x_c_x_c: T,
     /// `rho*A*l*l*INTEGRAL_S1_PHI/(cos(alpha)*r_c)` \[kg] kinetic.arm
     pub M_x_c_q: [T; 7],
@@ -1343,13 +1343,13 @@ pub trait Real: Scalar {
     fn significand(self) -> Self;
 }
 
-/// Elementary function: plain operations in a fixed order, with the same bits on every machine.
+/// Elementary function: plain operations in a fixed order, bit-identical on every machine.
 pub trait Function {
     /// Computes the value in double precision.
     fn value<T: Real>(x: T) -> T;
     /// Computes the value in single precision.
     fn single<T: Real>(x: T) -> T;
-    /// Computes the derivative at x; `value` is the value there.
+    /// Computes the derivative at x; `value` is the value at x.
     fn slope<T: Scalar>(x: T, value: T) -> T;
 }
 
@@ -1359,7 +1359,7 @@ pub trait FunctionOfTwo {
     fn value<T: Real>(x: T, y: T) -> T;
     /// Computes the value in single precision.
     fn single<T: Real>(x: T, y: T) -> T;
-    /// Computes the derivatives by x and y; `value` is the value there.
+    /// Computes the derivatives by x and y; `value` is the value at (x, y).
     fn slopes<T: Scalar>(x: T, y: T, value: T) -> [T; 2];
 }
 impl Scalar for f64 {
@@ -1480,9 +1480,9 @@ fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
     converted
 }
 
-/// Adds the first `N` of eight numbers, neighbours in pairs.
+/// Returns the pairwise sum of the first `N` of eight numbers.
 #[inline(always)]
-fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
+fn pairwise_sum<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
     let a = if N > 1 { s[0] + s[1] } else { s[0] };
     let b = if N > 3 { s[2] + s[3] } else { s[2] };
     let c = if N > 5 { s[4] + s[5] } else { s[4] };
@@ -1502,7 +1502,7 @@ fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
     for k in 0..N {
         s[k] = element(k);
     }
-    paired::<N, T>(&s)
+    pairwise_sum::<N, T>(&s)
 }
 
 /// Sine for |x| up to 1e9 (4194303 in single precision), NaN beyond.

@@ -268,7 +268,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 208] = *b"eomgen-identity name=planetary_arm_rigid specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=85410724cfbebf91d2a43cff091c2dc68e20a2310a96c44f747ba3e5bceccc98 generator=0.2.0;";
+pub static IDENTITY: [u8; 208] = *b"eomgen-identity name=planetary_arm_rigid specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=d3f4bd81041f4d07d5ade5d90e286cfeb55d04f7216208bd3a3a902f4e81ca5c generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -477,7 +477,7 @@ pub struct Coefficients<T = f64> {
     pub M_x_pr_x_pr: T,
     /// `M_x_sp_x_c + pivot_x_pr` \[kg] kinetic.sun, kinetic.planets
     pub M_x_pr_x_c: T,
-    /// `4.0*I_s/s_r_s_r_s + pivot_x_pr + s_hppb7 + s_f4jtk + s_1u3rt` with values of the preparation \[kg] kinetic.*
+    /// `4.0*I_s/s_r_s_r_s + pivot_x_pr + s_hppb7 + s_f4jtk + s_1u3rt` with prepared intermediate values \[kg] kinetic.*
     pub M_x_c_x_c: T,
     /// `1.0/r_s` \[1/m] kinetic.sun, forces.motor
     pub c_1_per_r_s: T,
@@ -1048,13 +1048,13 @@ pub trait Real: Scalar {
     fn significand(self) -> Self;
 }
 
-/// Elementary function: plain operations in a fixed order, with the same bits on every machine.
+/// Elementary function: plain operations in a fixed order, bit-identical on every machine.
 pub trait Function {
     /// Computes the value in double precision.
     fn value<T: Real>(x: T) -> T;
     /// Computes the value in single precision.
     fn single<T: Real>(x: T) -> T;
-    /// Computes the derivative at x; `value` is the value there.
+    /// Computes the derivative at x; `value` is the value at x.
     fn slope<T: Scalar>(x: T, value: T) -> T;
 }
 
@@ -1064,7 +1064,7 @@ pub trait FunctionOfTwo {
     fn value<T: Real>(x: T, y: T) -> T;
     /// Computes the value in single precision.
     fn single<T: Real>(x: T, y: T) -> T;
-    /// Computes the derivatives by x and y; `value` is the value there.
+    /// Computes the derivatives by x and y; `value` is the value at (x, y).
     fn slopes<T: Scalar>(x: T, y: T, value: T) -> [T; 2];
 }
 impl Scalar for f64 {
