@@ -16,7 +16,7 @@ use super::page::bits::{Case, node, run_module};
 #[path = "../../../codegen/elementary/tests/elementary/piecewise_cases.rs"]
 mod piecewise_cases;
 
-use piecewise_cases::{OF_DEFLECTION, OF_ONE_NUMBER};
+use piecewise_cases::{DEFLECTION_CASES, ONE_NUMBER_CASES};
 
 /// The mass is the coordinate. Therefore the acceleration is the reciprocal of a pivot that equals the coordinate.
 const MODEL: &str = r#"
@@ -84,8 +84,8 @@ fn main() {
 
 /// Returns `[x, b]` of all cases.
 fn arguments() -> Vec<[f64; 2]> {
-    let of_one = OF_ONE_NUMBER.map(|[p, ..]| [p, 1.0]);
-    [&OF_DEFLECTION.map(|[p, b, ..]| [p, b])[..], &of_one].concat()
+    let of_one = ONE_NUMBER_CASES.map(|[p, ..]| [p, 1.0]);
+    [&DEFLECTION_CASES.map(|[p, b, ..]| [p, b])[..], &of_one].concat()
 }
 
 fn program() -> Program {
@@ -107,12 +107,12 @@ fn assert_values(backend: &str, found: &[[f64; 4]]) {
             "{backend}: {name}{at:?} is {found:?}, not {expected:?}"
         );
     };
-    let (of_deflection, of_one) = found.split_at(OF_DEFLECTION.len());
-    for ([p, b, deadzone, contact], found) in OF_DEFLECTION.iter().zip(of_deflection) {
+    let (of_deflection, of_one) = found.split_at(DEFLECTION_CASES.len());
+    for ([p, b, deadzone, contact], found) in DEFLECTION_CASES.iter().zip(of_deflection) {
         check("deadzone", &[*p, *b], found[0], *deadzone);
         check("contact", &[*p, *b], found[1], *contact);
     }
-    for ([p, above, reciprocal], found) in OF_ONE_NUMBER.iter().zip(of_one) {
+    for ([p, above, reciprocal], found) in ONE_NUMBER_CASES.iter().zip(of_one) {
         check("above", &[*p], found[2], *above);
         check("pivot_reciprocal", &[*p], found[3], *reciprocal);
     }

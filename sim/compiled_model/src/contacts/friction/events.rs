@@ -16,7 +16,7 @@ const MAX_INDEPENDENT_FRACTION: f64 = 1e-8;
 /// Rounding error of the acceleration of a slip, relative to its terms.
 const ACCELERATION_ROUNDING: f64 = 1e-11;
 
-/// Where other contacts stick, a slip below this multiple of its rounding error counts as zero.
+/// While other contacts stick, a slip below this multiple of its rounding error counts as zero.
 const NEAR_ROUNDINGS: f64 = 1e3;
 
 impl Contacts {
