@@ -480,13 +480,13 @@ pub struct Linearisation<T = f64> {
     pub rates: [T; STATES],
     /// Observables at the point.
     pub observables: [T; OBSERVABLES],
-    /// Derivatives of the rates by the state.
+    /// Derivatives of the rates with respect to the state.
     pub A: [[T; STATES]; STATES],
-    /// Derivatives of the rates by the inputs.
+    /// Derivatives of the rates with respect to the inputs.
     pub B: [[T; INPUTS]; STATES],
-    /// Derivatives of the observables by the state.
+    /// Derivatives of the observables with respect to the state.
     pub C: [[T; STATES]; OBSERVABLES],
-    /// Derivatives of the observables by the inputs.
+    /// Derivatives of the observables with respect to the inputs.
     pub D: [[T; INPUTS]; OBSERVABLES],
 }
 
@@ -537,9 +537,9 @@ pub fn inlined_linearise<T: Scalar, C: Coefficient<T>>(
 /// Positions of the structural nonzeros of a matrix, row by row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pattern<const N: usize> {
-    /// Row of each.
+    /// Row of each nonzero.
     pub rows: [usize; N],
-    /// Column of each.
+    /// Column of each nonzero.
     pub columns: [usize; N],
 }
 impl<const N: usize> Pattern<N> {
@@ -602,8 +602,8 @@ const fn pattern<const B: usize, const N: usize>(
     pattern
 }
 
-/// Step of length h (s) of the classical Runge-Kutta method of order 4, with held inputs. It has
-/// the bits of `eomgen simulate --solver fixed`. Switches are not located.
+/// Step of length h (s) of the classical Runge-Kutta method of order 4, with constant inputs. It is
+/// bit-identical to `eomgen simulate --solver fixed`. Switches are not located.
 pub fn step<T: Scalar>(
     t: T,
     h: T,

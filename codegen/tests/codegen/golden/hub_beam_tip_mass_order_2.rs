@@ -183,7 +183,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 206] = *b"eomgen-identity name=hub_beam_tip_mass specification=5a673f0b14db7a31d38ef2c487e53a8e52ea6c332f254be714846748c9ef3b5e source=a95e4366fe84222819756ade67f7dc1e29a06e860e8c1f7ca1474a4dd775ae00 generator=0.2.0;";
+pub static IDENTITY: [u8; 206] = *b"eomgen-identity name=hub_beam_tip_mass specification=5a673f0b14db7a31d38ef2c487e53a8e52ea6c332f254be714846748c9ef3b5e source=0fb784d69a5efb59d5721d5737b9ea828cbe0b286a23cb0156b1ec42c2e95344 generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -291,29 +291,29 @@ pub struct Coefficients<T = f64> {
     pub c: T,
     /// `E*I*INTEGRAL_PHI_D2_SQUARED*M_theta_q/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
     pub c_sjz8w: [T; 2],
-    /// `s_M_t_E_I*s_czt1z*s_q456h/s_yt44u` with values of the preparation
+    /// `s_M_t_E_I*s_czt1z*s_q456h/s_yt44u` with prepared intermediate values
     pub c_3esjz: T,
     /// `PHI_AT_END*INTEGRAL_PHI_D2_SQUARED/INTEGRAL_PHI_SQUARED`
     pub c_axmtw: [T; 2],
-    /// `s_bp4cn*s_wfuhw` with values of the preparation
+    /// `s_bp4cn*s_wfuhw` with prepared intermediate values
     pub c_4g7wt: T,
     /// `J_t*E*I*PHI_D1_AT_END*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*l*l*INTEGRAL_PHI_SQUARED)`
     pub c_y3zfv: [T; 2],
-    /// `s_M_t_J_t*E*I*s_2nsp7*s_q456h/(s_rho_rho_A_A*s_l_l_l*s_l_l_l_l)` with values of the preparation
+    /// `s_M_t_J_t*E*I*s_2nsp7*s_q456h/(s_rho_rho_A_A*s_l_l_l*s_l_l_l_l)` with prepared intermediate values
     pub c_1rv2k: T,
     /// `rho*A*l*INTEGRAL_PHI_SQUARED`
     pub c_uug3k: [T; 2],
-    /// `s_q456h*PHI_AT_END/s_uug3k` with values of the preparation
+    /// `s_q456h*PHI_AT_END/s_uug3k` with prepared intermediate values
     pub c_mqx2z: [T; 2],
-    /// `s_mbcr7*s_wfuhw/s_rho_A_l` with values of the preparation
+    /// `s_mbcr7*s_wfuhw/s_rho_A_l` with prepared intermediate values
     pub c_gj36f: T,
-    /// `s_r84p2*s_wcwe9` with values of the preparation
+    /// `s_r84p2*s_wcwe9` with prepared intermediate values
     pub c_8x3f2: T,
-    /// `M_t*s_czt1z*s_wcwe9` with values of the preparation
+    /// `M_t*s_czt1z*s_wcwe9` with prepared intermediate values
     pub c_rtd1j: T,
     /// `-(M_t*E*I/(rho*A*l*l*l*l))`
     pub c_3zzzt: T,
-    /// `s_wfuhw*PHI_D1_AT_END/s_uug3k` with values of the preparation
+    /// `s_wfuhw*PHI_D1_AT_END/s_uug3k` with prepared intermediate values
     pub c_dkurp: [T; 2],
     /// `1/pivot_theta*(l*INTEGRAL_S1_PHI/INTEGRAL_PHI_SQUARED + (l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*A*l*INTEGRAL_PHI_SQUARED))`
     pub c_y2pfu: [T; 2],
@@ -846,13 +846,13 @@ pub trait Real: Scalar {
     fn significand(self) -> Self;
 }
 
-/// Elementary function: plain operations in a fixed order, with the same bits on every machine.
+/// Elementary function: plain operations in a fixed order, bit-identical on every machine.
 pub trait Function {
     /// Computes the value in double precision.
     fn value<T: Real>(x: T) -> T;
     /// Computes the value in single precision.
     fn single<T: Real>(x: T) -> T;
-    /// Computes the derivative at x; `value` is the value there.
+    /// Computes the derivative at x; `value` is the value at x.
     fn slope<T: Scalar>(x: T, value: T) -> T;
 }
 
@@ -862,7 +862,7 @@ pub trait FunctionOfTwo {
     fn value<T: Real>(x: T, y: T) -> T;
     /// Computes the value in single precision.
     fn single<T: Real>(x: T, y: T) -> T;
-    /// Computes the derivatives by x and y; `value` is the value there.
+    /// Computes the derivatives by x and y; `value` is the value at (x, y).
     fn slopes<T: Scalar>(x: T, y: T, value: T) -> [T; 2];
 }
 impl Scalar for f64 {
@@ -983,9 +983,9 @@ fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
     converted
 }
 
-/// Adds the first `N` of eight numbers, neighbours in pairs.
+/// Returns the pairwise sum of the first `N` of eight numbers.
 #[inline(always)]
-fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
+fn pairwise_sum<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
     let a = if N > 1 { s[0] + s[1] } else { s[0] };
     let b = if N > 3 { s[2] + s[3] } else { s[2] };
     let c = if N > 5 { s[4] + s[5] } else { s[4] };
@@ -1005,7 +1005,7 @@ fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
     for k in 0..N {
         s[k] = element(k);
     }
-    paired::<N, T>(&s)
+    pairwise_sum::<N, T>(&s)
 }
 
 /// 1/pivot for a positive pivot, else NaN: the mass matrix is not positive definite.
