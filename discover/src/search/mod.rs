@@ -8,7 +8,7 @@
 //! [`parameter_offsets`], [`selection`], `alternatives`, `neighbouring_orders`;
 //! `excitation_window`, `dropped_priors`, `round`, `answer_selection`, `unfinished_round`,
 //! [`unconfirmed_hypothesis`]; [`search_result`], `rejected_candidates`, [`backward_elimination`];
-//! `final_equivalents`; `scanned_laws`.
+//! `scanned_laws`.
 
 pub mod acceptance;
 mod alternatives;
@@ -17,7 +17,6 @@ pub mod backward_elimination;
 pub mod context;
 mod dropped_priors;
 mod excitation_window;
-mod final_equivalents;
 pub mod hypothesis;
 pub mod hypothesis_fits;
 mod motion_of_fit;
@@ -53,7 +52,6 @@ use crate::search::acceptance::compute_test_statistics;
 use crate::search::answer_selection::select_answer;
 use crate::search::backward_elimination::eliminate_backwards;
 use crate::search::context::RoundContext;
-use crate::search::final_equivalents::find_all_equivalent_offsets;
 use crate::search::hypothesis_fits::FittedHypothesis;
 use crate::search::rejected_candidates::{note_rejected, note_unfitted};
 use crate::search::round::SearchRound;
@@ -96,12 +94,6 @@ pub fn search(
     let is_scanned = search.select_forward(&mut found)?;
     if !is_scanned && found.unfinished.is_none() && !found.best_fit().is_at_floor(floor) {
         search.scan_laws(&mut found);
-    }
-    if found.unfinished.is_none() {
-        let equivalents = find_all_equivalent_offsets(search.context(&found.null_fit), &found);
-        for (effect, equivalents) in found.accepted.iter_mut().zip(equivalents) {
-            effect.equivalents.extend(equivalents);
-        }
     }
     problem.stop.remove_time_limit();
     problem.stop.check_not_stopped()?;

@@ -312,11 +312,7 @@ fn compute_pair_similarity(
 /// and the other fit is no worse on the test records. Unless they are two names of one effect, the
 /// other fit must also be no worse on the training records. It may be better, but not so clearly
 /// that it would be selected instead.
-pub(super) fn is_inseparable(
-    one: &FittedHypothesis,
-    other: &FittedHypothesis,
-    similarity: f64,
-) -> bool {
+fn is_inseparable(one: &FittedHypothesis, other: &FittedHypothesis, similarity: f64) -> bool {
     let leave_same = one.effect_unknowns.len() == other.effect_unknowns.len()
         && has_same_residuals(&one.fit.train, &other.fit.train)
         && has_same_residuals(&one.fit.test, &other.fit.test);

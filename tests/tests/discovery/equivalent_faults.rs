@@ -54,8 +54,6 @@ struct Faults {
     offset: f64,
     /// Time constant of a low-pass in the sensor, s; 0 for none.
     lag: f64,
-    /// Mass, stiffness and damping of the machine, relative to the specification.
-    parameters: [f64; 3],
 }
 
 /// A record without a fault.
@@ -63,16 +61,12 @@ const NONE: Faults = Faults {
     gain: 1.0,
     offset: 0.0,
     lag: 0.0,
-    parameters: [1.0; 3],
 };
 
 /// Returns a record of the oscillator with these faults.
 fn record(faults: Faults, shift: f64) -> String {
-    let Faults {
-        gain, offset, lag, ..
-    } = faults;
-    let [mass, stiffness, damping] = faults.parameters;
-    let (m, k, c) = (1.3 * mass, 210.0 * stiffness, 1.1 * damping);
+    let Faults { gain, offset, lag } = faults;
+    let (m, k, c) = (1.3, 210.0, 1.1);
     let force = |t: f64| {
         4.0 * (3.1 * t + shift).sin() + 3.0 * (7.3 * t - shift).sin() + 2.0 * (15.7 * t).cos()
     };
@@ -173,23 +167,4 @@ fn lag_of_a_sensor_is_noted_with_lag_of_the_input() {
         notes.contains("the same low-pass in every sensor"),
         "{notes}"
     );
-}
-
-#[test]
-fn each_of_three_shifted_parameters_is_equivalent_to_a_gain() {
-    // Only the ratios of mass, stiffness, damping and gain have an effect.
-    let document = answer(Faults {
-        parameters: [1.3, 1.1, 1.8],
-        ..NONE
-    });
-    let effects = document["effects"].as_array().expect("effects");
-    assert_eq!(effects.len(), 3, "{document:#}");
-    for effect in effects {
-        assert_eq!(effect["status"], "class", "{document:#}");
-        let others = effect["equivalent"].as_array().expect("a list");
-        assert!(
-            others.iter().any(|other| other["on"] == "F"),
-            "{document:#}"
-        );
-    }
 }
