@@ -121,7 +121,7 @@ fn read_given_rates(record: &Record<'_>, found: &mut Diagnostics) -> u8 {
         let diagnostic = Diagnostic::error(format!("an input cannot have {number} given rates"))
             .with_span(span, "expected 2")
             .with_help(
-                "with rates = 2 the first and second rate are inputs too: `s_dot` and `s_ddot`",
+                "with rates = 2 the first and second derivatives are inputs too: `s_dot` and `s_ddot`",
             );
         found.push(diagnostic);
         return 0;

@@ -94,7 +94,7 @@ const RATES: [(&str, &str); 13] = [
     ("der(", ")"),
 ];
 
-/// Prefix and suffix of the name of a quantity that denote its second rate.
+/// Prefix and suffix of the name of a quantity that denote its second derivative.
 const SECOND_RATES: [(&str, &str); 9] = [
     ("", "_ddot"),
     ("", "ddot"),
@@ -116,7 +116,7 @@ pub const NO_ACCELERATION: &str =
 pub struct ForeignRate<'n> {
     /// Name of the quantity.
     pub of: &'n str,
-    /// True for the second rate.
+    /// True for the second derivative.
     pub is_second: bool,
 }
 

@@ -57,7 +57,7 @@ impl Symbol {
             Self::Input(_) => "an input",
             Self::State(_) => "a state",
             Self::Field(_) => "a field",
-            Self::Modes(_) => "a field's mode coordinates",
+            Self::Modes(_) => "a field's modal coordinates",
             Self::Position => "a field's position",
             Self::Definition(_) => "a definition",
             Self::Vector => "a vector",
