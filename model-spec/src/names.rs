@@ -325,10 +325,11 @@ fn check_identifier(name: &Name) -> Result<(), Diagnostic> {
     check_word(name)?;
     let text = name.text.as_str();
     match reservation_reason(text) {
-        Some(why) => Err(
-            invalid_name_error(name, format!("`{text}` cannot be a name: it {why}"))
-                .with_help(format!("for example `{text}_1`")),
-        ),
+        Some(why) => Err(invalid_name_error(
+            name,
+            format!("`{text}` cannot be a name, because it {why}"),
+        )
+        .with_help(format!("for example `{text}_1`"))),
         None => Ok(()),
     }
 }

@@ -234,10 +234,8 @@ impl<'n> Resolver<'n> {
         }
         if mode == 0 || mode > MAX_ORDER || number.starts_with('0') {
             let modes = &self.names.fields[field].modes;
-            return Err(
-                Diagnostic::error(format!("no mode has the number {number}"))
-                    .with_span(span, format!("modes are {modes}_1 to {modes}_{MAX_ORDER}")),
-            );
+            return Err(Diagnostic::error(format!("there is no mode {number}"))
+                .with_span(span, format!("modes are {modes}_1 to {modes}_{MAX_ORDER}")));
         }
         Ok(ExprKind::SingleMode { field, mode })
     }
