@@ -90,7 +90,7 @@ fn expressions_are_200_deep() {
         )
     };
     assert_limit(
-        "nested more than 200 nested levels",
+        "more than 200 nested levels",
         &summed(200),
         420,
         &summed(201),
