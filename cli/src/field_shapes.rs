@@ -15,7 +15,7 @@ pub struct FieldShapes<'m> {
     pub positions: Vec<f64>,
     /// Values of the mode shapes: one row for each position, one number for each mode.
     pub functions: Vec<Vec<f64>>,
-    /// Index of the field's first mode coordinate in the state.
+    /// Index of the field's first modal coordinate in the state.
     pub first: usize,
 }
 

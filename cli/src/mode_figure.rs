@@ -79,7 +79,7 @@ fn describe_mode(mode: &NaturalMode) -> String {
     format!("{frequency:.6} Hz, damping ratio {damping:.6}").replace('-', "−")
 }
 
-/// Returns the deflection of a field in a natural mode: the sum of mode shapes times mode coordinates.
+/// Returns the deflection of a field in a natural mode: the sum of mode shapes times modal coordinates.
 fn field_shape(shapes: &FieldShapes<'_>, mode: &NaturalMode) -> Shape {
     let coordinates = mode.shape.get(shapes.first..).unwrap_or_default();
     let amplitude = |functions: &Vec<f64>| {

@@ -24,7 +24,7 @@ def shapes(count, s):
 
 
 def slopes_at_end(count):
-    """Returns the derivatives of the modes by s at the free end, as integrals of the second derivatives."""
+    """Returns the derivatives of the modes with respect to s at the free end, as integrals of the second derivatives."""
     nodes, weights = np.polynomial.legendre.leggauss(40)
     return shapes(count, (nodes + 1) / 2)[1] @ (weights / 2)
 

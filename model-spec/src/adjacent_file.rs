@@ -41,7 +41,7 @@ fn resolve_path(folder: &Path, name: &str) -> Result<PathBuf, FileError> {
     if name.is_empty() || leads_out || !relative.components().all(inside) {
         return Err(FileError(
             "is outside the specification's folder".to_owned(),
-            "move the file into the folder of the specification or below",
+            "move the file into the folder of the specification or a subfolder",
         ));
     }
     Ok(place)

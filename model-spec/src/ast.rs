@@ -20,7 +20,7 @@ pub enum SyntaxKind {
     Name(String),
     /// `name[index]`, an element of a field's modes in a sum.
     Element {
-        /// The indexed name: mode coordinates of a field, or `phi`.
+        /// The indexed name: modal coordinates of a field, or `phi`.
         name: String,
         /// The index of the sum.
         index: String,

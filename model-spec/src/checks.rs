@@ -95,7 +95,7 @@ pub fn check_drawing(model: &Model, found: &mut Diagnostics) {
             let is = UnitPhrase(unit.dimension);
             found.push(
                 Diagnostic::error(format!(
-                    "`{name}` is {is}, but the ordinate of a point is in m"
+                    "`{name}` is {is}, but the coordinates of a point are in m"
                 ))
                 .with_span(span, is.to_string())
                 .with_help("add the length to [observables] and use its name"),

@@ -114,7 +114,7 @@ impl Constants<'_> {
         {
             return Err(ConstantError {
                 message: format!(
-                    "the half-width of `{}` is negative: {value}",
+                    "the half-width b of `{}` is negative: {value}",
                     function.name()
                 ),
                 help: "give a half-width of at least 0",
@@ -148,9 +148,9 @@ fn not_finite_error(value: f64, expr: &Expr) -> ConstantError {
     ConstantError {
         message: format!("this expression evaluates to {value}"),
         help: match value.is_nan() {
-            true => "give a negative number a whole exponent",
+            true => "a negative base needs an integer exponent",
             false => {
-                "the value exceeds 1.8e308: look for a negative power of 0, or for a number that is too large"
+                "the value exceeds 1.8e308: check for a negative power of 0, or for a number that is too large"
             }
         },
         span: expr.span,

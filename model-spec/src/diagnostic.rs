@@ -100,7 +100,7 @@ impl Diagnostic {
             ))
         }
         .with_span(span, "nothing refers to it")
-        .with_help("remove it, or use it where it was meant")
+        .with_help("remove it, or use it in an expression")
     }
 
     /// Creates a warning without a location.

@@ -161,7 +161,7 @@ impl<'d> Reader<'d> {
         // If the model has no energy, a more general error is reported.
         if self.find_section("bodies").is_none() && self.find_section("kinetic").is_some() {
             self.found.push(
-                Diagnostic::error("`gravity` has no effect: the model has no [bodies]")
+                Diagnostic::error("`gravity` has no effect, because the model has no [bodies]")
                     .with_span(entry.name.span, "it acts only on bodies")
                     .with_help("without bodies, write the energy m*g*height in [potential]"),
             );
@@ -234,10 +234,10 @@ fn unknown_section_error(name: &Name) -> Diagnostic {
 
 fn misplaced_order_error(name: &Name, has_fields: bool) -> Diagnostic {
     let diagnostic = if has_fields {
-        Diagnostic::error("`order` does not belong here").with_help("move it to [fields.NAME]")
+        Diagnostic::error("`order` cannot be given here").with_help("move it to [fields.NAME]")
     } else {
         Diagnostic::error("`order` is given, but the model has no field")
             .with_help("remove it: only a field has a modal truncation order")
     };
-    diagnostic.with_span(name.span, "not part of a field")
+    diagnostic.with_span(name.span, "this section is not a field")
 }

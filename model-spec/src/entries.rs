@@ -47,7 +47,7 @@ fn read_uncertainty(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawU
         .filter_map(|key| record.get(key))
         .collect();
     let [one] = given[..] else {
-        let message = format!("an uncertainty has one key, not {}", given.len());
+        let message = format!("`uncertainty` needs one key, not {}", given.len());
         found.push(
             Diagnostic::error(message)
                 .with_span(entry.span(), "expected one of relative, sd, between")
@@ -65,13 +65,9 @@ fn read_uncertainty(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawU
             (Quantity::Number(low), Quantity::Number(high)) => {
                 Ok(RawUncertainty::Between([low, high]))
             }
-            _ => Err(
-                Diagnostic::error("the ends of an uncertainty must be numbers")
-                    .with_span(one.span(), "expected two numbers")
-                    .with_help(
-                        "write them in the parameter's unit, for example { between = [1, 2] }",
-                    ),
-            ),
+            _ => Err(Diagnostic::error("the bounds of `between` must be numbers")
+                .with_span(one.span(), "expected two numbers")
+                .with_help("write them in the parameter's unit, for example { between = [1, 2] }")),
         }),
     };
     found.push_error(raw)
@@ -118,10 +114,10 @@ fn read_given_rates(record: &Record<'_>, found: &mut Diagnostics) -> u8 {
         return 0;
     };
     if number != 2 {
-        let diagnostic = Diagnostic::error(format!("an input cannot have {number} given rates"))
+        let diagnostic = Diagnostic::error(format!("`rates` of an input cannot be {number}"))
             .with_span(span, "expected 2")
             .with_help(
-                "with rates = 2 the first and second rate are inputs too: `s_dot` and `s_ddot`",
+                "with rates = 2 the first and second derivatives are inputs too: `s_dot` and `s_ddot`",
             );
         found.push(diagnostic);
         return 0;
@@ -360,7 +356,7 @@ pub fn read_body(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBody> 
             let name = quote(&entry.name.text);
             found.push(
                 Diagnostic::error(format!("the body {name} has no `mass` and no `inertia`"))
-                    .with_span(entry.name.span, "its energy would be zero")
+                    .with_span(entry.name.span, "the body would have no kinetic energy")
                     .with_help("give its mass: mass = \"m\""),
             );
             return None;

@@ -139,7 +139,7 @@ impl Chain {
         }
         if self.files.len() == MAX_FILES {
             let message = format!("more than {MAX_FILES} files extend each other");
-            return Err(Diagnostic::error(message).with_help("merge some of them"));
+            return Err(Diagnostic::error(message).with_help("merge some of these files"));
         }
         let folder = source.folder.as_deref().unwrap_or(Path::new(""));
         let path = folder.join(relative);

@@ -24,7 +24,7 @@ const OPERATORS: [Foreign; 12] = [
     ),
     (
         &["=", "==", "==="],
-        "quantities that move are equal for an instant only: write `1 - contact(x - a, b)` for 1 if x \
+        "quantities that move are equal only at single times: write `1 - contact(x - a, b)` for 1 if x \
          is within b of a",
     ),
     (
@@ -94,7 +94,7 @@ const RATES: [(&str, &str); 13] = [
     ("der(", ")"),
 ];
 
-/// Prefix and suffix of the name of a quantity that denote its second rate.
+/// Prefix and suffix of the name of a quantity that denote its second derivative.
 const SECOND_RATES: [(&str, &str); 9] = [
     ("", "_ddot"),
     ("", "ddot"),
@@ -116,7 +116,7 @@ pub const NO_ACCELERATION: &str =
 pub struct ForeignRate<'n> {
     /// Name of the quantity.
     pub of: &'n str,
-    /// True for the second rate.
+    /// True for the second derivative.
     pub is_second: bool,
 }
 
@@ -145,9 +145,10 @@ pub fn suggest_state<'k>(name: &str, known: impl Iterator<Item = &'k str>) -> Op
     }
 }
 
-const AND_HELP: &str = "for both conditions write the product: `above(x - a)*above(b - x)`";
+const AND_HELP: &str =
+    "if both conditions are required, write the product: `above(x - a)*above(b - x)`";
 const OR_HELP: &str =
-    "for one of two conditions write the larger: `max(above(x - a), above(b - x))`";
+    "if one of two conditions is sufficient, write `max(above(x - a), above(b - x))`";
 const NOT_HELP: &str = "write `1 - above(x - a)` for 1 if x <= a, else 0";
 const IF_HELP: &str = "write `above(x - a)*A + (1 - above(x - a))*B` for A if x > a, else B; `min` and `max` \
                   choose the smaller and the larger of two";

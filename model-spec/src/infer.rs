@@ -156,7 +156,7 @@ impl Inference<'_> {
         Some(match &found[..] {
             [] => match number {
                 Some(number) => format!(
-                    "{factor}; {number} has no unit, so declare it in [parameters] with one"
+                    "{factor}; {number} has no unit: declare it in [parameters] with a unit"
                 ),
                 None => factor,
             },

@@ -134,7 +134,7 @@ fn stray_character_error(letter: char, span: Span) -> Diagnostic {
         '"' => "an expression contains no strings".to_owned(),
         '{' | '}' => "group with ( and )".to_owned(),
         '·' | '×' => "write a product with `*`".to_owned(),
-        '−' | '–' => "this is not the minus sign `-` of the keyboard".to_owned(),
+        '−' | '–' => "this character is not the minus sign `-` of the keyboard".to_owned(),
         _ if letter.is_alphabetic() => {
             let name = spell_greek(&letter.to_string());
             let name = name.map_or_else(String::new, |name| format!(": write {name}"));

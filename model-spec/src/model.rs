@@ -270,7 +270,7 @@ pub struct State {
 pub struct Field {
     /// ASCII name, for example `w`.
     pub name: String,
-    /// Unit of the field and of its mode coordinates (phi is dimensionless).
+    /// Unit of the field and of its modal coordinates (phi is dimensionless).
     pub unit: Unit,
     /// Name of the position variable inside the field's functions.
     pub along: String,
@@ -280,7 +280,7 @@ pub struct Field {
     pub to: Expr,
     /// Mode shapes.
     pub basis: Basis,
-    /// Name of the mode coordinates: `q` gives `q_1 .. q_S`.
+    /// Name of the modal coordinates: `q` gives `q_1 .. q_S`.
     pub coordinates: String,
     /// Default order of the specification.
     pub order: usize,
@@ -505,10 +505,10 @@ pub enum CoefficientKind {
     Value(Expr),
     /// Factor of `by` in the acceleration of `of`, multiplied by `times`.
     Factor {
-        /// Coordinate of the acceleration; with a field's mode coordinates, every mode.
+        /// Coordinate of the acceleration; with a field's modal coordinates, every mode.
         of: Expr,
         /// Quantity multiplied: a coordinate, a rate, `deadzone(p, b)`, `contact(p, b)*dot(p)`, a
-        /// field's mode coordinates, or 1 for the remainder.
+        /// field's modal coordinates, or 1 for the remainder.
         by: Expr,
         /// Additional factor (parameters and earlier coefficients), if any.
         times: Option<Expr>,
@@ -645,7 +645,7 @@ pub enum MeasuredQuantity {
     CoordinateRate(CoordinateId),
     /// First-order state.
     State(StateId),
-    /// Mode coordinate of a field, or its rate; modes are numbered from 1.
+    /// Modal coordinate of a field, or its rate; modes are numbered from 1.
     Mode {
         /// Index of the field.
         field: usize,
@@ -798,7 +798,7 @@ pub enum ExprKind {
     Residual(ConstraintId),
     /// Field w(x, t); only in `integral`, `at` or `diff` of that field.
     Field(FieldId),
-    /// Mode coordinate `q[i]` of a field; i is the index of the innermost enclosing sum over that
+    /// Modal coordinate `q[i]` of a field; i is the index of the innermost enclosing sum over that
     /// field.
     ModeCoordinate(FieldId),
     /// Coordinate `q_3` of one mode of a field; variants of a lower order do not have it.
@@ -808,9 +808,9 @@ pub enum ExprKind {
         /// Number of the mode, from 1.
         mode: usize,
     },
-    /// Mode shape `phi[i]` of a field, a function of the position; i as for mode coordinates.
+    /// Mode shape `phi[i]` of a field, a function of the position; i as for modal coordinates.
     ModeShape(FieldId),
-    /// Time derivative of a coordinate, definition, field, mode coordinate or state.
+    /// Time derivative of a coordinate, definition, field, modal coordinate or state.
     Dot(Box<Expr>),
     /// Derivative of `w`, `dot(w)` or `phi[i]` with respect to the position, 1 to 4 times.
     Diff(Box<Expr>, u8),

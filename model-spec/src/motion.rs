@@ -115,7 +115,7 @@ impl Checker<'_, '_> {
                         term.name
                     ))
                     .with_span(place, "this is a rate")
-                    .with_help("move a kinetic energy to [kinetic], a loss to [dissipation]"),
+                    .with_help("move the term to [kinetic] if it is a kinetic energy, or to [dissipation] if it dissipates energy"),
                 );
             }
         }
@@ -184,7 +184,7 @@ impl Checker<'_, '_> {
             } else if let Some(place) = on.state {
                 Some((place, "this is a state"))
             } else if on.values.is_empty() {
-                Some((force.on.span, "this does not move"))
+                Some((force.on.span, "this does not depend on a coordinate"))
             } else {
                 None
             };
@@ -230,10 +230,10 @@ impl Checker<'_, '_> {
                 "a constraint contains only coordinates, their rates, prescribed motion and t";
             Some((place, "this is a state", help))
         } else if let Some((given, place)) = motion.input.filter(|(given, _)| *given < needed) {
-            let help = "its accelerations must be given: declare the input with rates = 2";
+            let help = "its second derivative must be given: declare the input with rates = 2";
             let why = match given {
                 0 => "this input has no given rate",
-                _ => "this rate has no given rate",
+                _ => "this rate has no given second derivative",
             };
             Some((place, why, help))
         } else if let Some(place) = motion.switch {
@@ -277,7 +277,7 @@ impl Checker<'_, '_> {
                 let help = "a distance contains only coordinates, prescribed motion and t";
                 Some((place, "this is a state", help))
             } else if let Some((_, place)) = motion.input.filter(|(given, _)| *given < 2) {
-                let help = "its accelerations must be given: declare the input with rates = 2";
+                let help = "its second derivative must be given: declare the input with rates = 2";
                 Some((place, "this input has no given rates", help))
             } else if let Some(place) = motion.switch {
                 let help = "declare an impact for each smooth distance, and give prescribed motion without max, min, abs and above";
@@ -358,7 +358,7 @@ impl Checker<'_, '_> {
         if motion.depth > MAX_EXPANDED_DEPTH {
             self.found.push(
                 Diagnostic::error(format!(
-                    "the expression is more than {MAX_EXPANDED_DEPTH} deep after expansion of its definitions"
+                    "the expression has more than {MAX_EXPANDED_DEPTH} nested levels after its definitions are inserted"
                 ))
                 .with_span(expr.span, "too deep"),
             );
@@ -502,7 +502,7 @@ fn may_move(expr: &Expr) -> bool {
 
 fn rate_error(span: Span, inner: &Dependencies) -> Option<Diagnostic> {
     if let Some(place) = inner.reaction {
-        let diagnostic = Diagnostic::error("multipliers and residuals have no rate")
+        let diagnostic = Diagnostic::error("dot() of a multiplier or a residual is not available")
             .with_span(place, "this is the multiplier or residual of a constraint")
             .with_help("give dot() a coordinate, a definition with one, or a field");
         return Some(diagnostic);

@@ -57,7 +57,7 @@ impl Symbol {
             Self::Input(_) => "an input",
             Self::State(_) => "a state",
             Self::Field(_) => "a field",
-            Self::Modes(_) => "a field's mode coordinates",
+            Self::Modes(_) => "a field's modal coordinates",
             Self::Position => "a field's position",
             Self::Definition(_) => "a definition",
             Self::Vector => "a vector",
@@ -325,10 +325,11 @@ fn check_identifier(name: &Name) -> Result<(), Diagnostic> {
     check_word(name)?;
     let text = name.text.as_str();
     match reservation_reason(text) {
-        Some(why) => Err(
-            invalid_name_error(name, format!("`{text}` cannot be a name: it {why}"))
-                .with_help(format!("for example `{text}_1`")),
-        ),
+        Some(why) => Err(invalid_name_error(
+            name,
+            format!("`{text}` cannot be a name, because it {why}"),
+        )
+        .with_help(format!("for example `{text}_1`"))),
         None => Ok(()),
     }
 }

@@ -291,9 +291,9 @@ fn nest(syntax: Syntax, below: usize) -> Parsed {
 
 fn depth_error(place: Span) -> Diagnostic {
     Diagnostic::error(format!(
-        "the expression is nested more than {MAX_DEPTH} deep; a sum or product counts one level per term"
+        "the expression has more than {MAX_DEPTH} nested levels; each term of a sum and each factor of a product counts as one level"
     ))
-    .with_span(place, "too deep from here on")
+    .with_span(place, "the limit is exceeded here")
     .with_help("move parts of it to [definitions]")
 }
 
@@ -301,9 +301,9 @@ fn leftover_token_error(last: Option<&Token>, token: &Token, before: &Syntax) ->
     let diagnostic = match token.kind {
         TokenKind::Close | TokenKind::CloseIndex => {
             Diagnostic::error(format!("{} closes nothing", token.kind.to_quoted()))
-                .with_span(token.span, "no bracket is open here")
+                .with_span(token.span, "there is no open bracket here")
         }
-        TokenKind::Comma => Diagnostic::error("a comma outside a function's brackets")
+        TokenKind::Comma => Diagnostic::error("a comma outside the parentheses of a function")
             .with_span(token.span, "unexpected here")
             .with_help("decimal fractions are written with a point"),
         _ => Diagnostic::error(format!(
@@ -352,7 +352,7 @@ fn unit_help(number: &TokenKind, unit: &TokenKind) -> Option<String> {
         _ => unit.to_si(*number).to_string(),
     };
     Some(format!(
-        "numbers of an expression are in SI units: write {in_si} for {number} {word}; a product is written with `*`"
+        "numbers in an expression are in SI units: write {in_si} for {number} {word}; write a product with `*`"
     ))
 }
 
@@ -486,7 +486,7 @@ mod tests {
             format!("{}1{}", "(".repeat(many), ")".repeat(many)),
         ] {
             let message = parsed(&text).expect_err("too deep").message;
-            assert!(message.contains("more than 200 deep"), "{message}");
+            assert!(message.contains("more than 200 nested levels"), "{message}");
         }
         let allowed = "1+".repeat(MAX_DEPTH - 1) + "1";
         assert!(parsed(&allowed).is_ok());

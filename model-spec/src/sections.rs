@@ -58,7 +58,7 @@ pub(crate) static FIELD: Keys = Keys::new(&[
     Key::new("to", "expression", "\"l\"", "end of the domain, a length of parameters").required(),
     Key::new("basis", "basis", "\"clamped_free\"", "mode shapes").required(),
     Key::new("table", "text", "\"modes.csv\"", "file with the shapes; only with `basis = \"table\"`").explained("Mode shapes from a file"),
-    Key::new("coordinates", "name", "\"q\"", "name of the mode coordinates; `\"q\"` gives q_1, q_2 and so on").required(),
+    Key::new("coordinates", "name", "\"q\"", "name of the modal coordinates; `\"q\"` gives q_1, q_2 and so on").required(),
     Key::new("order", "mode_count", "4", "number of modes; `--order` overrides it").required(),
     UNIT,
     DOC,
@@ -123,7 +123,7 @@ pub(crate) static COEFFICIENT: Keys = Keys {
     one_of: &[&["of", "by"], &["value"]],
     ..Keys::new(&[
         Key::new("value", "expression", "\"k_1 + k_2\"", "expression of parameters and earlier coefficients"),
-        Key::new("of", "expression", "\"x_c\"", "coordinate of the equation, or mode coordinates of a field"),
+        Key::new("of", "expression", "\"x_c\"", "coordinate of the equation, or modal coordinates of a field"),
         Key::new("by", "expression", "\"dot(x_c)\"", "quantity multiplied by the coefficient"),
         Key::new("times", "expression", "\"m\"", "factor of the acceleration in the equation; not with `value`"),
         Key::new("each", "text", "\"w[i]\"", "field with one coefficient for each mode, and the index"),

@@ -317,7 +317,8 @@ impl Model {
             }
             Some(order) if order > self.highest_order() => {
                 let shapes = self.highest_order();
-                let message = format!("the order {order} needs more shapes than the table has");
+                let message =
+                    format!("the order {order} needs more mode shapes than the table has");
                 Err(ModelError::new(message).help(format!("the table has {shapes}")))
             }
             Some(order) if self.fields.is_empty() && order > 0 => {
@@ -482,8 +483,8 @@ fn check_value(parameter: &Parameter, value: f64) -> Result<(), ModelError> {
         let message = format!("the value of `{name}` evaluates to {value}");
         let error = ModelError::new(message).at(place);
         return Err(error.help(match value.is_nan() {
-            true => "look for a division by 0 or a square root of a negative number",
-            false => "the value in SI units exceeds 1.8e308: look for a division by 0, or for a number that is too large",
+            true => "check for a division by 0 or a square root of a negative number",
+            false => "the value in SI units exceeds 1.8e308: check for a division by 0, or for a number that is too large",
         }));
     }
     let shown = |value: f64| format!("{} {}", parameter.unit.from_si(value), parameter.unit);

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 
 use crate::error::SimulationError;
 
-/// Largest number of values that a function returns: the input, its rate and its second rate.
+/// Largest number of values that a function returns: the input, its rate and its second derivative.
 const MAX_VALUES: usize = 3;
 
 /// Name, index and Python function of an input.
@@ -257,7 +257,7 @@ pub fn number(found: &Bound<'_, PyAny>) -> PyResult<f64> {
 
 fn not_rates(count: usize) -> PyErr {
     RefusedType::new_err(format!(
-        "expected {count} numbers: the input, its rate and its second rate"
+        "expected {count} numbers: the input, its rate and its second derivative"
     ))
 }
 

@@ -46,7 +46,7 @@ pub struct HeldInputs {
     /// Values of the held inputs, one row per time, one column per input.
     values: Vec<f64>,
     count: usize,
-    /// Prescribed motions: index of the input, whose rate and second rate follow it, and its spline.
+    /// Prescribed motions: index of the input, whose rate and second derivative follow it, and its spline.
     prescribed: Vec<(usize, CubicSpline)>,
     functions: Vec<FunctionInputs>,
     /// Times at which functions jump, ascending, s.
@@ -93,7 +93,7 @@ impl HeldInputs {
         })
     }
 
-    /// Sets the input at index `place` to a spline, and the next two inputs to its rate and second rate.
+    /// Sets the input at index `place` to a spline, and the next two inputs to its rate and second derivative.
     #[must_use]
     pub fn with_prescribed(mut self, place: usize, spline: CubicSpline) -> Self {
         self.prescribed.push((place, spline));

@@ -40,7 +40,7 @@ impl Base {
     }
 }
 
-/// Function that returns the forces for a motion of the base (position, rate, second rate), positions and rates.
+/// Function that returns the forces for a motion of the base (position, rate, second derivative), positions and rates.
 pub type Forces<const N: usize> = dyn Fn([f64; 3], [f64; N], [f64; N]) -> [f64; N];
 
 /// Machine with its specification and dataset file.

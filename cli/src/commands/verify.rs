@@ -350,7 +350,7 @@ fn sources(
     if extension == Some("fmu") {
         let unit = certificate.unit.as_ref().ok_or_else(|| {
             Error::input(format!(
-                "{shown}: the certificate covers no functional mock-up unit; give the certificate that was written with the file"
+                "{shown}: the certificate covers no functional mock-up unit (FMU); give the certificate that was written with the file"
             ))
         })?;
         let sources = Sources {
@@ -422,7 +422,7 @@ fn sources(
             Ok((sources, expected))
         }
         _ => Err(Error::input(format!(
-            "{shown} is neither Rust nor C nor a unit: give a file that ends in .rs, .c, .h or .fmu"
+            "{shown} is neither Rust nor C nor an FMU: give a file that ends in .rs, .c, .h or .fmu"
         ))),
     }
 }

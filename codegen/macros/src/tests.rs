@@ -232,8 +232,8 @@ fn deep_nesting_is_rejected() {
         let (open, close) = (open.repeat(300), close.repeat(300));
         grammar_error(&format!("kinetic {{ a: {open} x {close} }}"))
     };
-    assert!(nested("(", ")").contains("nested more than 200 deep"));
-    assert!(nested("{ a: ", "}").contains("nested more than 200 deep"));
+    assert!(nested("(", ")").contains("more than 200 nested levels"));
+    assert!(nested("{ a: ", "}").contains("more than 200 nested levels"));
 }
 
 /// Returns the first error message of an expansion, or all its tokens if there is no error.

@@ -147,7 +147,7 @@ fn split_token(token: &TokenTree, depth: usize, pieces: &mut Vec<Piece>) -> syn:
         }
     };
     if depth > MAX_DEPTH {
-        let message = format!("the expression is nested more than {MAX_DEPTH} deep");
+        let message = format!("the expression has more than {MAX_DEPTH} nested levels");
         return Err(Error::new(group.span_open(), message));
     }
     let (open, close) = match group.delimiter() {

@@ -35,7 +35,7 @@ fn describe_never_zero(constraint: &Constraint, end: &str, bound: f64) -> Diagno
     Diagnostic::error(format!("the constraint `{name}` is never zero"))
         .with_span(
             constraint.zero.span,
-            format!("is at {end} {bound:.3e} {unit} at any state"),
+            format!("is at {end} {bound:.3e} {unit} at every state"),
         )
         .with_help("correct its expression, for example a sign, so that it can be zero")
 }

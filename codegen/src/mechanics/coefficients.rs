@@ -109,7 +109,7 @@ pub(crate) fn find_equation_row(of: &Expr) -> Derived<EquationRow> {
         ExprKind::ModeCoordinate(field) => Ok(EquationRow::Modes(field)),
         _ => Err(DeriveError {
             span: of.span,
-            message: "`of` must be a coordinate or the mode coordinates of a field".into(),
+            message: "`of` must be a coordinate or the modal coordinates of a field".into(),
             help: None,
         }),
     }
@@ -153,7 +153,7 @@ fn factor_of(graph: &mut Graph, row: NodeId, by: NodeId) -> NodeId {
     evaluate_at_rest_except(graph, result, &[])
 }
 
-/// Differentiates a row by modes: a vector for a coordinate's row, a matrix for the rows of modes.
+/// Differentiates a row with respect to modes: a vector for a coordinate's row, a matrix for the rows of modes.
 fn derive_by_modes(graph: &mut Graph, row: NodeId, variable: NodeId) -> NodeId {
     let Some(mut derivative) = ModalDerivative::new(graph, variable) else {
         return graph.zero();

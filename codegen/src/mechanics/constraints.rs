@@ -1,5 +1,5 @@
-//! Constraints, differentiated by time until accelerations appear. The constraint forces are A^T lambda with the
-//! multipliers lambda, and the accelerations satisfy
+//! Constraints, differentiated with respect to time until accelerations appear. The constraint forces are A^T lambda
+//! with the multipliers lambda, and the accelerations satisfy
 //!
 //! ```text
 //! M a + c = f + A^T lambda,    A a = b

@@ -48,7 +48,7 @@ pub(crate) fn translate_force(
     if translator.graph.dependence(on).has(Dependence::RATE) {
         return Err(DeriveError {
             span: force.on.span,
-            message: "a force acts on an expression that contains a rate".into(),
+            message: "`on` of a force contains a rate".into(),
             help: Some("use a coordinate or an expression of coordinates for `on`".into()),
         });
     }

@@ -344,7 +344,7 @@ fn mass_error(span: Span) -> DeriveError {
 fn position_error(span: Span) -> DeriveError {
     DeriveError {
         span,
-        message: "this position jumps, but its rate enters the energies: the speed would be infinite"
+        message: "this position jumps, but the energies contain its rate, which would be infinite"
             .into(),
         help: Some(
             "let it change continuously within a short time, for example by max(t - t_0, 0), or use a coordinate for the \

@@ -21,8 +21,8 @@ pub(crate) enum GradientBy {
     Rates,
 }
 
-/// Returns the nonzero derivatives of a scalar by coordinates or by rates, with their indices. The work grows
-/// with the number of nodes of the scalar.
+/// Returns the nonzero derivatives of a scalar with respect to coordinates or rates, with their indices. The work
+/// grows with the number of nodes of the scalar.
 pub(crate) fn derive_nonzero_gradient(
     graph: &mut Graph,
     scalar: NodeId,

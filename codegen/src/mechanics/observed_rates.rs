@@ -27,7 +27,7 @@ pub(crate) fn derive_observable(
     if rate.times > 1 && translator.graph.dependence(node).has(Dependence::RATE) {
         return refused(
             format!(
-                "`{name}` contains a rate: its second derivative needs the rate of an acceleration"
+                "`{name}` contains a rate: its second derivative needs the time derivative of an acceleration"
             ),
             "use its first derivative, or an observable without rates",
         );

@@ -113,7 +113,7 @@ impl Velocities {
         });
     }
 
-    /// Returns the momenta and the derivatives of the energy by the coordinates.
+    /// Returns the momenta and the derivatives of the energy with respect to the coordinates.
     pub(crate) fn momenta(&self, graph: &mut Graph, coordinates: usize) -> Momenta {
         let mut slopes: Vec<Vec<(f64, NodeId)>> = vec![Vec::new(); coordinates];
         for unit in &self.units {
@@ -165,7 +165,7 @@ impl Velocities {
 }
 
 impl VelocityNode {
-    /// Returns the derivatives of the node by coordinates, with constant operands.
+    /// Returns the derivatives of the node with respect to coordinates, with constant operands.
     fn derive_slopes(&self, graph: &mut Graph, coordinates: usize) -> Vec<(usize, NodeId)> {
         let moving = self.find_leaves(graph, self.node);
         let mut found = Vec::new();

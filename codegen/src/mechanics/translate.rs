@@ -245,7 +245,7 @@ impl<'m> Translator<'m> {
         Ok(node)
     }
 
-    /// Returns the time derivative of a coordinate, definition or mode coordinate.
+    /// Returns the time derivative of a coordinate, definition or modal coordinate.
     fn dot(&mut self, operand: &Expr) -> Derived<NodeId> {
         match operand.kind {
             ExprKind::Coordinate(index) => Ok(self.graph.intern(Operation::Rate(index))),

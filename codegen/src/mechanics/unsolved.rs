@@ -1,6 +1,6 @@
 //! Nodes of a model without fields, without its equations of motion. Every expression is translated; constraints and
-//! distances of impacts are differentiated by their coordinates. The work is proportional to the size of the
-//! specification; deriving the equations of motion takes work that grows at least with its square.
+//! distances of impacts are differentiated with respect to their coordinates. The work is proportional to the size of
+//! the specification; deriving the equations of motion takes work that grows at least with its square.
 
 use eomgen_model_spec::ids::{ConstraintId, StateId};
 use eomgen_model_spec::model::{CoefficientKind, Model};
@@ -26,7 +26,7 @@ pub(crate) struct Unsolved {
 pub(crate) struct ConstraintNodes {
     /// Expression of the constraint.
     pub(crate) residual: NodeId,
-    /// Nonzero derivatives by coordinates, or by rates, with their indices.
+    /// Nonzero derivatives with respect to coordinates or rates, with their indices.
     pub(crate) derivatives: Vec<(usize, NodeId)>,
 }
 

@@ -77,7 +77,7 @@ pub struct AffineEvaluator {
     evaluator: Evaluator,
     layout: AffineLayout,
     parameters: Vec<f64>,
-    /// Index of each prescribed motion among the inputs, followed by its rate and its second rate.
+    /// Index of each prescribed motion among the inputs, followed by its rate and its second derivative.
     prescribed: Vec<usize>,
 }
 
@@ -93,9 +93,9 @@ impl AffineEvaluator {
         }
     }
 
-    /// Turns prescribed motions from inputs into states; each adds its value, rate and second rate after the other
-    /// states. `prescribed` has their indices among the inputs. The input of the second rate then supplies the third
-    /// rate.
+    /// Turns prescribed motions from inputs into states; each adds its value, rate and second derivative after the
+    /// other states. `prescribed` has their indices among the inputs. The input of the second derivative then supplies
+    /// the third derivative.
     #[must_use]
     pub fn with_prescribed_states(mut self, prescribed: Vec<usize>) -> Self {
         self.prescribed = prescribed;

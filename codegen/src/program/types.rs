@@ -24,9 +24,9 @@ pub struct ProgramParameter {
 /// Field of the variant.
 #[derive(Clone, Debug)]
 pub struct ProgramField {
-    /// Name of the mode coordinates.
+    /// Name of the modal coordinates.
     pub coordinates: String,
-    /// Unit of the mode coordinates.
+    /// Unit of the modal coordinates.
     pub unit: String,
     /// Truncation order.
     pub order: usize,
@@ -250,7 +250,7 @@ impl Program {
         self.parameters.iter().map(|p| p.value).collect()
     }
 
-    /// Returns the index in the state of a field's first mode coordinate.
+    /// Returns the index in the state of a field's first modal coordinate.
     pub fn mode_offset(&self, field: FieldId) -> usize {
         self.coordinates.len()
             + self.fields[..field.index()]

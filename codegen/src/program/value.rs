@@ -63,9 +63,9 @@ pub enum Op {
     Coordinate(CoordinateId),
     /// Rate of a coordinate.
     Rate(CoordinateId),
-    /// Mode coordinates of a field.
+    /// Modal coordinates of a field.
     ModeCoordinates(FieldId),
-    /// Rates of a field's mode coordinates.
+    /// Rates of a field's modal coordinates.
     ModeRates(FieldId),
     /// First-order state.
     State(StateId),

@@ -81,7 +81,7 @@ impl<'a> Outline<'a> {
         nodes
     }
 
-    /// Returns the symbol of a row: its coordinate, or the mode coordinates of its field.
+    /// Returns the symbol of a row: its coordinate, or the modal coordinates of its field.
     pub fn row_symbol(&self, row: EquationRow) -> Symbol {
         match row {
             EquationRow::Coordinate(index) => Symbol::plain(&self.model.coordinates[index].name),

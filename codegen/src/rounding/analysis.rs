@@ -309,7 +309,7 @@ pub fn bound_by_sensitivities(scalars: &Scalars, needed: &[usize], known: &[Boun
     }
 }
 
-/// Returns the derivatives of an operation by its operands.
+/// Returns the derivatives of an operation with respect to its operands.
 fn bound_partials(
     op: &ScalarOp,
     index: usize,

@@ -185,7 +185,7 @@ impl<'a> Direction<'a> {
     }
 }
 
-/// Differentiates a node by a scalar node: a leaf, or an expression that is treated as a variable.
+/// Differentiates a node with respect to a scalar node: a leaf, or an expression that is treated as a variable.
 pub fn derive_by_scalar(graph: &mut Graph, id: NodeId, variable: NodeId) -> NodeId {
     let mut direction = Direction::default();
     let one = graph.one();

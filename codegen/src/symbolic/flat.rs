@@ -69,7 +69,7 @@ impl Graph {
     }
 }
 
-/// Guards `partial`, the derivative of a function by `argument`, if a switch can make `argument` constant.
+/// Guards `partial`, the derivative of a function with respect to `argument`, if a switch can make `argument` constant.
 pub(super) fn guard_partial(
     graph: &mut Graph,
     partial: NodeId,

@@ -7,7 +7,7 @@ use crate::symbolic::graph::{Graph, NodeId, Operation, Shape, Space};
 use crate::symbolic::matrix::StructuredMatrix;
 use crate::symbolic::node_map::NodeMap;
 
-/// Derivatives by the modes of one field.
+/// Derivatives with respect to the modes of one field.
 pub struct ModalDerivative {
     variable: NodeId,
     space: Space,
@@ -17,8 +17,8 @@ pub struct ModalDerivative {
 }
 
 impl ModalDerivative {
-    /// Prepares derivatives by the vector leaf `variable` (mode coordinates or rates); `None` for a scalar
-    /// leaf.
+    /// Prepares derivatives with respect to the vector leaf `variable` (modal coordinates or rates); `None` for a
+    /// scalar leaf.
     pub fn new(graph: &Graph, variable: NodeId) -> Option<Self> {
         match graph.shape(variable) {
             Shape::Vector(space) => Some(Self {

@@ -70,9 +70,9 @@ pub enum Operation {
     Input(InputId),
     /// Time.
     Time,
-    /// Mode coordinates of a field, a vector.
+    /// Modal coordinates of a field, a vector.
     ModeCoordinates(FieldId),
-    /// Rates of a field's mode coordinates, a vector.
+    /// Rates of a field's modal coordinates, a vector.
     ModeRates(FieldId),
     /// Component of an argument for a variable.
     Argument(Argument, Variable),

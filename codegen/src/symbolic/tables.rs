@@ -4,7 +4,8 @@
 use crate::symbolic::graph::{Shape, Space};
 use eomgen_model_spec::ids::FieldId;
 
-/// Content of a table; s = (x - from)/(to - from) is between 0 and 1, phi_r^(a) is the a-th derivative by s.
+/// Content of a table; s = (x - from)/(to - from) is between 0 and 1, phi_r^(a) is the a-th derivative with respect to
+/// s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TableKind {
     /// beta_r l, a vector over the modes.

@@ -10,8 +10,8 @@ use eomgen_model_spec::model::Function;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
 impl Graph {
-    /// Returns a factor of `partial`, the derivative of a node by its `operand`. Where this factor is zero, `partial`
-    /// times the derivative of `operand` is zero. Returns `None` if no such factor is known.
+    /// Returns a factor of `partial`, the derivative of a node with respect to its `operand`. Where this factor is
+    /// zero, `partial` times the derivative of `operand` is zero. Returns `None` if no such factor is known.
     pub(super) fn find_vanishing_factor(
         &mut self,
         operand: NodeId,

@@ -7,11 +7,11 @@ use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, ParameterId, StateI
 pub enum Variable {
     /// Generalised coordinate.
     Coordinate(CoordinateId),
-    /// Mode coordinates of a field.
+    /// Modal coordinates of a field.
     ModeCoordinates(FieldId),
     /// Rate of a generalised coordinate.
     Rate(CoordinateId),
-    /// Rates of a field's mode coordinates.
+    /// Rates of a field's modal coordinates.
     ModeRates(FieldId),
     /// First-order state.
     State(StateId),

@@ -138,7 +138,7 @@ fn allocate(size: &mut u32, extent: Extent) -> EmitResult<Region> {
     let end = bytes.and_then(|bytes| size.checked_add(bytes));
     let Some(end) = end.filter(|end| *end <= MAX_ADDRESS) else {
         return Err(EmitError::Value(
-            "its numbers exceed the 2 GiB memory of a WebAssembly module".to_owned(),
+            "the data of the model exceed the 2 GiB memory of a WebAssembly module".to_owned(),
         ));
     };
     let first = std::mem::replace(size, end);

@@ -89,7 +89,12 @@ fn expressions_are_200_deep() {
             &format!("[observables]\no = {{ value = \"{value}\", unit = \"m\" }}\n"),
         )
     };
-    assert_limit("nested more than 200 deep", &summed(200), 420, &summed(201));
+    assert_limit(
+        "more than 200 nested levels",
+        &summed(200),
+        420,
+        &summed(201),
+    );
 }
 
 #[test]
@@ -108,7 +113,7 @@ fn definitions_written_out_are_600_deep() {
     let last = last.expect("some depth is taken");
     assert!((295..=600).contains(&last), "{last}");
     assert_limit(
-        "the expression is more than 600 deep",
+        "the expression has more than 600 nested levels",
         &chain(last),
         2 * last,
         &chain(last + 1),

@@ -220,7 +220,7 @@ impl<'m> Reader<'m> {
     }
 }
 
-/// Returns a power with a small whole exponent.
+/// Returns a power with a small integer exponent.
 fn raise_to_power(base: &Polynomial, exponent: &Polynomial) -> Option<Polynomial> {
     let mut powers = 1..=thresholds::MAX_RATE_POWER;
     let exponent = powers.find(|n| *exponent == Polynomial::from_number(f64::from(*n)))?;

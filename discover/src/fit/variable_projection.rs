@@ -10,8 +10,8 @@ use crate::fit::sensitivity::WindowDerivatives;
 
 /// Derivatives of a window with the initial state eliminated.
 pub struct ReducedBlock {
-    /// R of the QR factorisation of [derivatives by state, derivatives by unknowns, residual], with
-    /// the rows of the priors.
+    /// R of the QR factorisation of [derivatives with respect to state, derivatives with respect to unknowns,
+    /// residual], with the rows of the priors.
     pub factor: DMatrix<f64>,
     /// Independent directions of the initial state.
     directions: DMatrix<f64>,

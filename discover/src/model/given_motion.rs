@@ -8,7 +8,7 @@ use crate::model::measured_outputs::{MeasuredInput, MeasuredOutputs};
 use crate::thresholds;
 
 /// Inverse dynamics of a model along motions from records. A row of a record contains its inputs,
-/// all coordinates, all rates and all second rates, in this order.
+/// all coordinates, all rates and all second derivatives, in this order.
 pub(crate) struct GivenMotion {
     /// Number of inputs.
     inputs: usize,
@@ -79,7 +79,7 @@ impl GivenMotion {
             }
             present = at(&inputs);
             // The tolerance includes terms that nearly cancel, because their rounding remains. Each
-            // second rate has its own scale, because units differ.
+            // second derivative has its own scale, because units differ.
             let applied = self.required.iter().map(|input| inputs[input.index].abs());
             let applied = DVector::from_iterator(self.required.len(), applied);
             let sizes = wanted.abs() + left.abs() + matrix.abs() * applied;

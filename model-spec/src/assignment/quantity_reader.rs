@@ -105,7 +105,7 @@ impl<'m> QuantityReader<'m> {
             ))
             .with_span(place, UnitPhrase(dimension).to_string())
             .with_related_span(written_place, "a second unit")
-            .with_help("remove the unit: parameters have units"));
+            .with_help("remove the unit: the expression already has the unit of its parameters"));
         }
         let own = Unit::parse(written).map_err(|error| {
             Diagnostic::error(error.message)
@@ -175,7 +175,7 @@ fn convert_from_si(
                     given.value()
                 ),
                 false => format!(
-                    "parameters have units; expected {}",
+                    "the expression has the unit of its parameters; expected {}",
                     UnitPhrase(unit.dimension)
                 ),
             };

@@ -48,9 +48,11 @@ impl ControlResolver<'_> {
                 SampledKind::Binary(*operator, left, Box::new(self.resolve(right)?))
             }
             SyntaxKind::Element { name, .. } => {
-                return Err(Diagnostic::error("a controller has no sums over modes")
-                    .with_span(span, "the index has no value")
-                    .with_help(format!("write a single mode, such as {name}_1")));
+                return Err(Diagnostic::error(
+                    "an expression of a controller cannot contain a sum over modes",
+                )
+                .with_span(span, "the index has no value here")
+                .with_help(format!("write a single mode, such as {name}_1")));
             }
             SyntaxKind::Vector(_) | SyntaxKind::Member { .. } => {
                 return Err(Diagnostic::error("a vector cannot be used here")

@@ -140,7 +140,10 @@ fn find_input(name: &Name, names: &Names, inputs: &[Name]) -> Result<InputId, Di
         Some(Symbol::Input(input)) if names.is_prescribed(input) => Err(Diagnostic::error(
             format!("{shown} is prescribed motion, which a controller cannot drive"),
         )
-        .with_span(name.span, "held outputs jump, and have no rates")
+        .with_span(
+            name.span,
+            "outputs of controllers are held between samples: they jump and have no rates",
+        )
         .with_help("drive a force, or remove `rates` from the input")),
         Some(Symbol::Input(input)) => Ok(input),
         Some(symbol) => Err(

@@ -97,7 +97,7 @@ impl Resolver<'_> {
                 Err(no_rate_error(span, "this is a constant, which has no rate"))
             }
             ExprKind::Time | ExprKind::Position(_) => {
-                Err(no_rate_error(span, "this is no coordinate"))
+                Err(no_rate_error(span, "this is not a coordinate"))
             }
             _ => Err(no_rate_error(span, "this is an expression")
                 .with_help("move the expression to [definitions] and write dot(NAME)")),
@@ -110,11 +110,11 @@ impl Resolver<'_> {
                 SyntaxKind::Name(name) => format!("write dot({name}) for the rate"),
                 _ => "write dot(x) for the rate".to_owned(),
             };
-            return Err(
-                Diagnostic::error("diff() is the derivative along a field, not in time")
-                    .with_span(along.span, "this is the time")
-                    .with_help(help),
-            );
+            return Err(Diagnostic::error(
+                "diff() is the derivative with respect to the position along a field, not to time",
+            )
+            .with_span(along.span, "this is the time")
+            .with_help(help));
         }
         let resolved = self.resolve(value)?;
         let Some(field) = field_of(&resolved) else {
@@ -183,16 +183,17 @@ impl Resolver<'_> {
             .with_help("write sum(i, w, q[i]^2)"));
         };
         if let Some(symbol) = self.names.get(name) {
-            return Err(
-                Diagnostic::error(format!("the index `{name}` is also {}", symbol.kind()))
-                    .with_span(index.span, "choose another name"),
-            );
+            return Err(Diagnostic::error(format!(
+                "the index `{name}` has the same name as {}",
+                symbol.kind()
+            ))
+            .with_span(index.span, "choose another name"));
         }
         let field_index = self.resolve_field(field)?;
         if self.sums.iter().any(|(_, known)| *known == field_index) {
             return Err(
                 Diagnostic::error("a sum over a field inside a sum over the same field")
-                    .with_span(field.span, "an enclosing sum has this field"),
+                    .with_span(field.span, "an enclosing sum is over this field"),
             );
         }
         self.sums.push((name.clone(), field_index));

@@ -22,7 +22,7 @@ pub enum Scope {
     Motion,
     /// Parameters, integrals of them, and earlier coefficients.
     Coefficient(CoefficientId),
-    /// Quantity that a coefficient multiplies: the names of `Motion`, and mode coordinates without an index.
+    /// Quantity that a coefficient multiplies: the names of `Motion`, and modal coordinates without an index.
     Factor,
 }
 
@@ -230,14 +230,12 @@ impl<'n> Resolver<'n> {
             return Err(self.unknown_name_error(name, span));
         };
         if self.scope != Scope::Motion {
-            return Err(self.out_of_scope_error(&quote(name), "a mode coordinate", span));
+            return Err(self.out_of_scope_error(&quote(name), "a modal coordinate", span));
         }
         if mode == 0 || mode > MAX_ORDER || number.starts_with('0') {
             let modes = &self.names.fields[field].modes;
-            return Err(
-                Diagnostic::error(format!("no mode has the number {number}"))
-                    .with_span(span, format!("modes are {modes}_1 to {modes}_{MAX_ORDER}")),
-            );
+            return Err(Diagnostic::error(format!("there is no mode {number}"))
+                .with_span(span, format!("modes are {modes}_1 to {modes}_{MAX_ORDER}")));
         }
         Ok(ExprKind::SingleMode { field, mode })
     }
@@ -303,7 +301,7 @@ impl<'n> Resolver<'n> {
         if matches!(self.scope, Scope::Motion | Scope::Factor) {
             Ok(ExprKind::ModeCoordinate(*field))
         } else {
-            Err(self.out_of_scope_error(&quote(name), "a mode coordinate", span))
+            Err(self.out_of_scope_error(&quote(name), "a modal coordinate", span))
         }
     }
 

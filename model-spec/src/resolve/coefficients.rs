@@ -83,21 +83,21 @@ impl Builder {
     }
 }
 
-/// Checks that `of` is a coordinate or the mode coordinates of a field.
+/// Checks that `of` is a coordinate or the modal coordinates of a field.
 fn check_coordinate(of: Expr) -> Result<Expr, Diagnostic> {
     match of.kind {
         ExprKind::Coordinate(_) | ExprKind::ModeCoordinate(_) => Ok(of),
-        _ => Err(
-            Diagnostic::error("`of` must be a coordinate or the mode coordinates of a field")
-                .with_span(of.span, "not a coordinate")
-                .with_help(
-                    "name the coordinate of the equation, for example of = \"theta\" or of = \"q\"",
-                ),
-        ),
+        _ => Err(Diagnostic::error(
+            "`of` must be a coordinate or the modal coordinates of a field",
+        )
+        .with_span(of.span, "not a coordinate")
+        .with_help(
+            "name the coordinate of the equation, for example of = \"theta\" or of = \"q\"",
+        )),
     }
 }
 
-/// Returns the field of a mode coordinate or its rate.
+/// Returns the field of a modal coordinate or its rate.
 fn rows_of(expr: &Expr) -> Option<FieldId> {
     match &expr.kind {
         ExprKind::ModeCoordinate(field) => Some(*field),

@@ -26,7 +26,10 @@ impl Builder {
         ))?;
         let shapes = table.shapes.len();
         if usize::try_from(order).is_ok_and(|order| order > shapes && order <= MAX_ORDER) {
-            let message = format!("the order {order} needs more shapes than {}", file.text);
+            let message = format!(
+                "the order {order} needs more mode shapes than {}",
+                file.text
+            );
             self.found.push(
                 Diagnostic::error(message)
                     .with_span(span, "too high")

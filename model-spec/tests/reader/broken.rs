@@ -79,7 +79,7 @@ fn ten_thousand_brackets_are_rejected() {
     );
     let shown = expect_rejection("deep.toml", &text).render(false);
     assert!(
-        shown.contains("nested more than 200 deep") && shown.contains("deep.toml:4:"),
+        shown.contains("more than 200 nested levels") && shown.contains("deep.toml:4:"),
         "{shown}"
     );
     for (open, close) in [("[", "]"), ("{a=", "}")] {

@@ -20,8 +20,8 @@ const DISTANCES_BEFORE: [f64; 3] = [1e-9, 1e-7, 1e-5];
 /// order 1/2 gives 10.
 const MIN_POLE_GROWTH: f64 = 5.0;
 
-/// Distances after the end of a motion for second differences, which show an infinite second rate. They are relative to
-/// the simulated time, or to [`UNIT_TIME`] at the start.
+/// Distances after the end of a motion for second differences, which show an infinite second derivative. They are
+/// relative to the simulated time, or to [`UNIT_TIME`] at the start.
 const DIFFERENCE_STEPS: [f64; 3] = [1e-6, 1e-4, 1e-2];
 
 /// Reference time for a motion that ends at its start, s.
@@ -87,7 +87,7 @@ pub(crate) fn find_infinite_function(
         let unit = if span > 0.0 { span } else { UNIT_TIME };
         if has_rate_in_motion(model, *index) && has_infinite_rate(&value, end, unit) {
             return Some(format!(
-                "the rate or the second rate of `{name}` is infinite at t = {end:.9} s, but they move the machine: \
+                "the rate or the second derivative of `{name}` is infinite at t = {end:.9} s, but they move the machine: \
                  write a motion with finite rates, or simulate another time span"
             ));
         }

@@ -334,7 +334,10 @@ impl Instance<'_> {
         match (term.has_value, term.by.is_empty()) {
             (false, _) => format!("the {} has no finite value at {at}", term.name),
             (true, true) => format!("the {} has no derivative at {at}", term.name),
-            (true, false) => format!("the {} has no derivative by {by} at {at}", term.name),
+            (true, false) => format!(
+                "the {} has no derivative with respect to {by} at {at}",
+                term.name
+            ),
         }
     }
 }
@@ -417,17 +420,17 @@ pull = { value = "k*x + u", unit = "N" }
             (
                 "F*sqrt(abs(x)/l)",
                 "a derivative has no finite limit",
-                "the force `motor` has no derivative by `x` at x = 0 m, u = 0 N",
+                "the force `motor` has no derivative with respect to `x` at x = 0 m, u = 0 N",
             ),
             (
                 "F*(abs(x)/l)^0.3",
                 "a derivative has no finite limit",
-                "the force `motor` has no derivative by `x` at x = 0 m, u = 0 N",
+                "the force `motor` has no derivative with respect to `x` at x = 0 m, u = 0 N",
             ),
             (
                 "F*sqrt(max(x/l, 0))",
                 "a derivative has no finite limit",
-                "the force `motor` has no derivative by `x` at x = 0 m, u = 0 N",
+                "the force `motor` has no derivative with respect to `x` at x = 0 m, u = 0 N",
             ),
         ] {
             let found = linearisation_error(force, [0.0, 0.0]).to_string();

@@ -128,7 +128,7 @@ fn check_driven(
             || model.model().inputs[place].rate_of.is_some()
         {
             return Err(format!(
-                "the controller drives `{name}`, which is prescribed motion: held outputs jump, and have no rates"
+                "the controller drives `{name}`, which is prescribed motion: outputs of controllers are held between samples: they jump and have no rates"
             ));
         }
         places.push(place);

@@ -18,14 +18,14 @@ pub enum Form {
     Constant,
     /// Sine about the value.
     Sine,
-    /// Polynomial of degree 5 that starts at the value; its first and second rates are 0 at both ends.
+    /// Polynomial of degree 5 that starts at the value; its first and second derivatives are 0 at both ends.
     Step,
 }
 
 /// Signal of an input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Signal {
-    /// Indices of the input, its rate and its second rate among the inputs; `None` if there is no such input.
+    /// Indices of the input, its rate and its second derivative among the inputs; `None` if there is no such input.
     pub places: [Option<usize>; 3],
     /// Form.
     pub form: Form,
@@ -38,8 +38,8 @@ pub struct Signal {
 }
 
 impl Signal {
-    /// Reads a signal from its numbers: three indices (negative if there is none), form, value, change, period of the sine
-    /// and duration of the step.
+    /// Reads a signal from its numbers: three indices (negative if there is none), form, value, change, period of the
+    /// sine and duration of the step.
     pub fn from_numbers(numbers: &[f64; SIGNAL_LENGTH]) -> Self {
         let [places @ .., form, value, change, period, rise] = *numbers;
         let (form, duration) = match form {
@@ -56,7 +56,7 @@ impl Signal {
         }
     }
 
-    /// Returns the value with its first and second rate at a time, s.
+    /// Returns the value with its first and second derivatives at a time, s.
     pub fn at(&self, t: f64) -> [f64; 3] {
         let Self {
             value,

@@ -55,7 +55,7 @@ pub fn resolve_record_path(dataset: &Path, file: &StringValue) -> Result<PathBuf
         ))
         .with_span(
             file.span,
-            "expected a file in the folder of the dataset file or below",
+            "expected a file in the folder of the dataset file or in a subfolder",
         ));
     }
     if !place.exists() {

@@ -1,4 +1,4 @@
-//! Position, rate and second rate of a given motion, from its positions or its speeds.
+//! Position, rate and second derivative of a given motion, from its positions or its speeds.
 
 use std::ops::Range;
 
@@ -23,7 +23,8 @@ pub(crate) enum GivenKind {
     },
 }
 
-/// Returns samples, rates and second rates from one cubic spline for each of the `parts` between gaps; NaN in the gaps.
+/// Returns samples, rates and second derivatives from one cubic spline for each of the `parts` between gaps; NaN in the
+/// gaps.
 /// `None` without known samples.
 pub(crate) fn differentiate_position(
     times: &[f64],
@@ -45,9 +46,9 @@ pub(crate) fn differentiate_position(
     (!parts.is_empty()).then_some(found)
 }
 
-/// Returns positions, rates and second rates from samples of the speed; `None` without a known sample. The speed is the
-/// cubic spline through the known samples of `part`, and constant before them. Its integral from `initial` at the first
-/// sample is the position; its derivative is the second rate.
+/// Returns positions, rates and second derivatives from samples of the speed; `None` without a known sample. The speed
+/// is the cubic spline through the known samples of `part`, and constant before them. Its integral from `initial` at
+/// the first sample is the position. The derivative of the speed is the second derivative of the position.
 pub(crate) fn integrate_speed(
     times: &[f64],
     speeds: &[f64],

@@ -42,7 +42,7 @@ pub struct Record {
     /// Time in the file at which `times` is 0, in s.
     pub origin: f64,
     /// Inputs of the model, held between samples. With given motion, each row also contains all coordinates, then all
-    /// rates, then all second rates.
+    /// rates, then all second derivatives.
     pub inputs: HeldInputs,
     /// Columns of the inputs; NaN for a missing sample.
     pub input_columns: Vec<Vec<f64>>,
@@ -284,8 +284,8 @@ impl RecordReader<'_> {
         })
     }
 
-    /// Appends rates and second rates to given motion before filtering, so that the filter keeps them consistent. Short
-    /// runs of empty cells are filled, with a note.
+    /// Appends rates and second derivatives to given motion before filtering, so that the filter keeps them consistent.
+    /// Short runs of empty cells are filled, with a note.
     fn add_rates(
         &self,
         place: &Path,

@@ -1,5 +1,5 @@
-//! Derivatives of the nonlinear remainder by the state, which tangent vectors need in addition to the matrix of
-//! the linear part. They are finite differences, because the model provides only accelerations.
+//! Derivatives of the nonlinear remainder with respect to the state, which tangent vectors need in addition to the
+//! matrix of the linear part. They are finite differences, because the model provides only accelerations.
 
 use super::remainder::{Force, Remainder};
 use super::slopes::Slopes;

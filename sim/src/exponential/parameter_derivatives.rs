@@ -1,4 +1,4 @@
-//! Derivatives of a regime by parameters. They are exact for tangent vectors between switches, if no mode
+//! Derivatives of a regime with respect to parameters. They are exact for tangent vectors between switches, if no mode
 //! excited by the held drives turns far within a step.
 
 use eomgen_codegen::program::affine::AffineEvaluator;

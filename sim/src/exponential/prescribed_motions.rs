@@ -1,5 +1,5 @@
 //! Prescribed motions among the inputs. Each is a cubic between its samples. The integrator treats it, its rate
-//! and its second rate as states, and holds its third rate between samples, so the steps are exact.
+//! and its second derivative as states, and holds its third derivative between samples, so the steps are exact.
 
 use std::borrow::Cow;
 
@@ -25,7 +25,7 @@ impl PrescribedMotions {
     }
 
     /// Sets the states of prescribed motions at `t` (s) from the cubics at the time `piece` (s), and the inputs
-    /// at the indices of second rates to the third rates.
+    /// at the indices of second derivatives to the third derivatives.
     pub fn set(
         &self,
         inputs: &HeldInputs,

@@ -32,7 +32,7 @@ pub struct Regime {
     pub step_force: Columns,
     /// Matrices of 1, 2, 4 ... steps, for tangent vectors.
     pub doubled: Vec<DoubledStep>,
-    /// Derivatives by the parameters of the tangent vectors.
+    /// Derivatives with respect to the parameters of the tangent vectors.
     pub(super) by_parameter: Vec<RegimeDerivative>,
     /// Functions of the surfaces.
     pub functions: Vec<Row>,

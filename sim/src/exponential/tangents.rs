@@ -37,9 +37,9 @@ impl DrivingAccelerations for NoDrives {
 
 /// Function of a surface that a motion has reached.
 pub(super) struct ReachedSurface<'r> {
-    /// Derivatives of the function by the state.
+    /// Derivatives of the function with respect to the state.
     pub gradient: &'r [f64],
-    /// Derivatives of the function by the parameters of tangent vectors.
+    /// Derivatives of the function with respect to the parameters of tangent vectors.
     pub by_parameter: &'r [f64],
     /// Rate of the function, per s.
     pub rate: f64,
@@ -89,8 +89,8 @@ pub struct Tangents<'d> {
 }
 
 impl<'d> Tangents<'d> {
-    /// Creates the vectors of a model with these numbers of states, of degrees of freedom and of rates that forces act on.
-    /// Vectors of parameters and driven vectors start at 0.
+    /// Creates the vectors of a model with these numbers of states, of degrees of freedom and of rates that forces act
+    /// on. Vectors of parameters and driven vectors start at 0.
     pub(super) fn new(
         (states, degrees, forced): (usize, usize, usize),
         prescribed: PrescribedMotions,

@@ -11,7 +11,7 @@ pub(super) struct RootBand {
     pub(super) width: f64,
     /// Change of the state from the surface to the edge of the band.
     pub(super) to_edge: Vec<f64>,
-    /// Derivatives of the switching function by the states.
+    /// Derivatives of the switching function with respect to the states.
     pub(super) gradient: Vec<f64>,
 }
 
@@ -62,8 +62,8 @@ impl GuardHistory {
 }
 
 impl RootBand {
-    /// Returns the band in which the errors `allowed` to the states can change the sign of a switching function with this
-    /// gradient; `None` if they do not change it.
+    /// Returns the band in which the errors `allowed` to the states can change the sign of a switching function with
+    /// this gradient; `None` if they do not change it.
     pub(super) fn new(guard: usize, gradient: &[f64], allowed: &[f64]) -> Option<Self> {
         let changes = gradient.iter().zip(allowed);
         let width: f64 = changes

@@ -106,7 +106,7 @@ impl<S: System + ?Sized> WatchedSystem<'_, S> {
         })
     }
 
-    /// Returns the derivatives of the switching functions by the states, as differences with the steps
+    /// Returns the derivatives of the switching functions with respect to the states, as differences with the steps
     /// `allowed`.
     fn guard_gradients(
         &self,

@@ -227,7 +227,7 @@ pub unsafe fn call(
 }
 
 fn internal_error() -> Rejection {
-    invalid("internal error of the unit; the instance cannot be used any more: please report it")
+    invalid("internal error of the FMU; the instance cannot be used any more: please report it")
 }
 
 /// Rejects a call.
@@ -254,7 +254,7 @@ pub unsafe fn accept_none(component: *mut c_void, count: usize, reason: &str) ->
 }
 
 /// Reason for a rejection of variables of other types.
-pub const NO_SUCH_TYPE: &str = "the unit has no variables of this type";
+pub const NO_SUCH_TYPE: &str = "the FMU has no variables of this type";
 
 /// Saves the state of an instance into a new saved state, or into the one that `saved` points to.
 ///

@@ -196,7 +196,7 @@ pub unsafe extern "C" fn fmi2SetReal(
     }
 }
 
-/// Exports functions that reject variables of a type that no unit has.
+/// Exports functions that reject variables of a type that no FMU has.
 macro_rules! reject_type {
     ($($get:ident $set:ident)*) => {$(
         #[unsafe(no_mangle)]

@@ -209,12 +209,12 @@ fn check_counts(references: usize, values: usize) -> Outcome {
     match references == values {
         true => Ok(()),
         false => Err(invalid(
-            "the numbers of values and value references differ; all variables are scalars",
+            "the numbers of values and value references differ, but all variables are scalars",
         )),
     }
 }
 
-/// Exports functions that reject variables of a type that no unit has.
+/// Exports functions that reject variables of a type that no FMU has.
 macro_rules! reject_type {
     ($($get:ident $set:ident)*) => {$(
         #[unsafe(no_mangle)]
@@ -461,7 +461,7 @@ pub unsafe extern "C" fn fmi3EnterConfigurationMode(c: *mut c_void) -> c_int {
     unsafe {
         reject(
             c,
-            invalid("the unit has no structural parameters, so it has no configuration mode"),
+            invalid("the FMU has no structural parameters, so it has no configuration mode"),
         )
     }
 }
@@ -472,7 +472,7 @@ pub unsafe extern "C" fn fmi3ExitConfigurationMode(c: *mut c_void) -> c_int {
     unsafe {
         reject(
             c,
-            invalid("the unit has no structural parameters, so it has no configuration mode"),
+            invalid("the FMU has no structural parameters, so it has no configuration mode"),
         )
     }
 }

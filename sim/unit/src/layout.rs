@@ -25,7 +25,7 @@ pub enum Variable {
     ControllerState(usize),
 }
 
-/// Value references of a unit's variables.
+/// Value references of an FMU's variables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
     /// Number of states.

@@ -178,7 +178,7 @@ impl Unit {
             self.external = Some(Box::new(self.start_external(&parameters, &modes)?));
         }
         let motion = self.external.as_deref_mut();
-        motion.ok_or_else(|| invalid("the unit has no motion"))
+        motion.ok_or_else(|| invalid("the FMU has no motion"))
     }
 
     /// Starts a motion at the current point, with the current parameters and modes of the surfaces.

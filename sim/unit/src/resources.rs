@@ -16,7 +16,7 @@ pub fn token(program: &Program) -> String {
     format!("{}-{}-{version}", program.spec_hash, orders.join(","))
 }
 
-/// Reads and derives the specification in a unit's resources. `location` is a path or a URI with the scheme `file`.
+/// Reads and derives the specification in an FMU's resources. `location` is a path or a URI with the scheme `file`.
 ///
 /// # Errors No resources or no specification at the location, an invalid specification, or one that does not
 /// match the token.
@@ -26,7 +26,7 @@ pub fn derive_specification(
 ) -> Outcome<CompiledModel> {
     let orders = given.and_then(parse_orders).ok_or_else(reject_token)?;
     let location = location.ok_or_else(|| {
-        invalid("the importer passed no resource location, but the resources contain the specification of the unit")
+        invalid("the importer passed no resource location, but the resources contain the specification of the FMU")
     })?;
     let folder = parse_location(location)?;
     let file = find_specification(&folder)?;
@@ -34,13 +34,13 @@ pub fn derive_specification(
     let checked = eomgen_model_spec::load(&file).map_err(|found| {
         let found = found.to_string();
         invalid(format!(
-            "the specification {shown} in the unit's resources is damaged: {found}; generate the unit again"
+            "the specification {shown} in the FMU's resources is damaged: {found}; generate the FMU again"
         ))
     })?;
     let model = checked.model;
     let compiled = CompiledModel::derive(model, Orders::PerField(&orders)).map_err(|error| {
         invalid(format!(
-            "the specification {shown} in the unit's resources cannot be derived: {error}"
+            "the specification {shown} in the FMU's resources cannot be derived: {error}"
         ))
     })?;
     match given == Some(&*token(compiled.program())) {
@@ -51,8 +51,8 @@ pub fn derive_specification(
 
 fn reject_token() -> Rejection {
     invalid(
-        "the token is not that of the specification in the unit's resources: the description or the specification \
-         belongs to another unit, or was changed; generate the unit again",
+        "the token is not that of the specification in the FMU's resources: modelDescription.xml or the specification \
+         belongs to another FMU, or was changed; generate the FMU again",
     )
 }
 
@@ -68,7 +68,7 @@ fn parse_orders(token: &str) -> Option<Vec<usize>> {
 fn find_specification(folder: &Path) -> Outcome<PathBuf> {
     let shown = folder.display();
     let unreadable = |error: std::io::Error| {
-        invalid(format!("cannot read the unit's resources {shown}: {error}"))
+        invalid(format!("cannot read the FMU's resources {shown}: {error}"))
     };
     let mut found = None;
     for entry in std::fs::read_dir(folder).map_err(unreadable)? {
@@ -79,7 +79,7 @@ fn find_specification(folder: &Path) -> Outcome<PathBuf> {
         {
             if found.is_some() {
                 return Err(invalid(format!(
-                    "the unit's resources {shown} contain more than one specification"
+                    "the FMU's resources {shown} contain more than one specification"
                 )));
             }
             found = Some(path);
@@ -87,7 +87,7 @@ fn find_specification(folder: &Path) -> Outcome<PathBuf> {
     }
     found.ok_or_else(|| {
         invalid(format!(
-            "the unit's resources {shown} contain no specification"
+            "the FMU's resources {shown} contain no specification"
         ))
     })
 }
@@ -123,7 +123,7 @@ fn to_path(bytes: Vec<u8>) -> Outcome<PathBuf> {
 fn to_path(bytes: Vec<u8>) -> Outcome<PathBuf> {
     let text = String::from_utf8(bytes);
     let text =
-        text.map_err(|_| invalid("the location of the unit's resources is not valid UTF-8"))?;
+        text.map_err(|_| invalid("the location of the FMU's resources is not valid UTF-8"))?;
     Ok(text.into())
 }
 

@@ -100,7 +100,7 @@ impl Unit {
     /// Reads a saved state from its bytes; further bytes are ignored.
     pub fn deserialise(&self, bytes: &[u8]) -> Outcome<SavedState> {
         let cut = || invalid("the bytes of a saved state are missing or truncated");
-        let foreign = || invalid("these bytes are not a saved state of this unit");
+        let foreign = || invalid("these bytes are not a saved state of this FMU");
         let head = [FILE_MARK, token(self.compiled.program()).as_bytes()].concat();
         let known = bytes.get(..head.len()).ok_or_else(cut)?;
         if known != head {

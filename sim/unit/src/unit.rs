@@ -102,7 +102,7 @@ impl Unit {
         let controller = compiled.model().controllers.first();
         if let (Kind::ModelExchange, Some(controller)) = (kind, controller) {
             return Err(invalid(format!(
-                "the model has controllers (`{}`), whose samples the unit takes in co-simulation only: use co-simulation",
+                "the model has controllers (`{}`), which the FMU supports only in co-simulation: use co-simulation",
                 controller.name
             )));
         }
@@ -139,7 +139,7 @@ impl Unit {
         match self.is_in(modes) {
             true => Ok(()),
             false => Err(invalid(format!(
-                "{call} is not permitted in the current state of the unit"
+                "{call} is not permitted in the current state of the FMU"
             ))),
         }
     }
@@ -205,7 +205,7 @@ impl Unit {
             self.instance = Some(self.instance_at(&self.now.parameters)?);
         }
         let instance = self.instance.clone();
-        instance.ok_or_else(|| invalid("the unit has no model"))
+        instance.ok_or_else(|| invalid("the FMU has no model"))
     }
 
     /// Returns the model with these parameters, SI.

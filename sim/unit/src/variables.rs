@@ -124,7 +124,7 @@ impl Unit {
             }
             Variable::State(_) => BEFORE_START,
             Variable::Input(place) if self.compiled.model().is_controlled(place) => {
-                let why = "a controller of the unit drives this input";
+                let why = "a controller in the FMU drives this input";
                 return Err(self.reject_value(variable, value, why));
             }
             Variable::Input(_) => SETTABLE_MODES,
@@ -143,7 +143,7 @@ impl Unit {
             _ => 0,
         };
         if !self.is_in(modes) {
-            let why = "it cannot be set in the current state of the unit";
+            let why = "it cannot be set in the current state of the FMU";
             return Err(self.reject_value(variable, value, why));
         }
         if !value.is_finite() {
@@ -165,7 +165,7 @@ impl Unit {
         match length == expected {
             true => Ok(()),
             false => Err(invalid(format!(
-                "{length} {what}, but the unit has {expected}"
+                "{length} {what}, but the FMU has {expected}"
             ))),
         }
     }

@@ -28,7 +28,8 @@ pub use super::checks::states::Reference;
 pub use super::checks::unit::UnitSource;
 
 /// Reason for a skipped comparison of two orders.
-const SMALLER_MISSING: &str = "the model names single modes, which the smaller order does not have";
+const SMALLER_MISSING: &str =
+    "the model refers to single modes that the smaller order does not have";
 
 /// Hand-written equations of a model.
 #[derive(Default)]

@@ -24,7 +24,9 @@ impl Coverage {
         let word = if *regimes == 1 { "regime" } else { "regimes" };
         let excluded = match unreachable {
             0 => String::new(),
-            count => format!("; {count} combinations of sides are impossible"),
+            count => {
+                format!("; {count} combinations of sides of the switching surfaces are impossible")
+            }
         };
         format!("states were tried in {sampled} of {regimes} {word}{excluded}")
     }

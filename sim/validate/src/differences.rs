@@ -1,4 +1,4 @@
-//! Directional derivatives of the oracle's equations and observables by states, inputs and
+//! Directional derivatives of the oracle's equations and observables with respect to states, inputs and
 //! parameters, by central differences of eighth order. The rows of the equations are differentiated
 //! at constant accelerations, so that no linear solve adds its error.
 

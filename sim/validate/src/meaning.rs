@@ -46,8 +46,8 @@ pub fn describe(name: &str) -> Option<String> {
         "emitted_casadi" => {
             "The compiled functions for CasADi give the same bits as the equations."
         }
-        "unit_description" => "The description of the unit has the variables of the specification.",
-        "unit_library" => "The library in the unit has the rates and observables of the equations.",
+        "unit_description" => "The description of the FMU has the variables of the specification.",
+        "unit_library" => "The library in the FMU has the rates and observables of the equations.",
         "f32" => "In single precision, the compiled Rust stays within the bound of its rounding.",
         "regime_kernels" => {
             "The compiled code of each regime gives the same bits as the equations."
@@ -75,7 +75,9 @@ fn outputs(name: &str) -> Option<&'static str> {
         | "vector_jacobian_product_by_parameters" => {
             "This product with a Jacobian agrees with differences of the independent equations."
         }
-        "rates_by_time" => "The derivatives of the rates by time agree with differences.",
+        "rates_by_time" => {
+            "The derivatives of the rates with respect to time agree with differences."
+        }
         "hessians" => {
             "The second derivatives in the functions for CasADi agree with differences of the Jacobians."
         }

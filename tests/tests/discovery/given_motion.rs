@@ -89,7 +89,7 @@ fn ramp(t: f64) -> [f64; 3] {
     ]
 }
 
-/// Returns a joint's angle with its first and second rates: oscillations plus a motion to and fro with a pause.
+/// Returns a joint's angle with its first and second derivatives: oscillations plus a motion to and fro with a pause.
 fn joint(t: f64, swing: f64, way: f64) -> [f64; 3] {
     let (w, turn) = (2.7, 0.4);
     let (forth, back) = (ramp(t - 0.5), ramp(t - 3.0));

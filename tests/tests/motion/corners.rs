@@ -147,7 +147,7 @@ fn start_on_a_surface_uses_the_side_of_the_first_row() {
     }
 }
 
-/// Input of a base that moves at 0.5 m/s from 1 s on: position, rate and second rate.
+/// Input of a base that moves at 0.5 m/s from 1 s on: position, rate and second derivative.
 #[derive(Debug)]
 struct MovingBase;
 

@@ -1,4 +1,4 @@
-//! Tests of inputs that are functions of time: second rates in forces and observables, and steps at samples of
+//! Tests of inputs that are functions of time: second derivatives in forces and observables, and steps at samples of
 //! controllers.
 
 use eomgen_tests::program::run_accepted;

@@ -166,7 +166,7 @@ fn prescribed_motion_with_an_infinite_rate_is_named_with_its_time() {
             ]);
             let message = text(&output.stderr);
             assert!(!output.status.success(), "{motion}: {message}");
-            let named = format!("the rate or the second rate of `s` is infinite {place}");
+            let named = format!("the rate or the second derivative of `s` is infinite {place}");
             let near = named.replace("0.3", "0.2");
             assert!(
                 message.contains(&named) || message.contains(&near),

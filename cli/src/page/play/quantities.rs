@@ -27,7 +27,7 @@ pub(super) struct CurveQuantity {
 pub(super) struct Signal<'m> {
     /// Constant value of the input, mean value of a sine, or start value of a step.
     pub(super) value: Slider<'m>,
-    /// Indices of the input's first and second rate, if they are inputs.
+    /// Indices of the input's first and second derivatives, if they are inputs.
     pub(super) rates: Vec<usize>,
 }
 

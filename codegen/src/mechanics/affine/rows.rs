@@ -179,8 +179,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Differentiates by the modes of each field. The derivative of a scalar is a vector, that of a vector over modes a
-/// matrix.
+/// Differentiates with respect to the modes of each field. The derivative of a scalar is a vector, that of a vector
+/// over modes a matrix.
 fn read_modes(
     graph: &mut Graph,
     id: NodeId,

@@ -53,7 +53,7 @@ impl FieldFunction {
         function
     }
 
-    /// Returns a field atom, differentiated by x.
+    /// Returns a field atom, differentiated with respect to x.
     pub fn atom(graph: &mut Graph, domain: &Domain, atom: Atom) -> Self {
         let scale = graph.integer_power(domain.length, -i32::from(atom.derivative()));
         let mut function = Self::constant(scale);

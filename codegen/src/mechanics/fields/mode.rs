@@ -38,7 +38,7 @@ impl Mode {
         }
     }
 
-    /// Returns phi^(n)(s), the n-th derivative by s.
+    /// Returns phi^(n)(s), the n-th derivative with respect to s.
     pub(super) fn shape(&self, derivative: u8, s: f64) -> f64 {
         let z = self.wavenumber * s;
         let (sine, cosine) = (Function::Sin.apply(&[z]), Function::Cos.apply(&[z]));

@@ -30,7 +30,7 @@ impl Atom {
         }
     }
 
-    /// Returns the mode coordinates or their rates, the factors of the shapes; `None` for a shape `phi[i]`.
+    /// Returns the modal coordinates or their rates, the factors of the shapes; `None` for a shape `phi[i]`.
     pub(crate) fn amplitudes(self, graph: &mut Graph, field: FieldId) -> Option<NodeId> {
         match self {
             Self::Coordinates(_) => Some(graph.intern(Operation::ModeCoordinates(field))),
@@ -40,7 +40,7 @@ impl Atom {
     }
 }
 
-/// Term of an integrand: scalar * s^power * weight * atom_1 * atom_2. The atoms are differentiated by s.
+/// Term of an integrand: scalar * s^power * weight * atom_1 * atom_2. The atoms are differentiated with respect to s.
 #[derive(Clone, Debug)]
 pub(crate) struct IntegrandTerm {
     pub(crate) scalar: NodeId,

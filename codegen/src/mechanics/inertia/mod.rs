@@ -107,7 +107,7 @@ struct InertiaMessages<'m> {
 }
 
 /// Help text for an inertia that is not finite.
-const NOT_FINITE_HELP: &str = "a term of [kinetic] exceeds 1.8e308 or leaves the domain of a function: look for a parameter \
+const NOT_FINITE_HELP: &str = "a term of [kinetic] exceeds 1.8e308 or leaves the domain of a function: check for a parameter \
                                that is too large, a division by 0, or a logarithm of 0";
 
 impl InertiaMessages<'_> {

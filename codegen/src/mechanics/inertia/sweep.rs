@@ -165,7 +165,7 @@ impl<'g> Velocities<'g> {
         }
     }
 
-    /// Returns the derivatives of a product of powers by its moving factors.
+    /// Returns the derivatives of a product of powers with respect to its moving factors.
     fn differentiate_product_locally(&self, factors: &[(NodeId, i32)]) -> LocalDerivatives {
         let product = |lowered: &[usize]| -> f64 {
             let mut value = 1.0;
@@ -200,7 +200,8 @@ impl<'g> Velocities<'g> {
 }
 
 enum SweepStep<'s> {
-    /// Velocity, its derivatives by its operands, and the derivative of the energy by the velocity.
+    /// Velocity, its derivatives with respect to its operands, and the derivative of the energy with respect to the
+    /// velocity.
     Velocity(NodeId, &'s LocalDerivatives, f64),
     /// Rate that no unprocessed velocity contains.
     Complete(NodeId),

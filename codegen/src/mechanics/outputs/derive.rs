@@ -148,7 +148,7 @@ impl MovingDiagonal {
 impl std::fmt::Display for MovingDiagonal {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(
-            "no Jacobian: a sum over modes weights the square of each mode shape by a function of the state",
+            "there is no Jacobian, because a sum over modes multiplies the square of each mode shape by a function of the state",
         )
     }
 }

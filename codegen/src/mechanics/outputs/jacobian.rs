@@ -139,7 +139,7 @@ pub(crate) fn differentiate_by_parameters(
     blocks.jacobian(name, independent.len())
 }
 
-/// Derives the derivative by time, with constant state and inputs: a Jacobian of one column.
+/// Derives the derivative with respect to time, with constant state and inputs: a Jacobian of one column.
 pub(crate) fn differentiate_by_time(
     equations: &mut Equations,
     rows: &JacobianRows,

@@ -129,7 +129,7 @@ impl Direction<'_> {
 }
 
 /// Returns true if `roots` depend on the diagonal of a state-dependent Gram matrix. Such diagonals can be
-/// differentiated only by parameters.
+/// differentiated only with respect to parameters.
 pub(crate) fn holds_moving_diagonal(graph: &Graph, roots: &[NodeId]) -> bool {
     graph.reachable(roots).into_iter().any(|id| {
         matches!(graph.operation(id), Operation::GramDiagonal { .. })

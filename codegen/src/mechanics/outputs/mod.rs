@@ -1,7 +1,8 @@
 //! Outputs on request, in addition to rates, observables, energy, power, guards and mass matrix.
 //!
-//! `output` lists them, `types` defines their structure, `derive` derives them. `jacobian` differentiates by state,
-//! inputs and parameters, `adjoint` and `adjoint_matrices` derive products with weights by reverse accumulation, and
+//! `output` lists them, `types` defines their structure, `derive` derives them. `jacobian` differentiates with respect
+//! to state, inputs and parameters, `adjoint` and `adjoint_matrices` derive products with weights by reverse
+//! accumulation, and
 //! `hessian` second derivatives of the weighted rates. `matrix_derivatives` differentiates modal matrices, `regimes`
 //! finds the surfaces that determine each branch, and `reactions` derives frictions and contacts for steps of fixed
 //! length.

@@ -23,7 +23,8 @@ pub enum Output {
     Linearisation,
     /// Number of the regime of a state, and a function that computes the rates in a given regime without comparisons.
     Regimes,
-    /// Derivative of the rates by time. It cannot be requested by name; external interfaces add it to the Jacobians.
+    /// Derivative of the rates with respect to time. It cannot be requested by name; external interfaces add it to the
+    /// Jacobians.
     TimeDerivatives,
     /// Derivatives of rates and observables along a direction of state and inputs. It cannot be requested by name;
     /// linearisations evaluate it along every variable.

@@ -27,7 +27,7 @@ impl std::fmt::Display for StepObstacle {
         f.write_str(match self {
             Self::Corner => "a step of fixed length is not available for energies that jump",
             Self::Direction => {
-                "a step of fixed length is not available for friction against the direction of a velocity, v/norm(v)"
+                "a step of fixed length is not available for friction opposite to the direction of a velocity, v/norm(v)"
             }
             Self::Nonlinear => "a step of fixed length is not available for forces that are not linear in the sign of a friction",
             Self::RestitutionWithFriction => {

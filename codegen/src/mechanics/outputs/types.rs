@@ -153,7 +153,7 @@ pub struct Corners<N, R> {
     pub constraints: Vec<RateRow<N, R>>,
 }
 
-/// Rate of a function, and its derivatives by the rates of the coordinates.
+/// Rate of a function, and its derivatives with respect to the rates of the coordinates.
 #[derive(Clone, Debug)]
 pub struct RateRow<N, R> {
     /// Index of the function among all guard values, or among the constraints.

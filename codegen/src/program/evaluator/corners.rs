@@ -12,9 +12,9 @@ pub struct CornerValues {
     pub hamiltonian: f64,
     /// Energy.
     pub energy: f64,
-    /// Rate of each surface, and its derivatives by the rates of the coordinates.
+    /// Rate of each surface, and its derivatives with respect to the rates of the coordinates.
     pub surfaces: Vec<(f64, Vec<f64>)>,
-    /// Rate of each constraint, and its derivatives by the rates of the coordinates.
+    /// Rate of each constraint, and its derivatives with respect to the rates of the coordinates.
     pub constraints: Vec<(f64, Vec<f64>)>,
 }
 

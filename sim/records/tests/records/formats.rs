@@ -678,7 +678,7 @@ fn given_motion_has_rates() {
         assert_eq!(dataset.motion, ["x", "y"]);
         let record = &dataset.train[0];
         for (place, t) in record.times.iter().enumerate() {
-            // The row has three inputs, then coordinates, rates and second rates of both coordinates.
+            // The row has three inputs, then coordinates, rates and second derivatives of both coordinates.
             let row = record.inputs.last_sample(*t);
             assert_eq!(row.len(), 3 + 6);
             let (sine, cosine) = (3.0 * t).sin_cos();

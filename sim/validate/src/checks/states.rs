@@ -88,7 +88,7 @@ pub fn check(
     if findings.compared_states == 0 {
         let redrawn = sampler.redrawn_count();
         let message = format!(
-            "no state in the model's domain was found: at {redrawn} states a term is NaN or the mass \
+            "no state in the model's domain was found: at {redrawn} sampled states a term is NaN or the mass \
              matrix is not positive definite; give coordinates, states and inputs a `range`"
         );
         let worst = Worst::from_deviation(f64::INFINITY, message);
@@ -204,7 +204,7 @@ impl Findings<'_> {
             }
             (_, 0) => Check::from_deviation(name, worst.with_count(examined, "states"), ROW_TOLERANCE),
             _ => {
-                let what = format!("states ({redrawn} drawn again, outside the model's domain)");
+                let what = format!("states ({redrawn} were outside the model's domain and were drawn again)");
                 Check::from_deviation(name, worst.with_count(examined, &what), ROW_TOLERANCE)
             }
         });

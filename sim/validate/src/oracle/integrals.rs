@@ -1,6 +1,7 @@
 //! Derivatives of integrals, computed once per state for all rows. An integrand depends on the modes only through field
-//! values at the same position. Therefore its derivative by mode j is its derivative by each field value times phi_j.
-//! This needs a few evaluations per node and one product with the table of shapes, not one evaluation per node and row.
+//! values at the same position. Therefore its derivative with respect to mode j is its derivative with respect to each
+//! field value times phi_j. This needs a few evaluations per node and one product with the table of shapes, not one
+//! evaluation per node and row.
 //!
 //! The magnitude of an integral is the magnitude of its largest addend, including weight and shape. Second derivatives
 //! by two modes have the magnitude of their value, because cancellation by orthogonality depends on the quadrature, not

@@ -86,7 +86,7 @@ impl FieldDomain {
         }
     }
 
-    /// Returns the derivative of order `derivative` by s of shape `mode` (counted from 0).
+    /// Returns the derivative of order `derivative` with respect to s of shape `mode` (counted from 0).
     fn shape(&self, mode: usize, derivative: u8, position: DoubleDouble) -> f64 {
         let value = match &self.shapes {
             Shapes::Modes(shapes) => shapes.get(mode).map(|s| s.derivative(derivative, position)),

@@ -164,7 +164,8 @@ impl<'s> Scene<'s> {
     ) -> Motion {
         let at = |place: usize| self.inputs.get(place).copied().unwrap_or(f64::NAN);
         let (value, rate) = (at(input), at(rate_input));
-        // If the second rate is missing, no expression with this rate is differentiated by time, so 0 is never used.
+        // If the second derivative is missing, no expression with this rate is differentiated with respect to time, so
+        // 0 is never used.
         let second = second.map_or(0.0, at);
         let seeds = directions.map(|direction| match direction {
             Direction::Time => (rate, second),

@@ -93,7 +93,7 @@ impl Shape {
         }
     }
 
-    /// Returns the derivative of phi by s of order `derivative` at `position` in [0, 1].
+    /// Returns the derivative of phi with respect to s of order `derivative` at `position` in [0, 1].
     pub fn derivative(&self, derivative: u8, position: DoubleDouble) -> f64 {
         let s = position.high;
         let remaining = (1.0 - s) - position.low;

@@ -51,7 +51,7 @@ impl SwitchValue {
     }
 }
 
-/// Derivatives of a switch by the entries of the state, the inputs and the time, in this order.
+/// Derivatives of a switch with respect to the entries of the state, the inputs and the time, in this order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SwitchGradient {
     /// Derivatives of the quantity.

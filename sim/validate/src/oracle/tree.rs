@@ -19,7 +19,7 @@ pub(super) enum Tree {
     PrescribedInput {
         input: usize,
         rate: usize,
-        /// Index of the input that is its second rate, if given.
+        /// Index of the input that is its second derivative, if given.
         second: Option<usize>,
     },
     /// Position of the current node in the innermost enclosing set, in m (or the unit of the field's domain).
@@ -36,7 +36,7 @@ pub(super) enum Tree {
         leaf: Leaf,
         set: usize,
     },
-    /// Mode coordinate at the index of the enclosing sum.
+    /// Modal coordinate at the index of the enclosing sum.
     Mode {
         field: usize,
     },

@@ -25,7 +25,7 @@ const GIVEN_DERIVED_PARAMETERS: [&str; 3] = ["I_s", "I_p", "I_c"];
 ///
 /// The equations decide, not the name, because a model of the same name may follow other conventions.
 pub fn reference_equations(model: &Model, order: usize, values: &[f64]) -> ReferenceEquations {
-    let mut reason = format!("there are no hand-written equations of {}", model.name);
+    let mut reason = format!("there are no hand-written equations for {}", model.name);
     let arm = std::iter::once((&models::PLANETARY_ARM, None));
     let machines = CLOSED_FORMS
         .iter()

@@ -86,7 +86,7 @@ impl VariableRanges {
         let Some(place) = self.names.iter().position(|known| known == name) else {
             let known = self.names.join(", ");
             return Err(format!(
-                "`{name}` is no variable of the equations; they have {known}"
+                "`{name}` is not a variable of the equations; the variables are {known}"
             ));
         };
         if !low.is_finite() || !high.is_finite() {

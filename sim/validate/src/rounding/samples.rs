@@ -115,7 +115,7 @@ impl ErrorSampler {
             let computed = values[quantity.index.min(values.len() - 1)];
             if computed.to_bits() != recorded.to_bits() && !(computed == 0.0 && recorded == 0.0) {
                 return Err(format!(
-                    "{} is {computed:e} by the evaluator and {recorded:e} by its recorded operations, at {:?}",
+                    "the evaluator computes {} = {computed:e}, but its recorded operations give {recorded:e}, at {:?}",
                     quantity.name, self.point
                 ));
             }

@@ -90,7 +90,10 @@ fn other_equations_have_no_reference_but_a_reason() {
                   [coordinates]\nx = { unit = \"m\" }\n[kinetic]\nm = \"1/2*m*dot(x)^2\"\n";
     let (names, absent) = list_references(spring, 0);
     assert!(names.is_empty());
-    assert_eq!(absent[0].1, "there are no hand-written equations of spring");
+    assert_eq!(
+        absent[0].1,
+        "there are no hand-written equations for spring"
+    );
 }
 
 #[test]
@@ -99,7 +102,7 @@ fn another_machine_of_a_shipped_name_is_not_compared() {
                     [coordinates]\nx = { unit = \"m\" }\n[kinetic]\nm = \"1/2*m*dot(x)^2\"\n";
     let (names, absent) = list_references(namesake, 0);
     assert!(names.is_empty());
-    assert_eq!(absent[0].1, "there are no hand-written equations of crane");
+    assert_eq!(absent[0].1, "there are no hand-written equations for crane");
 }
 
 #[test]

@@ -142,7 +142,8 @@ macro_rules! checks {
                     model::rates(self.t, &self.state, &self.inputs.into(), &self.coefficients)
                 }
 
-                /// Returns the directional derivatives of rates and observables by states, inputs and parameters.
+                /// Returns the directional derivatives of rates and observables with respect to states, inputs and
+                /// parameters.
                 fn along(
                     &self,
                     state: &[f64; STATES],

@@ -53,7 +53,7 @@ fn equilibrium_at_the_zero_of_a_valve_flow_is_named() {
             ] {
                 let message = run_rejected(arguments);
                 assert!(
-                    message.contains("the rate of `p` has no derivative by `p`"),
+                    message.contains("the rate of `p` has no derivative with respect to `p`"),
                     "{reservoir}, {start}, {arguments:?}: {message}"
                 );
             }

@@ -252,7 +252,7 @@ fn too_few_or_dependent_shapes_are_rejected() {
     );
     let message = run_rejected(&["check", &model]);
     assert!(
-        message.contains("the order 4 needs more shapes than modes.csv"),
+        message.contains("the order 4 needs more mode shapes than modes.csv"),
         "{message}"
     );
     assert!(message.contains("model.toml:16:9"), "{message}");

@@ -260,7 +260,7 @@ fn invalid_sample_options_are_rejected() {
         ("{ between = [4, 2] }", "4 to 2 N"),
         (
             "{ between = [\"F\", 5] }",
-            "the ends of an uncertainty must be numbers",
+            "the bounds of `between` must be numbers",
         ),
         ("{ sd = 0.1, relative = 0.1 }", "not 2"),
         ("{ }", "not 0"),

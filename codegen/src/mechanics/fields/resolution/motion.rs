@@ -33,7 +33,7 @@ struct ModelAtState<'m> {
     element: usize,
 }
 
-/// Field or mode shape, with the order of its derivatives by time and position.
+/// Field or mode shape, with the order of its derivatives with respect to time and position.
 #[derive(Clone, Copy)]
 struct FieldValue {
     is_rate: bool,

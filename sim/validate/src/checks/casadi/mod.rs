@@ -162,7 +162,7 @@ fn run_harness(
 struct FunctionComparison {
     /// Number of differing results, with the first one.
     differing: Worst,
-    /// Second derivatives of the weighted rates by time, state, inputs and parameters, for each call.
+    /// Second derivatives of the weighted rates with respect to time, state, inputs and parameters, for each call.
     hessians: Vec<DMatrix<f64>>,
 }
 

@@ -153,7 +153,7 @@ struct Single {
     /// Largest error, in units of its bound.
     worst: f64,
     compared: usize,
-    /// Results with a bound below 1 %.
+    /// Results with a rounding bound below 1 % of the value.
     known: usize,
 }
 

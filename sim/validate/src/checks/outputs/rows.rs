@@ -110,8 +110,7 @@ pub(super) fn skip_reason(judged: &CheckContext<'_>, name: &str) -> (SkipKind, &
         let reason = "the model has no piecewise function";
         (SkipKind::NotApplicable, reason)
     } else {
-        let reason =
-            "every sampled state is too close to a switching surface or to the edge of the domain";
+        let reason = "every sampled state is too close to a switching surface or to the boundary of the model's domain";
         (SkipKind::NotRun, reason)
     }
 }

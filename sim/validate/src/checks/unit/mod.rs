@@ -61,7 +61,7 @@ pub fn check(
     let read = || {
         let program = program.as_ref().map_err(Clone::clone)?;
         let text = unit.file("modelDescription.xml");
-        let text = text.ok_or("the unit contains no modelDescription.xml")?;
+        let text = text.ok_or("the FMU contains no modelDescription.xml")?;
         let text = String::from_utf8_lossy(text);
         let found = Description::parse(&text);
         let found = found.map_err(|error| format!("modelDescription.xml: {error}"))?;
@@ -85,7 +85,7 @@ pub fn check(
     let samples: Vec<Sample> = draw_samples(oracle)?.into_iter().take(STATES).collect();
     let not_run = |reason: &str| Check::not_run(LIBRARY, LIBRARY_TOLERANCE, reason);
     if !model.controllers.is_empty() {
-        let reason = "the library drives inputs by the controllers of the model";
+        let reason = "the controllers in the library of the FMU drive inputs";
         checks.push(not_run(reason));
         return Ok(checks);
     }
@@ -134,7 +134,7 @@ impl UnitSource {
             let is_inside = parts.iter().all(|part| !matches!(*part, "" | "." | ".."));
             if !is_inside || name.contains('\\') || name.contains(':') {
                 return Err(format!(
-                    "the unit contains a file `{name}` outside of its folder"
+                    "the FMU contains a file `{name}` outside of its folder"
                 ));
             }
             let path = folder.join(name);
@@ -196,12 +196,14 @@ fn run_library(
     (samples, parameters): (&[Sample], &[Vec<f64>]),
 ) -> Result<String, Obstacle> {
     let version = description.version();
-    let version = version.ok_or_else(|| "the description has no known fmiVersion".to_owned())?;
+    let version =
+        version.ok_or_else(|| "modelDescription.xml has no known fmiVersion".to_owned())?;
     let exchange = description.identifiers.get("ModelExchange");
     let identifier = exchange.or(description.identifiers.get("CoSimulation"));
-    let identifier = identifier.ok_or_else(|| "the description names no library".to_owned())?;
+    let identifier =
+        identifier.ok_or_else(|| "modelDescription.xml has no modelIdentifier".to_owned())?;
     let library = unit.find_library(version, identifier).ok_or_else(|| {
-        Obstacle::NotRun("the unit contains no library for this kind of computer".to_owned())
+        Obstacle::NotRun("the FMU contains no library for this platform".to_owned())
     })?;
     let folder = tempfile::tempdir()
         .map_err(|error| Obstacle::NotRun(format!("cannot create a temporary folder: {error}")))?;
@@ -250,10 +252,7 @@ fn run_library(
     let token = description.token().unwrap_or_default();
     let mut command = Command::new(folder.join("client"));
     let command = command.arg(inside.join(library)).arg(token).arg(resources);
-    Ok(require_success(
-        "the unit's library",
-        run(command, &input)?,
-    )?)
+    Ok(require_success("the FMU's library", run(command, &input)?)?)
 }
 
 fn compare_numbers(
