@@ -204,7 +204,9 @@ pub fn commands_in_text_of(pages: &[(String, String)]) -> Vec<PrintedCommand> {
     let mut printed = Vec::new();
     for (page, text) in pages {
         for code in inline_code(text) {
-            if begins.iter().any(|begin| code.starts_with(begin)) && code.split(' ').count() > 2 {
+            let is_prefix = code.ends_with(" --");
+            let is_command = begins.iter().any(|begin| code.starts_with(begin)) && !is_prefix;
+            if is_command && code.split(' ').count() > 2 {
                 printed.push(PrintedCommand {
                     page: page.clone(),
                     command: code,

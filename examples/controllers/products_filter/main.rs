@@ -15,7 +15,7 @@ use std::time::Instant;
 
 use arm::{Coefficients, Parameters, STATES};
 use filter::Filter;
-use motion::{MEASURED, MEASUREMENTS, STEP, STEPS, State, begin, expected, motion, moved};
+use motion::{MEASURED, MEASUREMENTS, STEP, STEPS, State, add_scaled, begin, expected, motion};
 use products::Products;
 use textbook::Textbook;
 
@@ -82,9 +82,9 @@ fn main() {
     let columns = begin();
     let covariance = (0..STATES)
         .map(|i| {
-            columns
-                .iter()
-                .fold([0.0; STATES], |row, column| add_scaled(&row, column[i], column))
+            columns.iter().fold([0.0; STATES], |row, column| {
+                add_scaled(&row, column[i], column)
+            })
         })
         .collect();
     let textbook = Textbook {
@@ -102,7 +102,9 @@ fn main() {
         let [same, claimed] = run_filter(&name, arm, &motion, products);
         let away = difference(&same, &estimate, |i| variance[i].sqrt());
         let claims = difference(&claimed, &variance, |i| variance[i]);
-        println!("    difference from the first filter: {away:.0e} standard deviations, {claims:.0e} of the variances");
+        println!(
+            "    difference from the first filter: {away:.0e} standard deviations, {claims:.0e} of the variances"
+        );
         if rank == STATES {
             assert!(away < 1e-7 && claims < 1e-9, "the filters differ");
         }

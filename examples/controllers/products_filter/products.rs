@@ -1,7 +1,7 @@
 //! Filter with Jacobian-vector products. The covariance is S S'; each column of S is propagated by a product.
 
 use crate::filter::Filter;
-use crate::motion::{DISTURBANCE, STEP, STEPS, State, measured, moved, stepped};
+use crate::motion::{DISTURBANCE, STEP, STEPS, State, add_scaled, measured, runge_kutta_step};
 use arm::{Coefficients, Inputs, STATES};
 
 /// Scales of positions and rates for the selection of columns: 1 mm and 1 m/s.

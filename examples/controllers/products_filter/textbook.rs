@@ -1,7 +1,7 @@
 //! Standard filter: Jacobians propagate the covariance matrix.
 
 use crate::filter::Filter;
-use crate::motion::{DISTURBANCE, STEP, STEPS, State, measured, moved, stepped};
+use crate::motion::{DISTURBANCE, STEP, STEPS, State, add_scaled, measured, runge_kutta_step};
 use arm::{Coefficients, Inputs, RATES_BY_INPUTS, RATES_BY_STATE, STATES};
 
 /// Computes the rates of the columns: each column is multiplied by the Jacobian by the state. The last column also
@@ -54,8 +54,9 @@ impl Filter for Textbook {
         let pushed = flow[STATES];
         let times = |rows: &[State]| -> Vec<State> {
             let carried = |row: &State| {
-                let add =
-                    |sum: State, (column, factor): (&State, &f64)| add_scaled(&sum, *factor, column);
+                let add = |sum: State, (column, factor): (&State, &f64)| {
+                    add_scaled(&sum, *factor, column)
+                };
                 flow.iter().zip(row).fold([0.0; STATES], add)
             };
             rows.iter().map(carried).collect()

@@ -1,8 +1,8 @@
 //! Uniform beam on a hub of inertia J_h that turns by theta, with a tip of mass M_t and rotary
 //! inertia J_t, in the clamped-free modes of the bare beam.
 //!
-//! A point at x of the beam is displaced by x theta + w(x, t) and the tip by l theta + w(l, t). The tip turns by theta
-//! + w_x(l, t). Therefore the tip couples the modes through phi_i(l) and phi_i'(l) (Meirovitch, "Fundamentals of
+//! A point at x of the beam is displaced by x theta + w(x, t) and the tip by l theta + w(l, t). The tip turns by
+//! theta + w_x(l, t). Therefore the tip couples the modes through phi_i(l) and phi_i'(l) (Meirovitch, "Fundamentals of
 //! Vibrations", chapter 8, with a moving base).
 
 use super::linear_system::LinearSystem;

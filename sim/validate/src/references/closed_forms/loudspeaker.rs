@@ -1,7 +1,7 @@
-//! Moving-coil loudspeaker for small signals: m x'' + c x' + k x = Bl i, and the voltage equations of two loops, L_e i'
-//! + R_e i + R_2 (i - i_2) + Bl x' = u and L_2 i_2' = R_2 (i - i_2) (Klippel, "Tutorial: Loudspeaker nonlinearities",
-//! J. Audio Eng. Soc. 54, 2006, Fig. 2 with constant parameters). In the result, the rates of the currents follow the
-//! acceleration.
+//! Moving-coil loudspeaker for small signals: m x'' + c x' + k x = Bl i, and the voltage equations of two loops,
+//! L_e i' + R_e i + R_2 (i - i_2) + Bl x' = u and L_2 i_2' = R_2 (i - i_2) (Klippel, "Tutorial: Loudspeaker
+//! nonlinearities", J. Audio Eng. Soc. 54, 2006, Fig. 2 with constant parameters). In the result, the rates of the
+//! currents follow the acceleration.
 
 use super::{NotApplicable, StateAndParameters};
 use crate::references::evaluation::{Evaluation, Row};
