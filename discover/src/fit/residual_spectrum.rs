@@ -138,8 +138,8 @@ fn find_peak(spectrum: &PowerSpectrum, windows: usize) -> Option<SpectralPeak> {
 }
 
 /// Returns the frequency of a sine from the line with the largest density, `peak`, and its larger
-/// neighbour. With a Hann window, the ratio r of the two amplitudes gives the distance (2 r - 1)/(r
-/// + 1) in line distances.
+/// neighbour. With a Hann window, the ratio r of the two amplitudes gives the distance
+/// (2 r - 1)/(r + 1) in line distances.
 ///
 /// T. Grandke, "Interpolation algorithms for discrete Fourier transforms of weighted signals", IEEE
 /// Trans. Instrum. Meas. 32 (1983) 350-355.

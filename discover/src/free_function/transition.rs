@@ -11,8 +11,8 @@ const SERIES_TERMS: usize = 12;
 /// Maximum number of squarings. For a matrix of a larger norm, the result is not computed.
 const MAX_SQUARINGS: u32 = 200;
 
-/// Transition over a step of length h of `x' = J x + b`, with constant b: `x(h) = exponential x(0)
-/// + h integral b`.
+/// Transition over a step of length h of `x' = J x + b`, with constant b:
+/// `x(h) = exponential x(0) + h integral b`.
 #[derive(Clone, Debug)]
 pub(super) struct Transition {
     /// exp(h J).

@@ -149,8 +149,8 @@ pub(super) fn project(
     rows * vector.map(|entry| Complex::new(entry, 0.0))
 }
 
-/// Returns the amplitudes of a mode's response per unit sine and per unit cosine, for the force beta sin theta
-/// + gamma cos theta: -(beta (rate sin + omega cos) + gamma (rate cos - omega sin)) / (rate^2 + omega^2).
+/// Returns the amplitudes of a mode's response per unit sine and per unit cosine, for the force
+/// beta sin theta + gamma cos theta: -(beta (rate sin + omega cos) + gamma (rate cos - omega sin)) / (rate^2 + omega^2).
 fn compute_response(part: &Part, sinusoid: &[DVector<f64>; 2], omega: f64) -> [Complex<f64>; 2] {
     let rate = part.centre;
     let [beta, gamma] = [0, 1].map(|kind| project(&part.rows, &sinusoid[kind])[0]);
