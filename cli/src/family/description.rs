@@ -389,7 +389,7 @@ impl Reader<'_> {
             let target = Target::from_str(&word.text, false).ok();
             match target {
                 Some(Target::Fmu2 | Target::Fmu3) => {
-                    let message = "a functional mock-up unit contains machine code of this computer, so its \
+                    let message = "a functional mock-up unit (FMU) contains machine code for this computer, so its \
                                    bytes are not reproducible";
                     let error = Diagnostic::error(message).with_span(word.span, known);
                     self.found
