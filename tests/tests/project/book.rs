@@ -146,6 +146,9 @@ fn times_in_readme_match_the_book() {
         };
         assert!(is_in_the_book(time), "{time}");
         let command = row[5].trim_matches('`');
-        assert!(command == "as for 4 modes" || book.contains(command), "{command}");
+        assert!(
+            command == "as for 4 modes" || book.contains(command),
+            "{command}"
+        );
     }
 }
