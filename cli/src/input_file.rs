@@ -43,7 +43,7 @@ pub fn check_is_no_input(output: &Path) -> Result {
     let is_input = |place: &PathBuf| INPUTS.lock().is_ok_and(|inputs| inputs.contains(place));
     match place.is_ok_and(|place| is_input(&place)) {
         true => Err(Error::input(format!(
-            "{} is an input of this command: give the output another name",
+            "{} is also read by this command: give the output another name",
             output.display()
         ))),
         false => Ok(()),

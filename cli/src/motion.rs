@@ -48,7 +48,7 @@ pub fn follow_with(
 fn note_choices(motion: &Motion) {
     if let Some(SolverChoice::NotSupportedByExact(reason)) = &motion.solver_choice {
         warn(&format!(
-            "warning: not solved exactly, but with {}: {reason}",
+            "warning: solved with {} instead of the exact solver: {reason}",
             motion.solver
         ));
     }

@@ -71,7 +71,8 @@ fn report_equilibrium(found: &Equilibrium) {
     }
     if found.depends_on_time {
         warn(&format!(
-            "warning: the forces depend on time, or prescribed motion moves: the state is an equilibrium at t = {} s only",
+            "warning: the forces depend on time, or prescribed motion moves: the state is an equilibrium at t = {} s \
+             only",
             found.point.t
         ));
     }
@@ -82,8 +83,8 @@ pub fn is_equilibrium(run: &Instance<'_>, at: &OperatingPoint, consequence: &str
     let found = run.find_departure(at)?;
     if !found.is_none() {
         warn(&format!(
-            "warning: this state is no equilibrium: {}; {consequence}; give another state with --state NAME=EXPR, or \
-             --state trim",
+            "warning: this state is not an equilibrium: {}; {consequence}; give another state with --state NAME=EXPR, \
+             or --state trim",
             describe(&found)
         ));
     }

@@ -40,7 +40,7 @@ impl Destination {
         };
         if ending.is_some_and(|ending| !is_known(ending)) {
             return Err(Error::input(format!(
-                "--out {}: the rows are a CSV or a Parquet file: give a name that ends in .csv or .parquet",
+                "--out {}: the trajectory is a CSV or a Parquet file: give a name that ends in .csv or .parquet",
                 path.display()
             )));
         }

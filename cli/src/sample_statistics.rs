@@ -122,8 +122,8 @@ impl Statistics {
             .map(|(name, c)| format!("{name} {c:.2}"))
             .collect();
         format!(
-            "{name}: mean {:.6e} +- {error:.1e}{unit}, standard deviation {sd:.3e}, median {middle:.4e}, 5 % to 95 % {low:.4e} to {high:.4e}\n  \
-             rank correlations: {}\n",
+            "{name}: mean {:.6e} +- {error:.1e}{unit}, standard deviation {sd:.3e}, median {middle:.4e}, 5 % to 95 % \
+             {low:.4e} to {high:.4e}\n  rank correlations: {}\n",
             summary.mean,
             ranks.join(", ")
         )
@@ -136,7 +136,7 @@ impl Statistics {
             match self.figure(measured) {
                 Some(Ok(figure)) => figures.push(figure),
                 Some(Err(error)) => warn(&format!(
-                    "warning: no figure of {}: {error}",
+                    "warning: the figure of {} cannot be drawn: {error}",
                     measured.column.name
                 )),
                 None => {}

@@ -64,7 +64,9 @@ pub fn finish(folder: &Folder) -> Result<FinalFiles> {
                 write_file(&path, &bytes)?;
                 finished.files.push(path);
             }
-            Err(error) => warn(&format!("warning: no figure of {measure}: {error}")),
+            Err(error) => warn(&format!(
+                "warning: the figure of {measure} cannot be drawn: {error}"
+            )),
         }
     }
     let bytes = encode(&table.names, &table.columns)

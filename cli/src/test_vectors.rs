@@ -69,7 +69,9 @@ fn calls(model: &Model, orders: &[usize]) -> Result<Vec<CallArguments>> {
         ));
     }
     let failed = |error: eomgen_validate::oracle::OracleError| {
-        Error::input(format!("no states for the test vectors: {error}"))
+        Error::input(format!(
+            "the states of the test vectors cannot be sampled: {error}"
+        ))
     };
     let oracle = Oracle::new(model, order, &values).map_err(failed)?;
     let mut sampler = Sampler::new(&oracle, SEED).map_err(failed)?;

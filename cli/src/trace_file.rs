@@ -39,7 +39,7 @@ pub fn document<'f>(
     }
     if traced.is_empty() {
         return Err(Error::input(
-            "--with trace needs --target rust or --target c99: other targets have no comments on values",
+            "--with trace needs --target rust or --target c99: other targets have no comments with values",
         ));
     }
     let guards: Vec<&str> = program.guards.iter().map(|guard| &*guard.formula).collect();

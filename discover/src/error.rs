@@ -109,7 +109,9 @@ impl fmt::Display for SimulationError {
             Self::StateNotRecorded => {
                 f.write_str("the records do not give the motion of all states")
             }
-            Self::TooFast => f.write_str("a part of the motion is too fast for the sampling"),
+            Self::TooFast => {
+                f.write_str("a part of the motion is too fast for the sampling rate of the records")
+            }
             Self::Diverged => f.write_str(
                 "the state diverged, or a function left its domain (for example sqrt \
              of a negative number)",
@@ -155,7 +157,7 @@ impl fmt::Display for DiscoverError {
             ),
             Self::CandidateSimulationFailed => f.write_str("the simulation with this effect fails"),
             Self::NotExcited => {
-                f.write_str("the records cannot show it: it does not change the outputs")
+                f.write_str("the records cannot show it, because it does not change the outputs")
             }
             Self::Stopped => f.write_str(STOPPED),
             Self::TooMuchWork(most) => write!(

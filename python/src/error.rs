@@ -12,8 +12,8 @@ create_exception!(
     eomgen,
     SpecificationError,
     PyValueError,
-    "Invalid specification, dataset file or parameter value. The message has place, cause and cure, as on \
-     the command line."
+    "Invalid specification, dataset file or parameter value. The message contains the place, the cause and a remedy, \
+     as on the command line."
 );
 
 create_exception!(

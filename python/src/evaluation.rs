@@ -37,7 +37,7 @@ impl<'a> Rows<'a> {
             && of_one(u.as_array().nrows());
         if !fits {
             return Err(PyValueError::new_err(format!(
-                "t {:?}, x {:?} and u {:?} do not fit {states} states and {inputs} inputs",
+                "the shapes of t, {:?}, x, {:?}, and u, {:?}, do not match {states} states and {inputs} inputs",
                 t.as_array().shape(),
                 x.as_array().shape(),
                 u.as_array().shape()

@@ -161,8 +161,9 @@ const BISECTIONS: usize = 64;
 /// Returns the exception for prescribed motion that jumps at a time, s.
 fn jump_error(input: &str, t: f64, (before, after): (f64, f64)) -> PyErr {
     PyValueError::new_err(format!(
-        "the input {input} at t = {t}: the prescribed motion jumps from {before} to {after}, so that its rate is infinite: \
-         give a continuous motion, or an expression such as \"{after}*above(t - {t})\" if the model has no forces by the rate"
+        "the input {input} at t = {t}: the prescribed motion jumps from {before} to {after}, so that its rate is \
+         infinite: give a continuous motion, or an expression such as \"{after}*above(t - {t})\" if no force of the \
+         model depends on the rate"
     ))
 }
 

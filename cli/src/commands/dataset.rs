@@ -14,7 +14,7 @@ pub fn run(options: &Dataset) -> Result {
     let is_specification = |path: &Path| path.extension().is_some_and(|end| end == "toml");
     if is_specification(&options.record) && !is_specification(&options.spec) {
         return Err(Error::input(format!(
-            "the specification comes second: eomgen dataset {} {}",
+            "give the record first and the specification second: eomgen dataset {} {}",
             options.spec.display(),
             options.record.display()
         )));

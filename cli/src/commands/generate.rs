@@ -22,9 +22,9 @@ use crate::settings::with_settings;
 use crate::test_vectors;
 use crate::trace_file::{self, TRACE};
 
-const CHECK_WITHOUT_ALL: &str = "`--check` compares the checked-in variants only, as `generate --all \
-     --check`; nothing was written\n\nTo compare the files of other models, list them in a family file \
-     and run `eomgen family FAMILY.toml --out DIR --check`";
+const CHECK_WITHOUT_ALL: &str = "`--check` is available only with `--all`: `generate --all --check` compares the \
+                                 checked-in variants. Nothing was written\n\nTo compare the files of other models, \
+                                 list them in a family file and run `eomgen family FAMILY.toml --out DIR --check`";
 
 pub fn run(options: &Generate) -> Result {
     // clap ignores `requires` if the required option conflicts with a given one.

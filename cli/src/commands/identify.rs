@@ -20,7 +20,7 @@ pub fn run(options: &Identify) -> Result {
     let certificates = match &options.certificates {
         Some(folder) if !folder.is_dir() => {
             return Err(Error::input(format!(
-                "--certificates {}: this is no folder",
+                "--certificates {}: this is not a folder",
                 folder.display()
             )));
         }

@@ -24,7 +24,7 @@ pub fn run(options: &Instructions) -> Result {
         0 => Ok(()),
         number => {
             let functions = count(number, "function");
-            warn(&format!("error: no bound of {functions}"));
+            warn(&format!("error: no bound was found for {functions}"));
             Err(Error::Failed)
         }
     }

@@ -21,8 +21,11 @@ pub fn run(options: &Linearise) -> Result {
     let compiled = model(&options.model, &options.parameters)?;
     let run = compiled.with_declared_parameters()?;
     let at = point(&run, &options.point.state)?;
-    let is_equilibrium =
-        is_equilibrium(&run, &at, "the linearisation holds for a short time only")?;
+    let is_equilibrium = is_equilibrium(
+        &run,
+        &at,
+        "the linearisation is valid for a short time only",
+    )?;
     let found = run.linearise(at.point())?;
     if found.is_one_sided {
         note_surfaces(&regime(&run, &at)?);

@@ -17,7 +17,7 @@ use crate::regime::{Side, note_surfaces, regime, summary};
 /// Consequence for a state that is not an equilibrium. The modes depend on the choice of coordinates, because the
 /// gradient of the forces does.
 const OFF_EQUILIBRIUM: &str =
-    "the modes hold for a short time only, and they depend on the choice of coordinates";
+    "the modes are valid for a short time only, and they depend on the choice of coordinates";
 
 pub fn run(options: &Modes) -> Result {
     let drawing = options.plot.as_deref();

@@ -150,7 +150,7 @@ fn open_library(
     match twice.find(|name| prescribed.iter().any(|given| given.name() == **name)) {
         None => Ok(Some(library)),
         Some(name) => Err(Error::input(format!(
-            "--controller {}: the controller drives the input `{name}`, and so does --input",
+            "--controller {}: the controller drives the input `{name}`, which --input also sets",
             path.display()
         ))),
     }

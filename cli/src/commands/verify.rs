@@ -103,12 +103,12 @@ impl Certificate {
         let shown = path.display();
         let document: Value = serde_json::from_str(&text).map_err(|error| {
             Error::input(format!(
-                "{shown}:{}:{}: this is no certificate: {error}",
+                "{shown}:{}:{}: this is not a certificate: {error}",
                 error.line(),
                 error.column()
             ))
         })?;
-        let cure = "give a certificate of `eomgen generate --certify` or `eomgen family`";
+        let cure = "give a certificate that `eomgen generate --certify` or `eomgen family` wrote";
         let missing =
             |key: &str| Error::input(format!("{shown}: the certificate has no `{key}`; {cure}"));
         let string = |key: &str| {
@@ -211,7 +211,7 @@ impl Certificate {
                 .any(|stated| is_same(&stated.command, command))
             {
                 return Err(Error::input(format!(
-                    "--instructions {command:?}: the certificate states no bounds with this command"
+                    "--instructions {command:?}: the certificate contains no bounds for this command"
                 )));
             }
         }
@@ -229,12 +229,12 @@ impl Certificate {
                     Err("give this command as --instructions".to_owned())
                 }
                 Some(given) => instructions(given, &command),
-                None => Err(format!("the bounds are those of {source}")),
+                None => Err(format!("the certificate has the bounds of {source}")),
             };
             let result = match found {
                 Err(reason) => format!("NOT RUN ({reason})"),
                 Ok(found) if found.compiler != compiler => format!(
-                    "NOT RUN (this compiler is {}, that of the certificate {compiler})",
+                    "NOT RUN (this compiler is {}, but the certificate has bounds for {compiler})",
                     found.compiler
                 ),
                 Ok(found) if found.functions == functions => {
@@ -243,7 +243,7 @@ impl Certificate {
                 }
                 Ok(_) => {
                     return Err(Error::Stopped(format!(
-                        "the bounds of instructions and stack with `{command}` are not those of the certificate"
+                        "the bounds of instructions and stack with `{command}` differ from those in the certificate"
                     )));
                 }
             };
@@ -350,7 +350,8 @@ fn sources(
     if extension == Some("fmu") {
         let unit = certificate.unit.as_ref().ok_or_else(|| {
             Error::input(format!(
-                "{shown}: the certificate covers no functional mock-up unit (FMU); give the certificate that was written with the file"
+                "{shown}: the certificate covers no functional mock-up unit (FMU); give the certificate that was \
+                 written with the file"
             ))
         })?;
         let sources = Sources {
@@ -363,10 +364,10 @@ fn sources(
         .map_err(|error| Error::input(format!("cannot read {shown}: {error}")))?;
     match extension {
         Some("rs") if options.cc.is_some() => Err(Error::input(format!(
-            "--cc is for C; {shown} is Rust, which `rustc` or the program in RUSTC compiles"
+            "--cc applies only to C; {shown} is Rust, which `rustc` or the program in RUSTC compiles"
         ))),
         Some("rs") if !certificate.covers_rust() => Err(Error::input(format!(
-            "{shown}: the certificate covers {}, no Rust; give the certificate that was written with the file",
+            "{shown}: the certificate covers {}, not Rust; give the certificate that was written with the file",
             certificate.c_files()
         ))),
         Some("rs") => Ok((

@@ -48,6 +48,6 @@ pub fn run(options: &Sweep) -> Result<Submission> {
     }
     Err(Error::input(
         "--engine dask: the sweep did not finish; the same command resumes it. It needs the Python \
-         package (pip install './python[dask]') in the python3 that is first on the path",
+         package (pip install './python[dask]') for the python3 that is first on the path",
     ))
 }

@@ -218,7 +218,7 @@ impl Reader<'_> {
         if let Some(growth) = growth.filter(|growth| growth.value < 0.0) {
             let error = Diagnostic::error("`operation_growth` is negative");
             self.found
-                .push(error.with_span(growth.span, "expected a share such as 0.05"));
+                .push(error.with_span(growth.span, "expected a fraction such as 0.05"));
         }
         let help = "add [[variant]] with name = \"NAME\" and spec = \"FILE.toml\"";
         let list = sections.require_with("variant", help, self.found)?;
@@ -347,8 +347,8 @@ impl Reader<'_> {
     fn check_prefix(&mut self, prefix: &StringValue) -> Option<()> {
         let language = match &*prefix.text {
             name if !is_identifier(name) || name.len() > 64 => "name of letters, digits and _",
-            name if !c::is_identifier(name) => "word of C or C++",
-            name if !rust::is_identifier(name) => "word of Rust",
+            name if !c::is_identifier(name) => "reserved word of C or C++",
+            name if !rust::is_identifier(name) => "reserved word of Rust",
             name if FAMILY_NAMES.contains(&name) => "name of the common files of the family",
             _ => return Some(()),
         };
@@ -358,7 +358,7 @@ impl Reader<'_> {
         };
         let error = Diagnostic::error(message).with_span(
             prefix.span,
-            "names of emitted C and of the Rust module begin with it",
+            "emitted C names begin with the prefix, and the Rust module has its name",
         );
         self.found
             .push(error.with_help("give another one with prefix = \"my_model\""));
@@ -389,7 +389,7 @@ impl Reader<'_> {
             let target = Target::from_str(&word.text, false).ok();
             match target {
                 Some(Target::Fmu2 | Target::Fmu3) => {
-                    let message = "a functional mock-up unit contains machine code of this computer, so its \
+                    let message = "a functional mock-up unit (FMU) contains machine code for this computer, so its \
                                    bytes are not reproducible";
                     let error = Diagnostic::error(message).with_span(word.span, known);
                     self.found

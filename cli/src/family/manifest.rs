@@ -57,10 +57,10 @@ impl Manifest {
         let wrong = |what: &str| Error::input(format!("{shown}: {what}; {cure}"));
         let variants = document["variants"]
             .as_array()
-            .ok_or_else(|| wrong("this is no manifest of a family"))?;
+            .ok_or_else(|| wrong("this is not a manifest of a family"))?;
         let name = document["family"]
             .as_str()
-            .ok_or_else(|| wrong("this is no manifest of a family"))?;
+            .ok_or_else(|| wrong("this is not a manifest of a family"))?;
         if name != family.name {
             return Err(Error::input(format!(
                 "{} contains the family `{name}`, not `{}`: give another folder",

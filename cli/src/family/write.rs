@@ -95,7 +95,7 @@ pub fn remove(paths: &[String], manifest: &Manifest, out: &Path) -> Result {
                 let _ = place.parent().map(std::fs::remove_dir);
             }
             Some(_) => warn(&format!(
-                "warning: {} belongs to no variant and was edited: it stays",
+                "warning: {} belongs to no variant and was edited: it is not deleted",
                 place.display()
             )),
         }

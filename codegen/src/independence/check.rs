@@ -346,7 +346,7 @@ fn describe_dependence(
         ),
         (false, Some(residual)) => (
             format!(
-                "the constraint `{name}` contradicts {others}: they restrict the same motion, and a residual of \
+                "the constraint `{name}` contradicts {others}: they restrict the same motion, but a residual of \
                  {:.3e} {unit} remains",
                 residual.abs()
             ),
@@ -355,9 +355,9 @@ fn describe_dependence(
         ),
         (false, None) => (
             format!(
-                "the constraint `{name}` is redundant: constraints on coordinates and on rates restrict the same motion, \
-                 because at every state that satisfies them, its derivative is a linear combination of the derivatives \
-                 of {others}"
+                "the constraint `{name}` is redundant: constraints on coordinates and on rates restrict the same \
+                 motion, because at every state that satisfies them, its derivative is a linear combination of the \
+                 derivatives of {others}"
             ),
             "adds no restriction to the others",
             "remove the constraint on the rates: the one on the coordinates implies it",

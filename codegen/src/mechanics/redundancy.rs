@@ -77,8 +77,8 @@ impl DependentGroup {
         let excess = self.constraints.len() - self.rank;
         let verb = if excess == 1 { "is" } else { "are" };
         format!(
-            "the constraints {list} depend on each other, and {excess} of them {verb} redundant: the motion is unique, the \
-             multipliers are not; those of least norm are used"
+            "the constraints {list} depend on each other, and {excess} of them {verb} redundant: the motion is \
+             unique, but the multipliers are not; the multipliers with the least norm are used"
         )
     }
 }

@@ -198,7 +198,7 @@ fn read_shape(record: &Record<'_>, found: &mut Diagnostics) -> Option<Shape> {
     let part = found.push_error(share.number())?;
     if part.value <= 0.0 {
         found.push(
-            Diagnostic::error(format!("{} is not a valid share", part.value))
+            Diagnostic::error(format!("`share` cannot be {}", part.value))
                 .with_span(part.span, "expected a number above 0")
                 .with_related_span(scale.span(), "share of this quantity"),
         );

@@ -73,9 +73,11 @@ fn add_empirical(
     if !(is_wide(before.train.rms) && is_wide(before.test.rms)) {
         return;
     }
-    progress("no effect of the catalogue explains the residual; searching for an expression");
+    progress(
+        "no effect of the catalogue explains the residual; searching for a force that is an expression",
+    );
     let Some(expression) = find_expression(problem, before) else {
-        progress("  no force of few terms in one equation is significant");
+        progress("  no force with few terms in a single equation is significant");
         return;
     };
     let (candidate, fit) = match simplify_expression(problem, before, expression) {

@@ -138,7 +138,7 @@ impl ExperimentSearch<'_> {
         }
         if members.len() < 2 {
             return NextExperiment::without_experiment(
-                "no other member could be fitted together with the later effects",
+                "no other effect of the set could be fitted together with the later effects",
                 &self.bounds,
             );
         }

@@ -145,9 +145,8 @@ fn find_odd_records(
             false => format!(" Its separate fit is explained by {}.", by.join(", or by ")),
         };
         format!(
-            "{} does not agree with {}: fitted separately, these have residuals of at most {most:.1} standard \
-             deviations, and it has {:.1}.{by} Check if it was measured on the same machine with the same \
-             payload.",
+            "{} does not agree with {}: fitted separately, these records have residuals of at most {most:.1} standard \
+             deviations, and it has {:.1}.{by} Check if it was measured on the same machine with the same payload.",
             record.name,
             names.join(", "),
             record.rms

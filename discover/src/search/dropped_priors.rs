@@ -51,13 +51,13 @@ pub fn list_prior_candidates(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<
                 INPUT_DELAY_EFFECT,
                 find_delayed_input(inputs).map_or_else(String::new, |(input, _)| input.to_owned()),
                 "a delayed input",
-                "a record of the acting input, such as a current in addition to its command",
+                "a record of the actual input, such as a measured current in addition to its command",
             ),
             UnknownKind::Delay(channel) => (
                 "sensor_delay",
                 problem.dataset.channels[*channel].name.clone(),
                 "a delayed sensor",
-                "an excitation by a step that is recorded separately",
+                "a recorded response to a step",
             ),
         };
         candidate::drop_prior(effect, &on, says, experiment, &unknown.kind)

@@ -86,7 +86,7 @@ pub fn run_full_fits(
 fn describe_remaining(fraction: f64, of: &str) -> String {
     match fraction <= 1.0 {
         true => format!("{:.1} % of the {of} remains", 100.0 * fraction),
-        false => format!("its fit did not converge; more than the whole {of} remains"),
+        false => format!("its fit did not converge: the {of} did not decrease"),
     }
 }
 

@@ -192,8 +192,9 @@ impl Search<'_> {
         let context = self.context(&found.null_fit);
         let scan = scan_records(context, found.best_fit());
         if self.problem.stop.is_time_over() {
-            found.unfinished =
-                Some("laws with a shape or a memory were not all scanned".to_owned());
+            found.unfinished = Some(
+                "some laws with a shape parameter or an internal state were not scanned".to_owned(),
+            );
             return;
         }
         let Some(ScanResult {
@@ -225,7 +226,8 @@ impl Search<'_> {
             (self.progress)(&format!("  {} is no longer needed", candidate.label()));
             found.rejected.push(RejectedCandidate {
                 candidate,
-                reason: "a scanned law explains the records better without it".to_owned(),
+                reason: "with a scanned law, the records are explained better without this effect"
+                    .to_owned(),
                 best_reduction: None,
                 is_untestable: false,
                 p_value: None,

@@ -51,10 +51,10 @@ pub enum Rejection {
 impl fmt::Display for Rejection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::AtLimit(name) => write!(f, "{name} is at the end of its admissible range"),
+            Self::AtLimit(name) => write!(f, "{name} is at a limit of its admissible range"),
             Self::WrongSign(name) => write!(
                 f,
-                "{name} has the wrong sign: at its bound the effect vanishes"
+                "{name} has the wrong sign: its fitted value is the bound at which the effect vanishes"
             ),
             Self::WithinPrior {
                 name,
@@ -81,7 +81,8 @@ impl fmt::Display for Rejection {
             Self::Interrupted => f.write_str("stopped before the comparison with the test records"),
             Self::StandardErrors(errors) => write!(
                 f,
-                "the improvement of the test records may be due to chance: {errors:.1} standard errors, {} are required",
+                "the improvement of the test records may be due to chance: {errors:.1} standard errors, {} are \
+                 required",
                 thresholds::MIN_REDUCTION_STANDARD_ERRORS
             ),
             Self::Information {
@@ -106,8 +107,8 @@ impl fmt::Display for Rejection {
             ),
             Self::Closure { train, test } => write!(
                 f,
-                "it closes {:.0} % of the gap of the training records and {:.0} % of that of the test records; {:.0} % \
-                 of both are required",
+                "it closes {:.0} % of the gap in the training records and {:.0} % of the gap in the test records; \
+                 {:.0} % of each is required",
                 100.0 * train,
                 100.0 * test,
                 100.0 * thresholds::MIN_EXPRESSION_CLOSURE

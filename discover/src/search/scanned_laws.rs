@@ -32,7 +32,9 @@ pub struct ScanResult {
 /// Scans free functions and laws along the reference motion of the records, and fits the best laws.
 /// `answer`: fit with the accepted effects. `None` if the records cannot be followed.
 pub fn scan_records(context: RoundContext<'_>, answer: &Fit) -> Option<ScanResult> {
-    (context.progress)("a gap remains: scanning laws along the recorded motion");
+    (context.progress)(
+        "a residual above the noise floor remains: scanning laws along the recorded motion",
+    );
     let scene = Scene::follow_records(context.problem, context.fit)?;
     let curve = find_adequate_curve(context, &scene);
     let scan = scan_laws(&scene, &list_laws(context));
@@ -77,7 +79,8 @@ pub fn scan_records(context: RoundContext<'_>, answer: &Fit) -> Option<ScanResul
         .collect();
     if laws.is_empty() {
         (context.progress)(&format!(
-            "no law has a small residual that is clearly below the residual of the accepted effects, {by_answer:.2} standard deviations"
+            "no law has a small residual that is clearly below the residual of the accepted effects, {by_answer:.2} \
+             standard deviations"
         ));
         return Some(ScanResult {
             curve,

@@ -31,7 +31,7 @@ DEFAULT_INTERVALS = 1000
 class Event(NamedTuple):
     """Event of a motion.
 
-    t: time, s. surface: name of the contact, or formula whose sign changes; empty if the rates jump with an input.
+    t: time, s. surface: name of the contact, or formula whose sign changes; empty if the rates jump because of a jump of an input.
     kind: crossing, stick, slip, impact, contact, separation, corner, reflection or input. before, after: modes of the
     surface. jump: jump of the rate of each coordinate, SI; empty without a jump. Simultaneous events share the jump.
     """

@@ -101,10 +101,10 @@ fn judge(evidence: &Evidence) -> (Motion, &'static str) {
     let k = only_finite(evidence.chaos_indicator);
     let lines = only_finite(evidence.line_share);
     match (growth(evidence), evidence.period, k) {
-        (Growth::Unknown, ..) => (Motion::Undecided, "the exponent is not known well enough"),
+        (Growth::Unknown, ..) => (Motion::Undecided, "the largest exponent is too uncertain"),
         (Growth::Positive, Some(_), _) => (
             Motion::Undecided,
-            "neighbouring motions separate, yet the section repeats",
+            "neighbouring motions separate, although the section repeats",
         ),
         (Growth::NotPositive, Some(period_multiple), _) => (
             Motion::Periodic { period_multiple },
@@ -125,7 +125,7 @@ fn judge_growing(k: f64, lines: Option<f64>) -> (Motion, &'static str) {
         let reason = "neighbouring motions separate and the spectrum is continuous";
         (Motion::Chaotic, reason)
     } else {
-        let reason = "neighbouring motions separate, yet the section does not diffuse";
+        let reason = "neighbouring motions separate, although the section does not diffuse";
         (Motion::Undecided, reason)
     }
 }
@@ -137,11 +137,11 @@ fn judge_bounded(k: f64, lines: Option<f64>) -> (Motion, &'static str) {
                       diffuses";
         (Motion::QuasiPeriodic, reason)
     } else if k <= K_LIMIT_WITH_SPECTRUM && is_discrete {
-        let reason = "neighbouring motions stay together, the section does not repeat and the \
-                      spectrum has lines only";
+        let reason = "neighbouring motions stay together, the section does not repeat and the spectrum consists of \
+                      lines";
         (Motion::QuasiPeriodic, reason)
     } else {
-        let reason = "neighbouring motions stay together, yet the section diffuses";
+        let reason = "neighbouring motions stay together, although the section diffuses";
         (Motion::Undecided, reason)
     }
 }

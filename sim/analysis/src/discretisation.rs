@@ -33,8 +33,8 @@ pub enum DiscretisationError {
     Matrices,
     /// Motions that are too fast for the period.
     #[error(
-        "the fastest rate of the model times the period exceeds 1e9, so the result has no correct digit: \
-         use a shorter period"
+        "the fastest rate of the model times the period exceeds 1e9, so the result would have no correct digit: use a \
+         shorter period"
     )]
     TooLong,
     /// A motion overflows within a period.

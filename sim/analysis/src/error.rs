@@ -36,8 +36,8 @@ pub enum AnalysisError {
     },
     /// The eigenvalue iteration did not converge.
     #[error(
-        "the eigenvalues were not found: the entries of the state matrix span {decades} powers of ten; look for \
-         a stiffness or a mass in a wrong unit"
+        "the eigenvalues were not found: the entries of the state matrix span {decades} powers of ten; check for a \
+         stiffness or a mass in a wrong unit"
     )]
     NotConverged {
         /// Decades between the smallest and the largest entry of the matrix.
@@ -45,8 +45,9 @@ pub enum AnalysisError {
     },
     /// A connected part of a machine has too many states for its modes.
     #[error(
-        "a connected part of the machine has {states} states, more than the limit of {limit} for modes: their \
-         work grows with the cube of this number; divide the machine, or lower the orders of its fields (--order)"
+        "a connected part of the machine has {states} states, more than the limit of {limit} for modes: the \
+         computation time grows with the cube of this number; divide the machine, or lower the orders of its fields \
+         (--order)"
     )]
     TooManyStates {
         /// Number of states of the part.
@@ -56,7 +57,7 @@ pub enum AnalysisError {
     },
     /// Natural frequencies do not ascend.
     #[error(
-        "natural frequency {index} is not above the previous one; give them in ascending order"
+        "natural frequency {index} is not greater than the previous one; give the frequencies in ascending order"
     )]
     NotAscending {
         /// Index of a frequency that is not above the previous one.

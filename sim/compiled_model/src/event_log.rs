@@ -63,7 +63,7 @@ impl EventKind {
 pub struct LoggedEvent<'m> {
     /// Time, s.
     pub t: f64,
-    /// Name of the contact, or formula of the switching function; empty for jumps with an input.
+    /// Name of the contact, or formula of the switching function; empty for jumps caused by a jump of an input.
     pub surface: &'m str,
     /// Kind of the event.
     pub kind: EventKind,

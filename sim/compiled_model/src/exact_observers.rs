@@ -12,8 +12,7 @@ use crate::statistics::{Meters, Observables};
 use crate::sticking::ObservedMotion;
 
 /// Reason for excluding steps during which the exact solver holds the motion on a surface.
-const STICKING_EXCLUSION: &str =
-    "during sticking, the model does not give the power of the force that holds the motion";
+const STICKING_EXCLUSION: &str = "during sticking, the power of the holding force is unknown";
 
 /// Observers of an exact motion, with the sources of energies and observables.
 pub(crate) struct ExactObservers {

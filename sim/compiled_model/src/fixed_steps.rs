@@ -39,7 +39,7 @@ impl Instance<'_> {
     ) -> Result<FixedSteps, Error> {
         if !(step.is_finite() && step > 0.0) {
             return Err(Error::Request(format!(
-                "the solver fixed needs the length of its steps: {} (s)",
+                "the solver fixed needs the step size: {} (s)",
                 Argument::StepLength.with_number("1e-4")
             )));
         }
@@ -103,8 +103,8 @@ impl FixedSteps {
         let steps = (until - self.reached) / self.step;
         match steps > most {
             true => Err(Error::Request(format!(
-                "the step, {:e} s, needs {steps:.1e} steps to the end; at most {most:e} are taken: give a longer one, or \
-                 shorten the time",
+                "the step, {:e} s, needs {steps:.1e} steps up to the end, but the limit is {most:e}: give a longer \
+                 step, or a shorter time",
                 self.step
             ))),
             false => Ok(()),
@@ -167,8 +167,8 @@ impl FixedSteps {
         match distance <= rounding.max(GRID_TOLERANCE * span) {
             true => Ok(steps as u64),
             false => Err(Error::Request(format!(
-                "t = {time:?} s lies between two steps of {:?} s: with the solver fixed, the times of rows, of samples and \
-                 of changes of inputs are multiples of the step",
+                "t = {time:?} s lies between two steps of {:?} s: with the solver fixed, the times of rows, of \
+                 samples and of changes of inputs are multiples of the step",
                 self.step
             ))),
         }

@@ -87,8 +87,8 @@ pub(crate) fn find_infinite_function(
         let unit = if span > 0.0 { span } else { UNIT_TIME };
         if has_rate_in_motion(model, *index) && has_infinite_rate(&value, end, unit) {
             return Some(format!(
-                "the rate or the second derivative of `{name}` is infinite at t = {end:.9} s, but they move the machine: \
-                 write a motion with finite rates, or simulate another time span"
+                "the rate or the second derivative of `{name}` is infinite at t = {end:.9} s, but the motion of the \
+                 machine depends on them: write a motion with finite derivatives, or simulate another time span"
             ));
         }
     }

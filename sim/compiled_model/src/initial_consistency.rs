@@ -403,16 +403,16 @@ impl DependentConstraint<'_> {
         let of_one_kind = self.on.iter().all(|on| on.is_nonholonomic == kind);
         if of_one_kind && self.combined_residual.abs() > MIN_CONTRADICTION_FRACTION * self.scale {
             return format!(
-                "the constraint `{name}` contradicts {others} at the initial state: they restrict the \
-                 same motion, and a residual of {:.3e} {} remains; remove or correct one of them",
+                "the constraint `{name}` contradicts {others} at the initial state: they restrict the same motion, \
+                 but a residual of {:.3e} {} remains; remove or correct one of them",
                 self.combined_residual.abs(),
                 self.constraint.unit
             );
         }
         format!(
             "the initial state is a singular position: the derivative of the constraint `{name}` is a linear \
-             combination of the derivatives of {others}; start at another state ({}), or remove one of them if they depend on \
-             each other everywhere",
+             combination of the derivatives of {others}; start at another state ({}), or remove one of them if they \
+             depend on each other everywhere",
             Argument::State
         )
     }

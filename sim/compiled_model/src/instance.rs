@@ -120,10 +120,12 @@ impl<'m> Instance<'m> {
             known.is_some_and(|known| matches!(known.value, ParameterValue::Expression(_)))
         };
         if let Some(name) = settings.iter().map(|(name, _)| *name).find(is_expression) {
-            let message =
-                format!("`{name}` is given by an expression, which is part of the equations");
+            let message = format!(
+                "`{name}` is defined by an expression, which is part of the derived equations"
+            );
             let wrong = Diagnostic::error(message);
-            let wrong = wrong.with_help("set it in the model before the model is derived");
+            let wrong =
+                wrong.with_help("set it in the specification before the equations are derived");
             return Err(Diagnostics::from_one(declared.source.clone(), wrong).into());
         }
         if !settings.is_empty() {

@@ -92,8 +92,8 @@ impl CompiledModel {
         let inputs = &self.model().inputs;
         if let Some(input) = inputs.iter().find(|input| input.rate.is_some()) {
             return Err(Error::Request(format!(
-                "the input `{}` is prescribed motion: it has no discrete form, because it moves while its rate is \
-                 held",
+                "the input `{}` is prescribed motion: it has no discrete form, because a sample would hold both the \
+                 motion and its rate",
                 input.name
             )));
         }
@@ -291,7 +291,7 @@ impl Instance<'_> {
         let mut all = states.chain(inputs);
         let (name, value) = all.find(|(_, value)| value.abs() > LARGEST_VALUE)?;
         Some(format!(
-            "{name} = {value:e} (SI) is out of range: its powers exceed the largest number of a computer, about \
+            "{name} = {value:e} (SI) is out of range: its powers exceed the largest double-precision number, about \
              1e308; give a value that the machine can reach"
         ))
     }

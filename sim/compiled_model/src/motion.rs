@@ -115,8 +115,8 @@ impl FrictionChoice {
             count => format!(", and {} times later", count - 1),
         };
         Some(format!(
-            "at t = {:?} s contact friction at {} admits {} motions{later}: the one with the fewest changes of rest and \
-             sliding is taken, then the one with the smallest forces",
+            "at t = {:?} s contact friction at {} admits {} motions{later}: the motion with the fewest changes \
+             between sticking and sliding is used, and among equals the one with the smallest forces",
             first.t,
             impacts.join(", "),
             first.motions

@@ -43,8 +43,8 @@ impl Instance<'_> {
         let is_rigid = modes.iter().any(|mode| mode.frequency() == 0.0);
         if is_rigid && let Some(name) = self.find_lost_parameter(found, point) {
             return Err(Error::Request(format!(
-                "a motion has the frequency 0 because the term with `{name}` is below the rounding of a stiffness \
-                 beside it: make the stiff part rigid, or reduce its stiffness"
+                "a motion has the frequency 0 because the term with `{name}` is below the rounding error of a larger \
+                 stiffness: make the stiff part rigid, or reduce its stiffness"
             )));
         }
         Ok(modes)

@@ -24,8 +24,8 @@ use crate::stop_reasons::{
 };
 
 /// Reason why the exact solver does not support inputs.
-pub(crate) const TIME_VARYING_INPUTS_MESSAGE: &str = "the exact solver holds inputs constant between samples, but these \
-     inputs are functions of time";
+pub(crate) const TIME_VARYING_INPUTS_MESSAGE: &str = "the exact solver holds inputs constant between samples, but \
+                                                      these inputs are functions of time";
 
 /// Request for a simulation.
 #[derive(Clone, Copy, Debug)]
@@ -129,8 +129,7 @@ impl Instance<'_> {
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
         if request.solver == Solver::Fixed {
-            let message =
-                "the solver fixed has no states inside its steps, so it measures no quantity";
+            let message = "the solver fixed computes no states inside its steps, so it cannot compute measures";
             return Err(Error::Request(message.to_owned()));
         }
         let observed = ObservedRequest {

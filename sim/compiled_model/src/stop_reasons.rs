@@ -26,9 +26,12 @@ pub(crate) fn find_stop_cause(
         }
         SolveError::StiffAtSurface { guard, .. } => StopCause::Stiff(match surfaces.get(*guard) {
             Some(surface) => {
-                format!("stiff near the place where `{}` is zero", surface.formula)
+                format!(
+                    "the model is stiff near the surface where `{}` is zero",
+                    surface.formula
+                )
             }
-            None => "stiff near a switching surface".to_owned(),
+            None => "the model is stiff near a switching surface".to_owned(),
         }),
         SolveError::Request { .. }
         | SolveError::StepTooSmall { .. }

@@ -45,7 +45,7 @@ impl ControllerLibrary {
             file.map_err(|error| refused(format!("the controller cannot be read: {error}")))?;
         let (functions, version) = open(&file).map_err(|MissingFunction(name, message)| {
             refused(match name {
-                "" => format!("the controller is no library for this machine: {message}"),
+                "" => format!("the controller is not a library for this platform: {message}"),
                 name => format!("the controller has no function `{name}`; see eomgen_controller.h"),
             })
         })?;
@@ -128,7 +128,8 @@ fn check_driven(
             || model.model().inputs[place].rate_of.is_some()
         {
             return Err(format!(
-                "the controller drives `{name}`, which is prescribed motion: outputs of controllers are held between samples: they jump and have no rates"
+                "the controller drives `{name}`, which is prescribed motion: outputs of controllers are held between \
+                 samples: they jump and have no rates"
             ));
         }
         places.push(place);

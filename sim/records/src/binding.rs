@@ -126,7 +126,8 @@ fn bind_input_priors(
             found.push(
                 Diagnostic::error("a delay of a single input is only estimated if the model has one input".to_owned())
                     .with_span(delay.sd.span, "the model has several inputs")
-                    .with_help("write a delay that all inputs share as a delay of the channels, or shift the late column in the record"),
+                    .with_help("write a delay of all inputs as a negative delay, or shift the late column in the \
+                                record"),
             );
         }
     }
@@ -147,7 +148,7 @@ fn bind_input_priors(
                     "the {fault} of `{}`, a prescribed motion, cannot be estimated",
                     column.name.text
                 ))
-                .with_span(prior.sd.span, "its rates would have the same error")
+                .with_span(prior.sd.span, "its rates would have this error too")
                 .with_help("correct the column in the record"),
             );
         }
@@ -184,7 +185,7 @@ fn check_lists(description: &Description, found: &mut Diagnostics) {
     }
     if description.channels.is_empty() {
         found.push(
-            Diagnostic::error("there is no [channels.NAME], so there is nothing to compare")
+            Diagnostic::error("there is no [channels.NAME], so nothing can be compared")
                 .with_span(records.span, "no channel of these records")
                 .with_help("describe at least one measured quantity, with column, unit and noise"),
         );
@@ -213,7 +214,7 @@ fn bind_channel(
         let listed: Vec<&str> = known().collect();
         let computed = (COMPUTED_OBSERVABLES.contains(&asked.as_str())).then(|| {
             format!(
-                "`{asked}` is computed by `simulate` and is no channel; declare an observable for the measured quantity, \
+                "`{asked}` is an output of `simulate`, not a channel; declare an observable for the measured quantity, \
                  such as motor_power = \"u*dot(x)\""
             )
         });
@@ -360,7 +361,7 @@ fn bind_uncertain(name: &Name, relative: Number, model: &Model) -> Result<Uncert
         Some(ParameterValue::Number(0.0)) => Err(wrong("is 0 in the specification")
             .with_span(
                 name.span,
-                "a relative standard deviation of 0 is 0, so it cannot be refitted",
+                "a standard deviation relative to 0 is 0, so the parameter cannot be refitted",
             )
             .with_help("set its expected value in the specification, or remove it here")),
         Some(ParameterValue::Number(_)) => {

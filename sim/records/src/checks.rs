@@ -138,7 +138,7 @@ fn reject_large_inputs(record: &Record, inputs: &[Input]) -> Result<(), Refusal>
         let samples = record.times.iter().zip(column);
         if let Some((time, value)) = samples.into_iter().find(|(_, v)| v.abs() > LARGEST_INPUT) {
             let message = format!(
-                "input `{}` is {value:e} (SI) at t = {} s: its powers exceed the largest number of a computer, \
+                "input `{}` is {value:e} (SI) at t = {} s: its powers exceed the largest double-precision number, \
                  about 1e308; expected values that the machine can reach",
                 input.name,
                 round_file_time(record.origin, *time)
@@ -181,8 +181,8 @@ fn check_values(
     }
     if (high - low) / noise >= MAX_RANGE_OVER_NOISE {
         return refuse(format!(
-            "channel `{name}` ranges from {low:.3e} to {high:.3e} with a noise of {noise:.1e} (SI); \
-             no sensor resolves this: correct its `unit` or its `noise`"
+            "channel `{name}` ranges from {low:.3e} to {high:.3e} with a noise of {noise:.1e} (SI); no sensor has \
+             this resolution: correct its `unit` or its `noise`"
         ));
     }
     if high - low < MIN_VARIATION_OVER_NOISE * noise {
@@ -198,7 +198,8 @@ fn check_values(
             .count();
         if at as f64 > MAX_CLIPPED_FRACTION * known.len() as f64 {
             notes.push(format!(
-                "{}: `{name}` is exactly {limit} (SI) for {at} samples: it may be clipped; remove the channel, or exclude that part with `from` and `to`",
+                "{}: `{name}` is exactly {limit} (SI) in {at} samples: the sensor may be saturated; remove the \
+                 channel, or exclude that part with `from` and `to`",
                 record.name
             ));
         }
@@ -216,7 +217,8 @@ fn check_channels_differ(dataset: &Dataset, record: &Record) -> Result<(), Refus
                     return Err(Refusal::file_error(
                         &record.path,
                         format!(
-                            "the channels `{}` and `{}` have the same values up to the sign; give each another column",
+                            "the channels `{}` and `{}` have the same values except for the sign; give each channel a \
+                             different column",
                             dataset.channels[a].name, dataset.channels[b].name
                         ),
                     ));
@@ -236,7 +238,8 @@ fn check_records_differ(dataset: &Dataset, train: &Record, test: &Record) -> Res
         return Err(Refusal::file_error(
             &test.path,
             format!(
-                "{} and {} overlap in one file; expected another measurement, or parts that do not overlap",
+                "{} and {} overlap in one file; expected records of different measurements, or parts that do not \
+                 overlap",
                 test.name, train.name
             ),
         ));

@@ -61,7 +61,7 @@ fn check_length(length: Number, record: &Record) -> Result<(), Diagnostic> {
     ))
     .with_span(
         length.span,
-        format!("its samples are {step:.3e} s apart; expected a longer window, or another unit of [time]"),
+        format!("its samples are {step:.3e} s apart; expected a longer window, or another unit in [time]"),
     ))
 }
 
@@ -93,7 +93,7 @@ fn check_window_fits(length: Number, set: &str, records: &[Record]) -> Result<()
     }
     let longest = records.iter().map(duration).fold(0.0, f64::max);
     Err(Diagnostic::error(format!(
-        "no {set} record is as long as one window of {} s, so there is nothing to compare",
+        "no {set} record is as long as one window of {} s, so nothing can be compared",
         length.value
     ))
     .with_span(
@@ -126,7 +126,8 @@ fn check_compared_samples(
             return Err(Refusal::file_error(
                 &records[0].path,
                 format!(
-                    "channel `{}` has {samples} samples in the windows of all {set} records; expected {MIN_COMPARED_SAMPLES} or more",
+                    "channel `{}` has {samples} samples in the windows of all {set} records; expected \
+                     {MIN_COMPARED_SAMPLES} or more",
                     channel.name
                 ),
             ));
@@ -167,7 +168,8 @@ fn check_motion(
     };
     let entry = &description.channels[place];
     Err(Diagnostic::error(format!(
-        "the {set} records contain only noise: no channel varies by {MIN_VARIATION_OVER_NOISE} standard deviations of its noise"
+        "the {set} records contain only noise: no channel varies by {MIN_VARIATION_OVER_NOISE} standard deviations of \
+         its noise"
     ))
     .with_span(
         entry.noise.span,

@@ -182,11 +182,11 @@ fn unwrap_column(
         let has_samples = (times.iter()).any(|t| *t > from && *t < to);
         if to - from > lost && !has_samples {
             notes.push(format!(
-                "`{name}` may be off by whole periods after the gap {place}: its speed changes there"
+                "`{name}` may have an error of whole periods after the gap {place}, because its speed changes there"
             ));
         } else if from < span.end && to > span.start {
             return Err(Diagnostic::error(format!(
-                "`{name}` is missing {place}, and its speed changes there: the number of turns is not known"
+                "`{name}` is missing {place}, and its speed changes there: the number of periods in the gap is unknown"
             ))
             .with_span(column.column.column.span(), "in this column")
             .with_help("list the parts of the file before and after the gap, with from and to"));

@@ -5,7 +5,8 @@ use std::fmt;
 use super::names::Names;
 
 /// Message for a mass matrix that is not positive definite.
-pub const NOT_POSITIVE_DEFINITE_MESSAGE: &str = "the mass matrix is not positive definite: check for a mass, inertia or length that is zero or negative";
+pub const NOT_POSITIVE_DEFINITE_MESSAGE: &str = "the mass matrix is not positive definite: check for a mass, inertia \
+                                                 or length that is zero or negative";
 
 /// Reason why a simulation stopped; times in s.
 #[derive(Clone, Debug, PartialEq)]

@@ -28,7 +28,8 @@ pub fn check<S: System + ?Sized>(
     let steps = (end - begin) / settings.max_step;
     if steps > settings.max_steps as f64 {
         return refuse(format!(
-            "the longest step, {:e} s, needs {steps:.1e} steps to the end; at most {:e} are taken: use a longer one, or shorten the time",
+            "the longest step, {:e} s, needs {steps:.1e} steps up to the end, but the limit is {:e}: use a longer \
+             one, or a shorter time",
             settings.max_step, settings.max_steps as f64
         ));
     }

@@ -195,7 +195,7 @@ impl Job {
                 .any(|other| other.name == column.name)
             {
                 return refused(format!(
-                    "two columns would be called `{}`; name each measure once",
+                    "two columns would have the name `{}`; give each measure once",
                     column.name
                 ));
             }
@@ -226,7 +226,7 @@ impl Job {
             columns.push(Column::new(
                 format!("{}_status", measure.name),
                 "1",
-                "0, or why nothing was measured: see `statuses`",
+                "0, or the reason for a missing value: see `statuses`",
             ));
         }
         columns

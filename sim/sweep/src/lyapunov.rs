@@ -84,7 +84,7 @@ impl<'a> Lyapunov<'a> {
             ("tolerance", format!("{TOLERANCE:?}")),
         ];
         let options = options.map(|(name, value)| (name.to_owned(), value));
-        ("that follows the variational equation", options.to_vec())
+        ("that satisfies the variational equation", options.to_vec())
     }
 }
 

@@ -81,7 +81,7 @@ impl Failure {
     /// Codes of the statuses with their texts; 0 is success.
     pub const CODES: [(u8, &'static str); 7] = [
         (0, "measured"),
-        (1, "the parameters are no admissible model"),
+        (1, "the parameter values are not admissible"),
         (2, "rates of the motion are infinite or not numbers"),
         (3, "the limits on step size or work were reached"),
         (

@@ -185,7 +185,7 @@ impl Sweep {
             },
             (Some(event), None) => {
                 return Err(SweepError::Request(format!(
-                    "{}: {} is missing: the time in s in which crossings are located",
+                    "{}: {} is missing: the time span in s in which crossings are located",
                     Argument::Section.with_text(event),
                     Argument::Until
                 )));

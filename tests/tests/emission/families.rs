@@ -367,8 +367,8 @@ fn invalid_family_files_are_rejected_with_location() {
             "[family]\nname = \"f\"\nfast = true\n".to_owned(),
             "unknown key `fast`",
         ),
-        (variant("prefix = \"int\"\n"), "word of C or C++"),
-        (variant("prefix = \"match\"\n"), "word of Rust"),
+        (variant("prefix = \"int\"\n"), "reserved word of C or C++"),
+        (variant("prefix = \"match\"\n"), "reserved word of Rust"),
         (variant("prefix = \"eomgen\"\n"), "name of the common files"),
         (variant("prefix = \"Model\"\n"), "name of the common files"),
         (variant("prefix = \"a-b\"\n"), "no name of letters"),
@@ -641,7 +641,12 @@ fn invalid_files_and_certificates_are_rejected_by_verify() {
     let other = models.join("beam_1/beam_1.txt");
     std::fs::write(&other, "text").expect("written");
     for (file, certificate, more, expected) in [
-        (&rust, &rust, &[][..], "mod.rs:1:1: this is no certificate"),
+        (
+            &rust,
+            &rust,
+            &[][..],
+            "mod.rs:1:1: this is not a certificate",
+        ),
         (&models.join("none.rs"), &certificate, &[], "cannot read"),
         (&rust, &models.join("none.json"), &[], "cannot read"),
         (
@@ -651,7 +656,12 @@ fn invalid_files_and_certificates_are_rejected_by_verify() {
             "has no `specification`",
         ),
         (&other, &certificate, &[], "neither Rust nor C nor a unit"),
-        (&rust, &certificate, &["--cc", "gcc"], "--cc is for C"),
+        (
+            &rust,
+            &certificate,
+            &["--cc", "gcc"],
+            "--cc applies only to C",
+        ),
         (
             &models.join("beam_1/beam_1.c"),
             &certificate,

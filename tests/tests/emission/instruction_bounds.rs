@@ -445,7 +445,9 @@ fn certificate_contains_bounds_that_verify_recomputes() {
     std::fs::write(&path, text.replace(&stated, "\"instructions\": 1,")).expect("written");
     let output = verify(&allowed);
     assert_eq!(output.status.code(), Some(1));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("are not those of the certificate"));
+    assert!(
+        String::from_utf8_lossy(&output.stderr).contains("differ from those in the certificate")
+    );
     // A certificate from an untrusted source must not run programs.
     let mark = folder.path().join("mark");
     let other = text.replace(&command, &format!("touch {}", mark.display()));

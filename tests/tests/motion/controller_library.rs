@@ -226,7 +226,7 @@ fn faulty_libraries_are_rejected_with_their_cause() {
     rejected(
         &right,
         &["--input", "u=1"],
-        "drives the input `u`, and so does --input",
+        "drives the input `u`, which --input also sets",
     );
     let regulator = project().join("examples/closed_loop/regulator.toml");
     let regulator = regulator.display().to_string();

@@ -491,7 +491,7 @@ fn period_with_too_many_samples_is_rejected() {
         let error = simulate(&(MASS.to_owned() + &controller), solver).err();
         let message = error.expect("too many samples").to_string();
         assert!(
-            message.contains("1e-12 s, needs 1.5e12 samples to the end; at most 2e7"),
+            message.contains("1e-12 s, needs 1.5e12 samples up to the end, but the limit is 2e7"),
             "{message}"
         );
     }

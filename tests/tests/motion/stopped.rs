@@ -434,7 +434,7 @@ fn auto_uses_radau_at_stiff_orifice() {
     let (auto, note) = simulate_orifice("auto");
     assert_eq!(auto["solver"], "radau");
     assert!(
-        note.contains("stiff near the place where `p1 - p2`"),
+        note.contains("stiff near the surface where `p1 - p2`"),
         "{note}"
     );
     assert_eq!(evaluations(&auto), evaluations(&radau));

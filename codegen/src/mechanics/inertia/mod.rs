@@ -107,8 +107,8 @@ struct InertiaMessages<'m> {
 }
 
 /// Help text for an inertia that is not finite.
-const NOT_FINITE_HELP: &str = "a term of [kinetic] exceeds 1.8e308 or leaves the domain of a function: check for a parameter \
-                               that is too large, a division by 0, or a logarithm of 0";
+const NOT_FINITE_HELP: &str = "a term of [kinetic] exceeds 1.8e308 or leaves the domain of a function: check for a \
+                               parameter that is too large, a division by 0, or a logarithm of 0";
 
 impl InertiaMessages<'_> {
     fn check_mass(&self, mass: &SparseRows) -> Result<(), Diagnostic> {
@@ -190,7 +190,7 @@ impl InertiaMessages<'_> {
 
     fn help(&self) -> String {
         let mut help = "every coordinate, and every combination of them, needs a term of [kinetic] that grows \
-                        with its rate; look for a missing term, a wrong sign or a parameter that is 0"
+                        with its rate; check for a missing term, a wrong sign or a parameter that is 0"
             .to_owned();
         if self.is_variable {
             help.push_str("; if inertia is missing only at this state, change `initial`");

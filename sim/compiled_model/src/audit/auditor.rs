@@ -233,7 +233,7 @@ impl Auditor {
             {
                 self.exclude_change(
                     change,
-                    "the power changes too often in a step to be integrated",
+                    "the power of the forces changes too often in a step to be integrated",
                 );
                 return;
             }

@@ -118,7 +118,7 @@ impl Audit {
         let more = match self.fault_count {
             1 => String::new(),
             count => format!(
-                "; {count} steps do so, with {:.4e} J in total",
+                "; {count} steps change the energy in this way, by {:.4e} J in total",
                 self.unexplained_energy()
             ),
         };
@@ -161,8 +161,8 @@ impl Imbalance {
     fn describe_drift(self) -> String {
         let (verb, size) = self.verb_and_size();
         format!(
-            "the motion {verb} {size:.4e} J without work until t = {} s, by errors of the solver that its tolerance \
-             allows in each step: reduce the tolerance",
+            "the motion {verb} {size:.4e} J without work until t = {} s, because of solver errors within the \
+             tolerance of each step: reduce the tolerance",
             self.t
         )
     }

@@ -284,23 +284,23 @@ impl Contacts {
         let name = &self.names[place];
         Some(match cause {
             ContactFailure::Penetrated => format!(
-                "bodies overlap at the impact `{name}`: they are forced into each other, or impacts \
-                 follow each other without end. Check constraints and prescribed motions at this \
-                 contact, or use a stiff spring instead of the impact"
+                "bodies overlap at the impact `{name}`: they are pressed into each other, or infinitely many impacts \
+                 follow each other. Check constraints and prescribed motions at this contact, or use a stiff spring \
+                 instead of the impact"
             ),
             ContactFailure::NoImpulse => format!(
                 "no impulses separate the bodies at the impact `{name}`: other impacts, constraints or \
-                 prescribed motions press them together. Use a stiff spring instead of one of them"
+                 prescribed motions press them together. Replace one of these impacts or constraints by a stiff spring"
             ),
             ContactFailure::NoModes => format!(
-                "no rest or sliding was found that satisfies both the contact friction at the impact `{name}` and the \
-                 dry friction written with sign. Write one of them as a smooth law, such as tanh(v/v_0) with a small speed \
-                 v_0"
+                "no state of sticking or sliding was found that satisfies both the contact friction at the impact \
+                 `{name}` and the dry friction written with sign. Write one of these friction laws as a smooth \
+                 function, such as tanh(v/v_0) with a small speed v_0"
             ),
             ContactFailure::NoForces => format!(
-                "no contact forces satisfy the law of friction at the impact `{name}`: friction presses the \
-                 sliding bodies together faster than the contact can part them (Painlevé's paradox). Lower the \
-                 friction, or use a stiff spring and a friction force instead of the impact"
+                "no contact forces satisfy the law of friction at the impact `{name}`: friction presses the sliding \
+                 bodies together faster than the contact can separate them (Painlevé's paradox). Lower the friction, \
+                 or use a stiff spring and a friction force instead of the impact"
             ),
         })
     }

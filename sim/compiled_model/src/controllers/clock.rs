@@ -58,8 +58,8 @@ impl Clock {
         let count = |schedule: &Schedule| (until - now.max(schedule.offset)) / schedule.period;
         match self.schedules.iter().find(|one| count(one) > most) {
             Some(schedule) => Err(Error::Request(format!(
-                "the period of a controller, {:e} s, needs {:.1e} samples to the end; at most {most:e} are taken: give a \
-                 longer period, or shorten the time",
+                "the period of a controller, {:e} s, needs {:.1e} samples up to the end, but the limit is {most:e}: \
+                 give a longer period, or a shorter time",
                 schedule.period,
                 count(schedule)
             ))),

@@ -70,7 +70,8 @@ impl<'m> Instance<'m> {
             let name = inputs.get(*place).map_or("", |input| &input.name);
             if !given.is_held(*place) {
                 return Err(Error::Request(format!(
-                    "a controller drives the input `{name}`: remove its function of time, or the output of the controller"
+                    "a controller drives the input `{name}`: remove the function of time of this input, or the output \
+                     of the controller"
                 )));
             }
             if driven.contains(place) {

@@ -381,7 +381,7 @@ impl Corners {
             .collect();
         format!(
             "at t = {t:?} s the motion meets at one instant the surfaces where {} are zero and the energies \
-             jump, and the motion beyond depends on which of them is first: move one of them apart",
+             jump, and the motion afterwards depends on which surface is crossed first: move one of the surfaces",
             names.join(" and ")
         )
     }
@@ -423,8 +423,9 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 fn singular_corner_message(t: f64) -> String {
     format!(
-        "at t = {t:?} s the energies jump, and beyond a coordinate has no inertia, or constraints and closed contacts do \
-         not determine the rates: give every coordinate inertia on both sides, and remove contacts that others replace"
+        "at t = {t:?} s the energies jump, and beyond a coordinate has no inertia, or constraints and closed contacts \
+         do not determine the rates: give every coordinate inertia on both sides, and remove contacts that others \
+         replace"
     )
 }
 

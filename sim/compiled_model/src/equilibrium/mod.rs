@@ -359,8 +359,8 @@ impl Instance<'_> {
                 && difference > MAX_SPEED_DIFFERENCE_FRACTION * value.abs()
             {
                 return Err(Error::Request(format!(
-                    "{name} = {value}: no steady motion has this rate with the other fixed rates; the nearest one has \
-                     {name} = {:?}. Fix one rate of each steady motion",
+                    "{name} = {value}: no steady motion has this rate together with the other fixed rates; the \
+                     nearest steady motion has {name} = {:?}. Fix only one rate of each steady motion",
                     at.state[place]
                 )));
             }

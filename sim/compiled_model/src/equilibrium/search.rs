@@ -693,13 +693,14 @@ impl<'i, 'm> Search<'i, 'm> {
                 let left = here.accelerations[row];
                 format!(
                     "no equilibrium was found near the initial state: the search ended at {name} = {value:e}, with the \
-                     acceleration or rate {left:e} (SI) of {name}, which is below the rounding of a stiffness beside it"
+                     acceleration or rate {left:e} (SI) of {name}, which is below the rounding error of a larger \
+                     stiffness"
                 )
             }
             Inaccuracy::Uncertain(unknown, error) => {
                 let (name, value) = self.describe_unknown(at, self.unknowns[unknown]);
                 format!(
-                    "the equilibrium near {name} = {value:e} cannot be computed to its digits: rounding of the largest \
+                    "the equilibrium near {name} = {value:e} cannot be computed accurately: rounding of the largest \
                      forces changes {name} by up to {error:.1e} (SI)"
                 )
             }
@@ -738,8 +739,8 @@ fn find_main_coordinate(direction: &[f64]) -> usize {
 
 fn unsatisfied_constraints_error() -> Error {
     let reason = format!(
-        "no state near the start satisfies the constraints at the fixed values: start nearer to a solution ({}), or fix \
-         other values ({})",
+        "no state near the start satisfies the constraints at the fixed values: start nearer to a solution ({}), or \
+         fix other values ({})",
         Argument::OperatingState,
         Argument::Fixed
     );

@@ -113,7 +113,7 @@ impl BackwardPass<'_, '_> {
         for (surface, (mode, _)) in modes.filter(|(_, (mode, after))| mode != after) {
             if *mode == SurfaceMode::Held {
                 let cause = format!(
-                    "the rates jump when the surface `{}` = 0 releases the motion",
+                    "the rates jump at the breakaway from the surface `{}` = 0",
                     self.formula(surface)
                 );
                 return Err(no_gradient(t, &cause));
@@ -130,7 +130,12 @@ impl BackwardPass<'_, '_> {
                 }
             }
         }
-        delay.ok_or_else(|| no_gradient(t, "the rates jump without a change of a mode"))
+        delay.ok_or_else(|| {
+            no_gradient(
+                t,
+                "the rates jump, but no switching surface changes its state",
+            )
+        })
     }
 
     /// Returns the derivatives of the time at which the motion reaches a surface.

@@ -86,7 +86,7 @@ impl<'m> Instance<'m> {
         if !matches!(request.solver, Solver::Rk | Solver::Auto) {
             let solver = request.solver;
             return Err(Error::Request(format!(
-                "gradients follow the steps of the solver rk, not those of {solver}"
+                "gradients are available only with the solver rk, not with {solver}"
             )));
         }
         check_support(self)?;

@@ -210,7 +210,8 @@ impl ModeEvaluator {
             let change = self.differentiate_held_rates().lu().solve(&rates);
             let change = change.ok_or_else(|| {
                 Error::Request(format!(
-                    "no gradient of the trajectory: at t = {t:?} s, surfaces that hold the motion depend on each other"
+                    "no gradient of the trajectory: at t = {t:?} s, the surfaces that hold the motion are linearly \
+                     dependent"
                 ))
             })?;
             for (row, change) in self.held.iter().zip(&change) {

@@ -142,9 +142,9 @@ pub(super) fn figure(found: &[Bifurcation]) -> Result<Figure, StudyError> {
         paper: String::new(),
         caption: format!(
             "Bifurcation diagram over half the backlash b = 0 to 100 um in steps of 1 um: {SHOWN_PERIODS} forcing \
-             periods after {TRANSIENT_PERIODS} from rest, each motion seen once per forcing period: x_sp less b, which is how far \
-             the mesh is beyond its flank, and dr; the modes from the \
-             second on are hardly damped and have not died away by then"
+             periods after {TRANSIENT_PERIODS} from rest, each motion seen once per forcing period: x_sp less b, the \
+             mesh deflection beyond contact, and dr; the modes from the second on are hardly damped and have not died \
+             away by then"
         ),
     };
     drawn(heading, Vec::new(), frames)

@@ -222,7 +222,7 @@ pub(super) fn read_time(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Ti
                 found.push(
                     Diagnostic::error(format!("`every` cannot be {count}")).with_span(
                         span,
-                        "expected the number of samples that become one, from 1 on",
+                        "expected a number of samples of which one is kept, at least 1",
                     ),
                 );
             }

@@ -94,7 +94,10 @@ fn read_range(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<NumberRange>
                 entry.name.text,
                 elements.len()
             ))
-            .with_span(entry.span(), "expected two, the lower one first"),
+            .with_span(
+                entry.span(),
+                "expected two frequencies, the lower one first",
+            ),
         );
         return None;
     };

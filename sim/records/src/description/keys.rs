@@ -76,12 +76,12 @@ pub static INITIAL: Keys = Keys::new(&[
 ]);
 /// Keys of an entry of `[uncertain]`.
 pub static UNCERTAIN: Keys = Keys::new(&[
-    Key::new("relative", "number", "0.05", "relative standard deviation of the parameter; the fit may move it by three").required(),
+    Key::new("relative", "number", "0.05", "relative standard deviation of the parameter; the fit may change it by up to three standard deviations").required(),
 ]);
 /// Keys of `[windows]`.
 pub static WINDOWS: Keys = Keys::new(&[
     Key::new("length", "number or `\"record\"`", "0.5", "length of the windows in s, each with its own initial state, or `\"record\"`: one window per record").required(),
-    Key::new("start", "text", "\"smoothed\"", "source of that state: `\"fitted\"` (default), or `\"smoothed\"` (read from the smoothed record: quicker, but the errors of the rates are in the residual and may appear as a gap)"),
+    Key::new("start", "text", "\"smoothed\"", "source of this initial state: `\"fitted\"` (default), or `\"smoothed\"` (read from the smoothed record: faster, but the residual contains the errors of the rates, which may appear as a missing effect)"),
 ]);
 /// Keys of `[experiment]`.
 pub static EXPERIMENT: Keys = Keys::new(&[

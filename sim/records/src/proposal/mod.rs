@@ -251,14 +251,16 @@ fn find_time(
             record,
             match called {
                 Some(column) if !is_of_time(&columns[column]) => format!(
-                    "column {}, `{}`, is not in a unit of time, and no other column increases; expected a column of time, for example in s",
+                    "column {}, `{}`, is not in a unit of time, and no other column increases; expected a column of \
+                     time, for example in s",
                     columns[column].number, columns[column].name
                 ),
                 Some(column) => format!(
                     "the time does not increase in column {}, `{}`; expected samples in order, each once",
                     columns[column].number, columns[column].name
                 ),
-                None => "no column that can be a time increases from line to line; expected a column of time"
+                None => "no column with a unit of time, or without a unit, increases from line to line; expected a \
+                         time column"
                     .to_owned(),
             },
         ));

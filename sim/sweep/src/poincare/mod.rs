@@ -159,25 +159,23 @@ impl<'a> Poincare<'a> {
         let Quantity { name, unit, .. } = &self.quantity;
         let longest = LONGEST_PERIOD.min(self.span.periods / 2);
         let (periods, after) = match self.places {
-            ResolvedSection::Forcing(_) => {
-                ("forcing periods", "one forcing period after the other")
-            }
-            ResolvedSection::Crossing(..) => ("returns", "one return after the other"),
+            ResolvedSection::Forcing(_) => ("forcing periods", "in successive forcing periods"),
+            ResolvedSection::Crossing(..) => ("returns", "at successive crossings"),
         };
         let columns = [
             (
                 "period",
                 "1",
-                format!("period in {periods}, to {longest}; 0: none"),
+                format!("period in {periods}, up to {longest}; 0 if there is none"),
             ),
             (
                 "clusters",
                 "1",
-                format!("number of clusters, to {LONGEST_PERIOD}; 0: more"),
+                format!("number of clusters, up to {LONGEST_PERIOD}; 0 if there are more"),
             ),
             ("mean", unit, format!("mean of {name} on the section")),
-            ("min", unit, format!("least {name} on the section")),
-            ("max", unit, format!("greatest {name} on the section")),
+            ("min", unit, format!("minimum of {name} on the section")),
+            ("max", unit, format!("maximum of {name} on the section")),
             (
                 "rms",
                 unit,
@@ -192,7 +190,7 @@ impl<'a> Poincare<'a> {
                     CROSSINGS,
                     "1",
                     format!(
-                        "number of crossings, to {}",
+                        "number of crossings, up to {}",
                         self.span.transient + self.span.periods
                     ),
                 ),
@@ -248,7 +246,7 @@ impl Measure for Poincare<'_> {
                 };
                 options.push(option("frequency", frequency.name().to_owned()));
                 let at = format!(
-                    "at t = k 2 pi/{}, k the whole numbers after the transient",
+                    "at t = k 2 pi/{} for all integers k after the transient",
                     frequency.name()
                 );
                 (at, options)
@@ -257,7 +255,7 @@ impl Measure for Poincare<'_> {
                 let mut options = general();
                 options.push(option("section", crossing.to_string()));
                 options.push(option("until", format!("{until:?}")));
-                let at = format!("where {crossing} is crossed, after the transient");
+                let at = format!("at the crossings of {crossing} after the transient");
                 (at, options)
             }
         };
@@ -269,8 +267,8 @@ impl Measure for Poincare<'_> {
         vec![Description {
             name: self.measure_name.clone(),
             about: format!(
-                "{name} {seen}; period and clusters also of its {}, points being equal within {MAX_RELATIVE_DISTANCE} \
-                 of the extent of the motion",
+                "{name} {seen}. Period and clusters are computed from {name} and its {}. Points closer than \
+                 {MAX_RELATIVE_DISTANCE} of the extent of the motion count as equal",
                 match name.ends_with("_dot") {
                     true => "coordinate",
                     false => "rate",

@@ -85,7 +85,7 @@ fn points_without_result_have_a_reason() {
     );
     let text = fs::read_to_string(place.path_to("few/sweep.json")).expect("the description");
     assert!(
-        text.contains("the parameters are no admissible model"),
+        text.contains("the parameter values are not admissible"),
         "{text}"
     );
 }
@@ -122,7 +122,7 @@ fn invalid_sweeps_are_rejected_before_writing() {
         ),
         (
             vec!["--vary", c, "--measure", "poincare"],
-            "name each measure once",
+            "give each measure once",
         ),
     ] {
         let message = expect_rejection(&place.sweep("never", &more));

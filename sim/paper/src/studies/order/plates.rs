@@ -66,7 +66,8 @@ pub(super) fn draw_fig_4(
         caption: format!(
             "Deformation dr of the arm's end without backlash, omega = 10 pi rad/s, S = 4 and S = 5: from the \
              start at rest (a), its spectrum after the transient (b), the difference of the two (c), \
-             and rms differences to S = {REFERENCE_ORDER} over {FIGURE_WINDOW_S} s from the start (d), where f_la lies on dr"
+             and rms differences to S = {REFERENCE_ORDER} over {FIGURE_WINDOW_S} s from the start (d), where f_la \
+             coincides with dr"
         ),
     };
     draw_frames(heading, ids(displays), frames)
@@ -124,9 +125,11 @@ pub(super) fn draw_chaotic_convergence(
         file: "convergence.svg".to_owned(),
         paper: String::new(),
         caption: format!(
-            "Convergence over the modal truncation order with b = {BACKLASH} um, omega = 10 pi rad/s, where the motion is chaotic: \
-             orders part exponentially (a, the largest difference in each 5 ms); differences over {SHORT_TIME_S} s from the start (b), where f_la lies on dr; rms over \
-             {STATISTICS_TIME_S} s after {TRANSIENT_S} s, compared with S = {REFERENCE_ORDER} (c) and the spectrum of f_la (d)"
+            "Convergence over the modal truncation order with b = {BACKLASH} um, omega = 10 pi rad/s, where the \
+             motion is chaotic: solutions of different orders diverge exponentially (a, the largest difference in \
+             each 5 ms); differences over {SHORT_TIME_S} s from the start (b), where f_la coincides with dr; rms over \
+             {STATISTICS_TIME_S} s after {TRANSIENT_S} s, compared with S = {REFERENCE_ORDER} (c) and the spectrum of \
+             f_la (d)"
         ),
     };
     draw_frames(heading, ids(displays), frames)
