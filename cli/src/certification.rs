@@ -18,9 +18,7 @@ pub fn summary(certificate: &Certificate) -> String {
     let mut text = format!("{}, order {}\n", certificate.model, certificate.order);
     let (skipped, applicable): (Vec<&Check>, Vec<&Check>) =
         (certificate.checks.iter()).partition(|check| is_not_applicable(check));
-    let groups = applicable
-        .chunk_by(|one, next| one.passed && next.passed && are_of_same_kind(&one.name, &next.name));
-    for group in groups {
+    for group in group_checks(&applicable) {
         text.push_str(&format!("  {}\n", describe_result(group)));
     }
     text.push_str(&describe_skipped(&skipped));
@@ -67,8 +65,44 @@ fn bounds_table(bounds: &Bounds) -> String {
     text
 }
 
+/// Returns the checks that apply to the model.
+pub fn applicable_checks(certificate: &Certificate) -> Vec<&Check> {
+    let checks = certificate.checks.iter();
+    checks.filter(|check| !is_not_applicable(check)).collect()
+}
+
+/// Groups passed checks of the same statement. Other checks are groups of their own.
+pub fn group_checks<'a, 'c>(checks: &'a [&'c Check]) -> impl Iterator<Item = &'a [&'c Check]> {
+    checks
+        .chunk_by(|one, next| one.passed && next.passed && are_of_same_kind(&one.name, &next.name))
+}
+
+/// Numbers of the check groups of a certificate, by their result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CheckCounts {
+    pub passed: usize,
+    pub failed: usize,
+    /// Checks that apply but could not be run.
+    pub not_run: usize,
+}
+
+impl CheckCounts {
+    pub fn new(certificate: &Certificate) -> Self {
+        let checks = applicable_checks(certificate);
+        let count = |is_counted: fn(&Check) -> bool| {
+            let groups = group_checks(&checks);
+            groups.filter(|group| is_counted(group[0])).count()
+        };
+        Self {
+            passed: count(|check| check.passed),
+            failed: count(|check| !check.passed && check.skipped.is_none()),
+            not_run: count(|check| check.skipped.is_some()),
+        }
+    }
+}
+
 /// Returns true if two checks test the same statement, for example in different regimes.
-pub fn are_of_same_kind(one: &str, other: &str) -> bool {
+fn are_of_same_kind(one: &str, other: &str) -> bool {
     let kind = |name: &str| name.split(' ').next().map(str::to_owned);
     kind(one) == kind(other) && kind(one).as_deref() != Some("reference")
 }

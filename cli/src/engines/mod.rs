@@ -5,6 +5,8 @@ mod dask;
 mod shards;
 mod slurm;
 
+pub use slurm::quote;
+
 use serde_json::Value;
 
 use crate::arguments::{Engine, Sweep};

@@ -109,7 +109,7 @@ fn merge_script(commands: &Commands) -> String {
 }
 
 /// Quotes a word for a shell.
-fn quote(word: &str) -> String {
+pub fn quote(word: &str) -> String {
     format!("'{}'", word.replace('\'', r"'\''"))
 }
 

@@ -27,6 +27,10 @@ pub struct Tour<'a> {
     /// Name and version of the program.
     pub generated_by: &'a str,
     pub specification: Specification<'a>,
+    /// Symbols of the equations.
+    pub symbols: Vec<SymbolRow>,
+    /// Definitions of piecewise functions in the equations.
+    pub functions: Vec<FunctionNote>,
     pub equations: &'a Report,
     pub source: Source<'a>,
     pub checks: Vec<CheckRow>,
@@ -42,6 +46,8 @@ pub struct Tour<'a> {
 pub struct Specification<'a> {
     /// Path of the file.
     pub path: &'a str,
+    /// Sentence about the source of equation numbers.
+    pub reference: &'a str,
     pub text: &'a str,
     /// Rendered diagnostics, without colours.
     pub warnings: Vec<&'a str>,
@@ -52,6 +58,25 @@ pub struct Source<'a> {
     /// Path of the file.
     pub path: &'a str,
     pub text: &'a str,
+}
+
+/// Symbol of the equations.
+#[derive(Clone, Debug)]
+pub struct SymbolRow {
+    /// ASCII name.
+    pub name: String,
+    pub meaning: String,
+    /// Value in the unit; `None` for quantities that vary.
+    pub value: Option<f64>,
+    pub unit: String,
+}
+
+/// Definition of a function.
+#[derive(Clone, Debug)]
+pub struct FunctionNote {
+    /// Function with its arguments.
+    pub call: String,
+    pub definition: &'static str,
 }
 
 /// Check of the certificate.
@@ -100,7 +125,7 @@ pub struct StepDuration<'a> {
 /// Suggested command.
 #[derive(Clone, Debug)]
 pub struct NextCommand<'a> {
-    pub command: &'a str,
+    pub command: String,
     pub purpose: &'a str,
 }
 
@@ -156,7 +181,14 @@ impl Tour<'_> {
                 "Checked specification",
                 steps::specification(&self.specification),
             ),
-            step("equations", "Derived equations", equations(self.equations)),
+            step(
+                "equations",
+                "Derived equations",
+                html! {
+                    (steps::symbols(&self.symbols, &self.functions))
+                    (equations(self.equations))
+                },
+            ),
             step("source", "Emitted Rust", steps::source(&self.source)),
             step(
                 "certificate",

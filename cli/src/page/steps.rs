@@ -1,9 +1,14 @@
 //! Sections of the tour's page, except the equations.
 
-use eomgen_page::{aligned, collapsible_file, figure, prose, stacked_table, table};
+use eomgen_page::{
+    aligned, collapsible_file, figure, number, prose, quantity_symbol, stacked_table, table,
+};
 use maud::{Markup, html};
 
-use super::{CheckRow, Hidden, NextCommand, Simulation, Source, Specification, StepDuration};
+use super::{
+    CheckRow, FunctionNote, Hidden, NextCommand, Simulation, Source, Specification, StepDuration,
+    SymbolRow,
+};
 
 pub(super) fn specification(specification: &Specification<'_>) -> Markup {
     let warnings = &specification.warnings;
@@ -15,10 +20,36 @@ pub(super) fn specification(specification: &Specification<'_>) -> Markup {
     html! {
         p {
             "The model is one text file, " code { (specification.path) } ". Its grammar, its names "
-            "and the units of every term are checked: " strong { (found) } "."
+            "and the units of every term are checked: " strong { (found) } ". " (specification.reference)
         }
         @for warning in warnings { pre.warning { (warning) } }
         (collapsible_file("Specification", specification.text, false))
+    }
+}
+
+/// Number of digits of a parameter after the first.
+const PARAMETER_DIGITS: usize = 4;
+
+/// Returns the folded table of symbols, and the definitions of piecewise functions.
+pub(super) fn symbols(symbols: &[SymbolRow], functions: &[FunctionNote]) -> Markup {
+    let rows = html! {
+        @for symbol in symbols {
+            tr {
+                th scope="row" { (quantity_symbol(&symbol.name)) }
+                td { (prose(&symbol.meaning)) }
+                td.number { @if let Some(value) = symbol.value { (number(value, PARAMETER_DIGITS)) } }
+                td { @if symbol.unit != "1" { (symbol.unit) } }
+            }
+        }
+    };
+    html! {
+        details {
+            summary { "Symbols" }
+            (table(&["symbol", "meaning", "value", "unit"], &rows))
+        }
+        @for function in functions {
+            p { code { (function.call) } " " (function.definition) }
+        }
     }
 }
 
@@ -72,9 +103,10 @@ pub(super) fn certificate(checks: &[CheckRow]) -> Markup {
     };
     html! {
         p {
-            @match (failed, passed) {
-                (0, 0) => strong.failed { "No check was run." },
-                (0, _) => strong.passed { "The model passes." },
+            @match (failed, passed, skipped) {
+                (0, 0, _) => strong.failed { "No check was run." },
+                (0, _, 0) => strong.passed { "The model passes." },
+                (0, _, _) => strong.failed { "Partial: no check failed, but some were not run." },
                 _ => strong.failed { "The model fails " (failed) " of its checks." },
             }
             " Checks passed: " (passed) "; failed: " (failed) "; not run: " (skipped)

@@ -88,9 +88,20 @@ fn tour<'a>(text: &'a str, equations: &'a Report) -> Tour<'a> {
         generated_by: text,
         specification: Specification {
             path: text,
+            reference: text,
             text,
             warnings: vec![text],
         },
+        symbols: vec![SymbolRow {
+            name: text.to_owned(),
+            meaning: text.to_owned(),
+            value: Some(0.375),
+            unit: text.to_owned(),
+        }],
+        functions: vec![FunctionNote {
+            call: text.to_owned(),
+            definition: "is 0 within the play.",
+        }],
         equations,
         source: Source { path: text, text },
         checks: vec![check(text, true, false), check(text, false, true)],
@@ -114,7 +125,7 @@ fn tour<'a>(text: &'a str, equations: &'a Report) -> Tour<'a> {
             seconds: 0.5,
         }],
         next: vec![NextCommand {
-            command: text,
+            command: text.to_owned(),
             purpose: text,
         }],
     }
@@ -224,6 +235,9 @@ fn page_has_every_section() {
         "the first 8 of 10 modes",
         "<msub><mi>x</mi><mi>sp</mi></msub>",
         "Shared subexpressions",
+        "<summary>Symbols</summary>",
+        "0.375",
+        "is 0 within the play.",
         "The model is not linear because of <math>",
     ];
     for part in parts {
@@ -232,9 +246,12 @@ fn page_has_every_section() {
 }
 
 #[test]
-fn failed_check_fails_the_page() {
+fn headline_states_the_verdict_of_the_checks() {
     let report = report("x");
     let mut tour = tour("x", &report);
+    let partial = "Partial: no check failed, but some were not run.";
+    assert!(tour.render().contains(partial));
+    tour.checks.pop();
     assert!(tour.render().contains("The model passes."));
     tour.checks.push(check("bad", false, false));
     assert!(tour.render().contains("The model fails 1 of its checks."));

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use eomgen_compiled_model::{Request, Solver};
 use eomgen_discover::catalogue::effect::effect_in_words;
 use eomgen_model_spec::edit::{self, Edit, NewForce, NewParameter, NewValue};
+use eomgen_model_spec::model::Model;
 use eomgen_model_spec::models;
 use eomgen_model_spec::source::Source;
 use eomgen_sim::inputs::HeldInputs;
@@ -18,6 +19,15 @@ use crate::motion::{simulate, table};
 use crate::output::write_file;
 use crate::page;
 use crate::table::Table;
+
+/// Folder of the records, in the folder of the tour.
+pub const FOLDER: &str = "hidden";
+
+/// Name of the written specification.
+pub const SPECIFICATION_FILE: &str = "stage.toml";
+
+/// Name of the written dataset file.
+pub const DATASET_FILE: &str = "dataset.toml";
 
 /// Specification of the stage without dry friction.
 const SPECIFICATION: &str = models::EMPS.text;
@@ -43,21 +53,23 @@ const TOLERANCE: f64 = 1e-9;
 /// Result of the discovery, and the reports of comparison and discovery.
 pub struct Rediscovery {
     discovery: Value,
+    /// Model of the stage, with the descriptions of its coordinates.
+    model: Model,
     reports: [String; 2],
     extended: String,
 }
 
 /// Writes the records to `out`, then runs the comparison and the discovery.
 pub fn rediscover(out: &Path) -> Result<Rediscovery> {
-    let folder = out.join("hidden");
-    let specification = folder.join("stage.toml");
+    let folder = out.join(FOLDER);
+    let specification = folder.join(SPECIFICATION_FILE);
     write_file(&specification, SPECIFICATION.as_bytes())?;
     let truth = truth()?;
     for (name, turn) in [("train.csv", 0.0), ("test.csv", 1.0)] {
         let path = folder.join(name);
         write_file(&path, &record(&truth, turn)?.encode(&path)?)?;
     }
-    let dataset = folder.join("dataset.toml");
+    let dataset = folder.join(DATASET_FILE);
     write_file(&dataset, description().as_bytes())?;
     let (compared, found) = (folder.join("compared"), folder.join("found"));
     let task = |out| Task {
@@ -69,8 +81,11 @@ pub fn rediscover(out: &Path) -> Result<Rediscovery> {
     };
     discovery::compare(&task(&compared))?;
     let discovery = discovery::discover(&task(&found), None, None)?;
+    let stage = eomgen_model_spec::check(Source::new(SPECIFICATION_FILE, SPECIFICATION))
+        .map_err(Error::Specification)?;
     Ok(Rediscovery {
         discovery,
+        model: stage.model,
         reports: [
             text(compared.join("report.html"))?,
             text(found.join("report.html"))?,
@@ -209,7 +224,7 @@ impl Rediscovery {
         ];
         page::Hidden {
             facts: facts.to_vec(),
-            path: "hidden",
+            path: FOLDER,
             extended: &self.extended,
             reports: [&self.reports[0], &self.reports[1]],
         }
@@ -218,7 +233,10 @@ impl Rediscovery {
     /// Describes the found effects.
     fn describe_effects(&self) -> String {
         let effects = self.discovery["effects"].as_array().into_iter().flatten();
-        match effects.map(effect).collect::<Vec<String>>() {
+        match effects
+            .map(|entry| describe_effect(&self.model, entry))
+            .collect::<Vec<String>>()
+        {
             all if all.is_empty() => "no effect".to_owned(),
             all => all.join(" and "),
         }
@@ -242,8 +260,8 @@ fn micrometres(value: &Value) -> String {
     format!("{:.1} µm", 1e6 * value.as_f64().unwrap_or(f64::NAN))
 }
 
-/// Describes an effect with its first parameter.
-fn effect(entry: &Value) -> String {
+/// Describes an effect with its first parameter and its site.
+fn describe_effect(model: &Model, entry: &Value) -> String {
     let word = |key: &str| effect_in_words(entry[key].as_str().unwrap_or_default());
     let parameter = entry["parameters"]
         .as_object()
@@ -251,7 +269,21 @@ fn effect(entry: &Value) -> String {
     let size = parameter.map_or_else(String::new, |p| {
         let number = |key: &str| p[key].as_f64().unwrap_or(f64::NAN);
         let unit = p["unit"].as_str().unwrap_or_default();
-        format!(" of {:.2} ± {:.2} {unit}", number("value"), number("sd"))
+        format!(
+            " of {:.2} ± {:.2} {unit} (one standard deviation)",
+            number("value"),
+            number("sd")
+        )
     });
-    format!("{}{size} on {}", word("effect"), word("on"))
+    let site = describe_site(model, entry["on"].as_str().unwrap_or_default());
+    format!("{}{size} on {site}", word("effect"))
+}
+
+/// Returns the description of a coordinate. A coordinate without a description and other sites have their names.
+fn describe_site(model: &Model, name: &str) -> String {
+    let coordinate = model.coordinates.iter().find(|known| known.name == name);
+    match coordinate {
+        Some(known) if !known.doc.is_empty() => format!("the {}", known.doc),
+        _ => effect_in_words(name),
+    }
 }

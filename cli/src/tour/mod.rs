@@ -3,6 +3,7 @@
 
 mod hidden;
 mod moving_arm;
+mod symbols;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -18,9 +19,10 @@ use eomgen_plot::{FigureWidth, Panel, Reference, Series, TimeHistory, time_histo
 use eomgen_validate::certificate::{Certificate, Check};
 use eomgen_validate::model_certificate::certify_model;
 
-use crate::certification::{are_of_same_kind, statement};
+use crate::certification::{applicable_checks, group_checks, statement};
 use crate::count::count;
 use crate::emitted_files::CERTIFICATE;
+use crate::engines::quote;
 use crate::error::{Error, Result};
 use crate::model::derive;
 use crate::motion::{describe_work, simulate, table};
@@ -29,11 +31,15 @@ use crate::page::{self, InteractivePart};
 use crate::progress::Note;
 use crate::table::Table;
 use hidden::{Rediscovery, rediscover};
+use symbols::{piecewise_functions, symbols};
 
 const SPECIFICATION: &str = models::PLANETARY_ARM.text;
 
 /// Path of the specification in the project.
 const SPECIFICATION_PATH: &str = "model-spec/models/planetary_arm.toml";
+
+/// Name of the written specification.
+const ARM_FILE: &str = "planetary_arm.toml";
 
 /// Truncation order of the paper.
 const ORDER: usize = 4;
@@ -124,8 +130,9 @@ pub fn run(out: &Path) -> Result<TourResult> {
         certificate: &certificate,
         motion: &motion,
         arm: &arm,
+        out,
     };
-    let page = page_text(&compiled, &parts, &watch)?;
+    let page = page_text(&run, &parts, &watch)?;
     write_file(&path, page.as_bytes())?;
     Ok(TourResult {
         page: path,
@@ -144,10 +151,7 @@ fn write_files(
 ) -> Result {
     let json = serde_json::to_string_pretty(certificate)
         .map_err(|error| Error::input(error.to_string()))?;
-    write_file(
-        &out.join("planetary_arm.toml"),
-        compiled.model().source.text.as_bytes(),
-    )?;
+    write_file(&out.join(ARM_FILE), compiled.model().source.text.as_bytes())?;
     write_file(&out.join("lib.rs"), rust.as_bytes())?;
     write_file(&out.join(CERTIFICATE), format!("{json}\n").as_bytes())?;
     let trajectory = out.join("trajectory.csv");
@@ -195,7 +199,7 @@ fn figure(run: &Instance<'_>, table: &Table, width: FigureWidth) -> Result<Strin
                 references,
             )?,
             panel(
-                "Positioning error of the arm's end, Eq. (24)",
+                "Positioning error of the arm's end, Eq. (24) of the paper",
                 "f_la",
                 Vec::new(),
             )?,
@@ -203,6 +207,15 @@ fn figure(run: &Instance<'_>, table: &Table, width: FigureWidth) -> Result<Strin
     };
     time_history_at(&history, width).map_err(|error| Error::input(error.to_string()))
 }
+
+/// Source of the equation numbers on the page.
+const REFERENCE: &str = "Equation numbers on this page are those of the paper \"Influence of backlash in gear reducer on \
+    dynamic of single-link manipulator arm\".";
+
+/// Caption of the figure of the simulation.
+const CAPTION: &str = "Top: the tooth flanks are in contact outside the dashed lines and separated between them; each \
+    contact vibrates at the natural frequency of the mesh. Bottom: positioning error f_la of the arm's end. It is the \
+    length of the arm times the angle error from backlash, plus the deflection of the end.";
 
 /// Results that are shown on the page.
 struct Parts<'a> {
@@ -213,10 +226,13 @@ struct Parts<'a> {
     certificate: &'a Certificate,
     motion: &'a Motion,
     arm: &'a InteractivePart,
+    /// Folder of the page.
+    out: &'a Path,
 }
 
 /// Renders the page.
-fn page_text(compiled: &CompiledModel, parts: &Parts<'_>, watch: &Stopwatch) -> Result<String> {
+fn page_text(run: &Instance<'_>, parts: &Parts<'_>, watch: &Stopwatch) -> Result<String> {
+    let compiled = run.model();
     let Parts {
         rust,
         figures: [wide, narrow],
@@ -224,6 +240,7 @@ fn page_text(compiled: &CompiledModel, parts: &Parts<'_>, watch: &Stopwatch) -> 
         certificate,
         motion,
         arm,
+        out,
     } = parts;
     let evaluator = Evaluator::new(compiled.program().clone());
     let report = Report::new(compiled.model(), compiled.equations(), &evaluator);
@@ -242,24 +259,25 @@ fn page_text(compiled: &CompiledModel, parts: &Parts<'_>, watch: &Stopwatch) -> 
         generated_by: concat!("eomgen ", env!("CARGO_PKG_VERSION")),
         specification: page::Specification {
             path: SPECIFICATION_PATH,
+            reference: REFERENCE,
             text: SPECIFICATION,
             warnings: Vec::new(),
         },
+        symbols: symbols(run),
+        functions: piecewise_functions(compiled.model()),
         equations: &report,
         source: page::Source {
             path: "lib.rs",
             text: rust,
         },
-        checks: check_rows(&certificate.checks),
+        checks: check_rows(certificate),
         simulation: page::Simulation {
             summary: &summary,
             path: "trajectory.csv",
             figures: vec![Figure {
                 svg: wide,
                 narrow,
-                caption: "Top: the tooth flanks are in contact outside the dashed lines and separated \
-                          between them; each contact vibrates at the natural frequency of the mesh. Bottom: \
-                          positioning error of the arm's end, from backlash and bending.",
+                caption: CAPTION,
             }],
         },
         hidden: chapter,
@@ -271,19 +289,17 @@ fn page_text(compiled: &CompiledModel, parts: &Parts<'_>, watch: &Stopwatch) -> 
                 seconds: *seconds,
             })
             .collect(),
-        next: next_commands(),
+        next: next_commands(out),
     };
     Ok(tour.render())
 }
 
-/// Returns one row for each kind of check. Checks of the same kind in different regimes share a row with the largest
-/// deviation.
-fn check_rows(checks: &[Check]) -> Vec<page::CheckRow> {
-    let groups = checks.chunk_by(|one, next| are_of_same_kind(&one.name, &next.name));
-    let row = |group: &[Check]| {
-        let failed = group.iter().find(|check| !check.passed);
+/// Returns one row for each group of checks, with the largest deviation.
+fn check_rows(certificate: &Certificate) -> Vec<page::CheckRow> {
+    let checks = applicable_checks(certificate);
+    let row = |group: &[&Check]| {
         let worst = group.iter().filter_map(|check| check.value);
-        let first = &group[0];
+        let first = group[0];
         let regimes = match group.len() {
             1 => String::new(),
             count => format!(" {count} regimes."),
@@ -292,38 +308,78 @@ fn check_rows(checks: &[Check]) -> Vec<page::CheckRow> {
             sentence: statement(&first.name) + &regimes,
             value: worst.reduce(f64::max),
             tolerance: first.tolerance,
-            passed: failed.is_none(),
-            skipped: group.iter().all(|check| check.skipped.is_some()),
-            detail: failed.map_or_else(String::new, |check| check.detail.clone()),
+            passed: first.passed,
+            skipped: first.skipped.is_some(),
+            detail: match first.passed {
+                true => String::new(),
+                false => first.detail.clone(),
+            },
         }
     };
-    groups.map(row).collect()
+    group_checks(&checks).map(row).collect()
 }
 
-fn next_commands() -> Vec<page::NextCommand<'static>> {
+/// Returns commands for the folder from which the tour was started. They use the files in `out`.
+fn next_commands(out: &Path) -> Vec<page::NextCommand<'static>> {
+    let file = |path: PathBuf| quote_if_needed(&path.display().to_string());
+    let arm = file(out.join(ARM_FILE));
+    let hidden = out.join(hidden::FOLDER);
+    let stage = file(hidden.join(hidden::SPECIFICATION_FILE));
+    let dataset = file(hidden.join(hidden::DATASET_FILE));
     [
         (
-            "cargo run --release -- derive model-spec/models/double_pendulum.toml",
-            "print the equations of another machine",
+            format!("eomgen derive {stage}"),
+            "print the equations of the positioning stage",
         ),
         (
-            "cargo run --release -- generate model-spec/models/planetary_arm.toml --order 16 --out arm16",
+            format!("eomgen generate {arm} --order 16 --out arm16"),
             "emit the arm with sixteen modes",
         ),
         (
-            "cargo run --release -- simulate model-spec/models/planetary_arm.toml --until 2 --set b_sp=100e-6 --set b_pr=100e-6 --out wide.csv",
+            format!(
+                "eomgen simulate {arm} --until 2 --set b_sp=100e-6 --set b_pr=100e-6 --out wide.csv"
+            ),
             "simulate with four times the backlash",
         ),
         (
-            "cargo run --release -- validate model-spec/models/hub_beam_tip_mass.toml --order 8",
-            "validate a beam with a tip mass",
+            format!("eomgen validate {arm} --order 8"),
+            "validate the arm with eight modes",
         ),
         (
-            "cargo run --release -- discover tour/hidden/stage.toml tour/hidden/dataset.toml --out found",
+            format!("eomgen discover {stage} {dataset} --out found"),
             "repeat the discovery; use a specification and records of your machine to find its missing effects",
         ),
     ]
     .into_iter()
     .map(|(command, purpose)| page::NextCommand { command, purpose })
     .collect()
+}
+
+/// Quotes a path for a shell if it has other characters than letters, digits and `/._-`.
+fn quote_if_needed(path: &str) -> String {
+    let is_plain = |letter: char| letter.is_alphanumeric() || "/._-".contains(letter);
+    match path.chars().all(is_plain) {
+        true => path.to_owned(),
+        false => quote(path),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn next_commands_use_the_files_of_the_tour() {
+        let commands = |out: &str| -> Vec<String> {
+            let commands = next_commands(Path::new(out)).into_iter();
+            commands.map(|next| next.command).collect()
+        };
+        assert!(
+            commands("tour")
+                .contains(&"eomgen validate tour/planetary_arm.toml --order 8".to_owned())
+        );
+        assert!(
+            commands("my tour").contains(&"eomgen derive 'my tour/hidden/stage.toml'".to_owned())
+        );
+    }
 }
