@@ -76,7 +76,8 @@ pub fn figure(compiled: &CompiledModel, table: &Table) -> Result<String> {
     time_history(&history).map_err(|error| Error::input(format!("--plot: {error}")))
 }
 
-/// Returns the title of a panel: the names, and for a single quantity its description.
+/// Returns the title of a panel: the description of a single quantity, else the names. The axis has the name of a single
+/// quantity.
 fn title(described: &[Quantity], names: &[&str]) -> String {
     let mut known = described.iter();
     let doc = match names {
@@ -85,7 +86,7 @@ fn title(described: &[Quantity], names: &[&str]) -> String {
     };
     let mut letters = doc.map_or("", |quantity| &quantity.doc).chars();
     match letters.next() {
-        Some(first) => format!("{}{}: {}", first.to_uppercase(), letters.as_str(), names[0]),
+        Some(first) => format!("{}{}", first.to_uppercase(), letters.as_str()),
         None => names.join(", "),
     }
 }
@@ -162,7 +163,7 @@ mod tests {
             observable("work", ""),
         ];
         let title = |names: &[&str]| title(&described, names);
-        assert_eq!(title(&["energy"]), "Kinetic plus potential energy: energy");
+        assert_eq!(title(&["energy"]), "Kinetic plus potential energy");
         assert_eq!(title(&["work"]), "work");
         assert_eq!(title(&["energy", "work"]), "energy, work");
     }
