@@ -4,11 +4,21 @@
 const BUDGET = 11;
 /** Number of parts of a frame after each of which the motion is shown. */
 const PARTS = 8;
+/** Duration of a frame with this number of parts, s. */
+const SHORT_FRAME = 1 / 60;
 /** Longest time between frames that the clock follows, s; a hidden page has longer ones. */
 const LONGEST_FRAME = 0.1;
 
 /** Time for which a change of the initial state is noted, s. */
 const NOTED = 3;
+
+/** Number of digits of a number in a message. */
+const MESSAGE_DIGITS = 4;
+
+/** Returns a message of the engine with rounded numbers and without backticks. */
+function readable(message) {
+  return message.replaceAll("`", "").replace(/\d+\.\d+(e-?\d+)?/g, (text) => shown(Number(text), MESSAGE_DIGITS));
+}
 
 const model = JSON.parse(document.getElementById("model").textContent);
 const element = (id) => document.getElementById(id);
@@ -131,11 +141,14 @@ class Page {
   /** Advances by the elapsed time, or as far as the time of a frame allows. */
   move(passed) {
     const { motion } = this;
+    if (motion.failed) return;
     const [start, end] = [motion.t, motion.t + passed * this.speed];
     let now = performance.now();
     const deadline = now + BUDGET;
+    // A long frame has more parts, so the distance between shown points does not depend on the frame rate.
+    const frames = Math.max(1, passed / SHORT_FRAME);
     while (motion.t < end && !motion.failed && now < deadline) {
-      motion.advance(Math.min(end, motion.t + (end - start) / this.parts));
+      motion.advance(Math.min(end, motion.t + (end - start) / (this.parts * frames)));
       this.remember();
       // A part takes a small part of the budget.
       const before = now;
@@ -164,12 +177,12 @@ class Page {
 
   /** Shows the reason for a stopped motion. */
   obstacle() {
-    return this.motion.failed ? `There is no motion from here on: ${this.motion.reason}.` : "";
+    return this.motion.failed ? `There is no motion from here on: ${readable(this.motion.reason)}.` : "";
   }
 
   /** Updates the status and the clock. */
   note() {
-    if (this.playing && this.pace < 0.8) return `Slower than selected: ${shown(this.pace * this.speed, 2)} s per second.`;
+    if (this.playing && !this.motion.failed && this.pace < 0.8) return `Slower than selected: ${shown(this.pace * this.speed, 2)} s per second.`;
     if (this.motion.moved && this.motion.t < NOTED) return "The initial state was moved onto the constraints.";
     return this.motion.events > 0 ? `Events: ${this.motion.events}.` : "";
   }

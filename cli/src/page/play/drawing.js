@@ -1,8 +1,11 @@
 // Drawing of the machine: points and lines if the specification has a drawing, else the deflection of every field and an
 // instrument for every coordinate.
 
-/** Length of a trail, in frames. */
-const TRAIL = 400;
+/** Maximum number of points of a trail. */
+const TRAIL = 1500;
+
+/** Smallest distance between points of a trail, as a fraction of the visible range. */
+const TRAIL_DISTANCE = 0.003;
 
 /** Space of a name in the drawing, px. */
 const NAME_WIDTH = 70;
@@ -25,7 +28,7 @@ class Plane {
     return [ordinate(point.x), ordinate(point.y)];
   }
 
-  /** Extends the visible range to the points. */
+  /** Extends the visible range to the points, and the trails by them. */
   follow(state, observables) {
     this.places = this.drawing.points.map((point) => this.place(point, state, observables));
     for (const [x, y] of this.places) {
@@ -33,13 +36,19 @@ class Plane {
       const bounds = this.bounds ?? [x, x, y, y];
       this.bounds = [Math.min(bounds[0], x), Math.max(bounds[1], x), Math.min(bounds[2], y), Math.max(bounds[3], y)];
     }
+    this.leave();
   }
 
-  /** Appends a point per frame to the trails. */
+  /** Appends the points to the trails, unless they are near the last ones. */
   leave() {
+    if (!this.bounds) return;
+    const [left, right, low, high] = this.bounds;
+    const near = TRAIL_DISTANCE * Math.max(right - left, high - low);
     for (const [index, [x, y]] of this.places.entries()) {
       const trail = this.trails[index];
-      if (Number.isFinite(x) && Number.isFinite(y)) trail.push([x, y]);
+      const last = trail.at(-1);
+      const isNear = last && Math.hypot(x - last[0], y - last[1]) <= near;
+      if (Number.isFinite(x) && Number.isFinite(y) && !isNear) trail.push([x, y]);
       if (trail.length > TRAIL) trail.shift();
     }
   }
@@ -47,7 +56,6 @@ class Plane {
   draw(canvas) {
     const { context, width, height } = cleared(canvas);
     if (!this.bounds) return;
-    this.leave();
     const colour = colours();
     const [left, right, low, high] = this.bounds;
     // Margin on all sides of the visited range.
@@ -124,7 +132,7 @@ class Plane {
     context.lineWidth = 1.5;
     context.globalAlpha = 0.45;
     context.beginPath();
-    for (const place of trail) context.lineTo(...onto(place));
+    for (const place of [...trail, this.places[index]]) context.lineTo(...onto(place));
     context.stroke();
     context.globalAlpha = 1;
   }
