@@ -136,7 +136,7 @@ pub fn curves(times: &[Times]) -> Result<String, PlotError> {
         ("Eq. (22) by hand", of(|times| times.equation_22)),
         ("O(S) by hand", of(|times| times.hand_written)),
         ("generated", of(|times| times.generated)),
-        ("floor", of(|times| times.floor)),
+        ("floor: one sine and a copy", of(|times| times.floor)),
     ];
     let named: Named<'_> = contenders
         .iter()
@@ -144,7 +144,7 @@ pub fn curves(times: &[Times]) -> Result<String, PlotError> {
         .collect();
     draw(
         "Time of one right-hand side over the number of modes S",
-        vec![frame("time", "s", "S", &orders, &named)],
+        vec![frame("time", "s", "number of modes S", &orders, &named)],
     )
 }
 
@@ -154,21 +154,16 @@ pub fn curves(times: &[Times]) -> Result<String, PlotError> {
 /// An empty figure.
 pub fn development(table: &str) -> Result<String, PlotError> {
     let runs: Vec<f64> = (1..table.lines().count()).map(|run| run as f64).collect();
-    let of = |names: &[String]| -> Vec<(String, Vec<f64>)> {
-        let columns = names.iter();
-        columns
-            .map(|name| (name.replace('_', " "), column(table, name)))
-            .collect()
+    let of = |kind: &str| {
+        KEPT.map(|order| {
+            let values = column(table, &format!("{kind}_{order}"));
+            (format!("{order} modes"), values)
+        })
     };
-    let hand = of(&KEPT.map(|order| format!("generated_to_hand_{order}")));
-    let equation = of(&KEPT.map(|order| format!("generated_to_equation_22_{order}")));
-    let counts = of(&COUNTED
-        .map(|case| format!("instructions_{case}"))
-        .map(String::from)[..3]);
     let frames = [
-        ("time ratio", hand),
-        ("time ratio", equation),
-        ("instructions", counts),
+        ("time / O(S) by hand", of("generated_to_hand")),
+        ("time / Eq. (22)", of("generated_to_equation_22")),
+        ("instructions", of("instructions_generated")),
     ];
     let drawn: Vec<(&str, Named<'_>)> = frames
         .iter()
@@ -180,9 +175,9 @@ pub fn development(table: &str) -> Result<String, PlotError> {
         .collect();
     let frames = drawn
         .iter()
-        .map(|(quantity, series)| frame(quantity, "", "run", &runs, series))
+        .map(|(quantity, series)| frame(quantity, "", "recorded run", &runs, series))
         .collect();
-    draw("Ratios of times and instructions of all runs", frames)
+    draw("Generated code in all recorded runs", frames)
 }
 
 /// Returns a column of the table; empty fields are NaN.

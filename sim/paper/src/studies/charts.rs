@@ -53,14 +53,13 @@ fn draw_claims_at_once(found: &SearchResult, assumed: &[Judgement]) -> Result<Fi
 fn draw_shares_of_claims(found: &SearchResult) -> Result<Figure, PlotError> {
     let rows = CLAIMS.iter().zip(tally::shares(&found.screened));
     let rows = rows.map(|(claim, share)| {
-        // An underscore would be drawn as a subscript.
         let parts = vec![
             share.holds_strictly,
             share.holds - share.holds_strictly,
             share.undecided_share,
             share.fails,
         ];
-        (claim.id.replace('_', " "), parts)
+        (claim.label(), parts)
     });
     let caption = format!(
         "How often each claim holds, over {} parameter sets",

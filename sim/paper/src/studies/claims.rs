@@ -118,6 +118,24 @@ pub const CLAIMS: [Claim; 30] = [
     claim("mode_changes_10pi", "Sec. 5 (4)", "the dominant mode depends on b, at 10 pi", Rule::ModeChanges(TenPi)),
 ];
 
+impl Claim {
+    /// Returns the label in figures: the name, with the units of forcing frequency and half-backlash.
+    pub fn label(&self) -> String {
+        let mut words = Vec::new();
+        let mut conditions = String::new();
+        for part in self.id.split('_') {
+            match (part.strip_suffix("pi"), part.parse::<u32>()) {
+                (Some(multiple), _) => conditions.push_str(&format!(", {multiple}π rad/s")),
+                (None, Ok(half_backlash)) => {
+                    conditions.push_str(&format!(", {half_backlash} µm"));
+                }
+                (None, Err(_)) => words.push(part),
+            }
+        }
+        words.join(" ") + &conditions
+    }
+}
+
 impl Rule {
     /// Returns the cases that the rule needs.
     pub fn cases(self) -> Vec<CaseKey> {
@@ -159,4 +177,25 @@ pub fn cases() -> Vec<CaseKey> {
     keys.sort_unstable();
     keys.dedup();
     keys
+}
+
+#[cfg(test)]
+mod tests {
+    use super::CLAIMS;
+
+    #[test]
+    fn labels_have_words_and_units() {
+        let label = |id: &str| {
+            let claim = CLAIMS.iter().find(|claim| claim.id == id);
+            claim.map(|claim| claim.label())
+        };
+        for (id, expected) in [
+            ("order", "order"),
+            ("regular_5pi_10", "regular, 5π rad/s, 10 µm"),
+            ("small_b_10pi", "small b, 10π rad/s"),
+        ] {
+            assert_eq!(label(id).as_deref(), Some(expected));
+        }
+        assert!(CLAIMS.iter().all(|claim| !claim.label().contains('_')));
+    }
 }
