@@ -37,9 +37,9 @@ pub enum Function {
     Min,
     /// Larger of two values; switching surface where both are equal.
     Max,
-    /// `deadzone(p, b)`: p - b above the play, p + b below it, else 0; f_k of Eq. (7).
+    /// `deadzone(p, b)`: p - b above the play, p + b below it, else 0; f_k of Eq. (7) of the paper.
     Deadzone,
-    /// `contact(p, b)`: 1 if |p| > b, else 0; Eq. (8) without the rate.
+    /// `contact(p, b)`: 1 if |p| > b, else 0; Eq. (8) of the paper, without the rate.
     Contact,
     /// `above(p)`, 1 if p > 0, else 0.
     Above,
@@ -67,7 +67,7 @@ pub fn call(function: Function, x: f64, second: f64) -> f64 {
         Function::Sign => x * 0.0,
         Function::Min => x.min(second),
         Function::Max => x.max(second),
-        // Eq. (7): 0 within the play, else the distance from its edge.
+        // Eq. (7) of the paper: 0 within the play, else the distance from its edge.
         Function::Deadzone if x > second => x - second,
         Function::Deadzone if x < -second => x + second,
         Function::Deadzone => (x + second) * 0.0,

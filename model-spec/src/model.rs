@@ -293,7 +293,7 @@ pub struct Field {
 /// Mode shapes of a field.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Basis {
-    /// Elastic modes of a uniform beam. Clamped-free: Eq. (17) with beta_r l the roots of cos z
+    /// Elastic modes of a uniform beam. Clamped-free: Eq. (17) of the paper with beta_r l the roots of cos z
     /// cosh z = -1 and the corrected xi_r. Rods in tension or torsion, and strings, use the same
     /// shapes: a fixed end equals a pinned one, a free end equals a guided one. In a specification:
     /// `"clamped_free"`, `"string"` and others.
@@ -303,7 +303,7 @@ pub enum Basis {
         /// End at `to`.
         to: End,
     },
-    /// Eq. (17) with beta_r and xi_r as printed in Eq. (18) and (19), for comparison. These shapes
+    /// Eq. (17) of the paper with beta_r and xi_r as printed in Eq. (18) and (19), for comparison. These shapes
     /// are not orthogonal and violate the boundary conditions at the free end. In a specification:
     /// `"clamped_free_printed"`.
     ClampedFreePrinted,
@@ -482,7 +482,7 @@ pub struct ObservedRate {
     pub times: u8,
 }
 
-/// Name for a coefficient of the derived accelerations, as in Eq. (22).
+/// Name for a coefficient of the derived accelerations, as in Eq. (22) of the paper.
 #[derive(Clone, Debug)]
 pub struct Coefficient {
     /// ASCII name. Coefficients of each mode are named `name_1 ..` by the derivation.

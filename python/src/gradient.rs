@@ -8,7 +8,7 @@ use crate::error;
 use crate::model::Model;
 
 /// Derivatives with respect to the initial state, the independent parameters (names; declared units) and the inputs.
-/// Those of the inputs have one row per sample of the inputs.
+/// The gradients with respect to the inputs have one row per sample of the inputs.
 type GradientTuple<'py> = (
     Option<Bound<'py, PyArray1<f64>>>,
     Vec<(String, f64)>,

@@ -90,7 +90,7 @@ impl CubicSpline {
     /// Returns the bounds of [`CubicSpline::bound`] between two times without a sample between them.
     fn bound_cubic(&self, begin: f64, end: f64) -> [Enclosure; 3] {
         let duration = end - begin;
-        // If one end is a sample, the derivatives of the adjacent piece may differ by rounding only, except at
+        // If one end is a sample, the derivatives of the adjacent piece may differ only because of rounding, except at
         // the first and the last sample.
         let middle = self.evaluate(begin + 0.5 * duration);
         let is_outside = end <= self.times[0] || begin >= self.times[self.times.len() - 1];

@@ -38,7 +38,7 @@ pub enum Verdict {
     Holds(f64),
     /// The surface exerts its maximum force to this side, and other surfaces hold the motion.
     AtLimit(f64),
-    /// The surface releases the motion to this side.
+    /// Breakaway to this side occurs.
     Releases(f64),
 }
 

@@ -79,7 +79,7 @@ pub fn blocks<'a>(text: &'a str, language: &'a str) -> impl Iterator<Item = &'a 
     fenced.filter_map(move |block| (block.language == language).then_some(block.text))
 }
 
-/// Returns the names and texts of the files that a page tells the reader to save: blocks below a
+/// Returns the names and texts of the files that the reader of a page must save: blocks below a
 /// paragraph with "Save this as `NAME`".
 pub fn saved_files(text: &str) -> Vec<(&str, &str)> {
     fn file<'a>(block: FencedBlock<'a>) -> Option<(&'a str, &'a str)> {

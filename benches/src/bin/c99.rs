@@ -175,7 +175,7 @@ macro_rules! order {
     }};
 }
 
-/// Emits the C code of an order.
+/// Emits the C code of the model with this order.
 fn emit(model: &Model, order: usize, folder: &Path) -> Result<(), Box<dyn Error>> {
     let variant = Variant::derive(model, &[order]).map_err(|found| found.render(false))?;
     let files = c::emit(&variant.program)?;

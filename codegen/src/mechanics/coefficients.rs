@@ -1,6 +1,6 @@
-//! Named coefficients of a specification, for example a_01 to a_78 of Eq. (22): the factors of given quantities in
-//! the accelerations. They are computed as derivatives of the derived accelerations, and are therefore consistent
-//! with these.
+//! Named coefficients of a specification, for example a_01 to a_78 of Eq. (22) of the paper: the factors of given
+//! quantities in the accelerations. They are computed as derivatives of the derived accelerations, and are therefore
+//! consistent with these.
 
 use std::collections::HashMap;
 

@@ -5,7 +5,7 @@
 //! - `rigid_tree` derives the inverse dynamics of rigid bodies recursively along the tree of frames.
 //! - `constraints` and `redundancy`, `impacts` with `impact` and `workless_rates`, and `sliding` derive the terms of
 //!   constraints, impacts and sliding; `solve` derives the accelerations.
-//! - `coefficients` derives named coefficients as in Eq. (22).
+//! - `coefficients` derives named coefficients as in Eq. (22) of the paper.
 //! - `equations` combines these results; `outputs` derives additional functions on request.
 //! - `jumps` finds the surfaces at which the energies jump; `corners` derives the quantities that determine the jumps
 //!   of the rates.

@@ -256,7 +256,7 @@ impl Graph {
     }
 
     /// Laws: contact^n = contact for n > 0, and deadzone(p, b)^n contact(p, b) = deadzone(p, b)^n, because the force
-    /// of Eq. (7) is zero without contact.
+    /// of Eq. (7) of the paper is zero without contact.
     fn apply_piecewise_laws(&mut self, factors: &mut BTreeMap<NodeId, i32>) {
         let contacts: Vec<(NodeId, Arguments<NodeId>)> = factors
             .keys()

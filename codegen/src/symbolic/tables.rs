@@ -10,7 +10,7 @@ use eomgen_model_spec::ids::FieldId;
 pub enum TableKind {
     /// beta_r l, a vector over the modes.
     Wavenumber,
-    /// xi_r of Eq. (17), the factor of cos z relative to sin z, a vector over the modes.
+    /// xi_r of Eq. (17) of the paper, the factor of cos z relative to sin z, a vector over the modes.
     Mixing,
     /// (1 + xi_r) exp(beta_r l), which is of order 1, a vector over the modes.
     GrowingAmplitude,

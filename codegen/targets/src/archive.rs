@@ -7,7 +7,7 @@ use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
 use crate::error::{EmissionError, Result};
 
-/// With this level instead of level 6, packing a unit takes 0.58 s instead of 1.04 s, and the unit is 2 % larger.
+/// With this level instead of level 6, packing an FMU takes 0.58 s instead of 1.04 s, and the FMU is 2 % larger.
 const COMPRESSION_LEVEL: i64 = 4;
 
 /// Packs files, each a name and its content, into an archive.

@@ -1,7 +1,7 @@
 //! Random expressions: their values, derivatives (as forces of a potential) and rates along the motion after the
 //! whole derivation are compared with dual numbers applied to the original tree.
 //!
-//! Simplification of the graph regroups operations, so the results differ by rounding. For the tolerance, every
+//! Simplification of the graph regroups operations, so the results differ because of rounding. For the tolerance, every
 //! intermediate result of the reference is perturbed randomly by 1e-10, relative. Rounding perturbs by 1e-16, so a
 //! thousandth of the resulting spread leaves a margin of 1e3.
 

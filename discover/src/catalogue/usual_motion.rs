@@ -48,7 +48,7 @@ impl UsualMotion {
         known.unwrap_or_else(|| self.typical_size(unit))
     }
 
-    /// Returns true if the motion of an angle covers one period of an order, or if its range is
+    /// Returns true if the motion of an angle covers one period of this order (events per turn), or if its range is
     /// unknown.
     pub(super) fn covers_period(&self, angle: &Site, order: u32) -> bool {
         let covers = |travel: &Interval| f64::from(order) * (travel.high - travel.low) >= TAU;

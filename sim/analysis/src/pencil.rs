@@ -145,7 +145,7 @@ impl Pencil {
                 .max_by(|a, b| a.norm().total_cmp(&b.norm()));
             most.filter(|value| value.norm() > 0.0)
         };
-        // Coordinates that move by rounding only do not set the scale.
+        // Coordinates that move only because of rounding do not set the scale.
         let moves = shape.rows(0, self.degrees).norm() > RANK_TOLERANCE * shape.norm();
         let largest = largest(&amplitudes[..self.degrees])
             .filter(|_| moves)

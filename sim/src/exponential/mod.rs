@@ -179,7 +179,7 @@ impl ExponentialIntegrator {
         show(0, &motion.state[..own], options.tangents.as_deref());
         for (index, end) in samples.iter().enumerate().skip(1) {
             while motion.t < *end {
-                // Times of samples and of inputs may differ by rounding.
+                // Times of samples and of inputs may differ because of rounding.
                 let near = motion.t + 1e-3 * self.step;
                 let change = inputs
                     .next_change(near)

@@ -62,10 +62,10 @@ pub struct DoubledStep {
 pub struct HeldSurface {
     /// Index of the surface.
     pub surface: usize,
-    /// Holding force. If it becomes negative, the surface releases the motion to the lower side.
+    /// Holding force. If it becomes negative, breakaway to the lower side occurs.
     pub above_low: HoldingForce,
-    /// Holding force minus the force on the upper side. If it becomes positive, the surface releases the motion
-    /// to the upper side.
+    /// Holding force minus the force on the upper side. If it becomes positive, breakaway to the
+    /// upper side occurs.
     pub above_high: HoldingForce,
     /// Shortest change of the state that increases the surface's function by one.
     pub across: Vec<f64>,

@@ -87,7 +87,7 @@ impl Attempt {
         }
     }
 
-    /// Returns the estimated error of an order, from the difference of this order.
+    /// Returns the estimated error of the method of this order, from the difference of this order.
     pub fn error_norm(
         &self,
         order: usize,

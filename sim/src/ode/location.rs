@@ -340,7 +340,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 /// Side of surfaces on which a trial step ends.
 enum TrialSide {
     Near,
-    /// Beyond these surfaces, and beyond no others.
+    /// The step ends beyond these surfaces, and beyond no others.
     Beyond,
     BeyondOthers,
 }

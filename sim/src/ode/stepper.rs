@@ -44,7 +44,7 @@ pub trait Stepper: Sized {
     /// `step` (s) long.
     fn restart(&mut self, point: Point, step: f64);
 
-    /// Replaces the current state by one that differs by errors of the last step, and continues from it.
+    /// Replaces the current state by one that differs within the errors of the last step, and continues from it.
     fn correct(&mut self, y: Vec<f64>) {
         let t = self.current_point().t;
         self.restart(Point { t, y }, self.step());

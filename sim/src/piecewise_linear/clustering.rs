@@ -24,7 +24,7 @@ pub(super) fn find_near_zero(
 ) -> Vec<bool> {
     let fastest = forcing.abs().max(1.0);
     let largest = eigenvalues.iter().map(|e| e.norm()).fold(fastest, f64::max);
-    // The magnitudes of a conjugate pair differ by rounding; both must be on the same side of the bound.
+    // The magnitudes of a conjugate pair differ because of rounding; both must be on the same side of the bound.
     let mut bound = (NEAR_ZERO * largest).max(undetermined);
     for value in eigenvalues {
         if (value.norm() - bound).abs() < 1e-3 * bound {

@@ -48,7 +48,7 @@ pub struct Subject<'s> {
     pub order: usize,
     /// Parameters in SI, in the order of the model.
     pub parameters: &'s [f64],
-    /// Function that creates the variant of an order with these parameters.
+    /// Function that creates the variant with a given order and these parameters.
     pub variants: &'s dyn Fn(usize) -> Result<Box<dyn Variant>, String>,
     /// Hand-written equations of this model.
     pub references: &'s [Reference],

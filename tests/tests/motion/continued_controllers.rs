@@ -7,7 +7,7 @@ use eomgen_sim::inputs::HeldInputs;
 use eomgen_tests::random_numbers::Numbers;
 
 /// Mass on a spring with two controllers. The delay of the first is longer than its period. The force of the second is
-/// quantised, with values halfway between two steps. The times 3*0.1 and 0.3 differ by rounding.
+/// quantised, with values halfway between two steps. The times 3*0.1 and 0.3 differ because of rounding.
 const LOOP: &str = r#"
 [model]
 name = "mass"

@@ -281,7 +281,7 @@ fn delayed_offset_quantised_loop_matches_its_recursion() {
 
 #[test]
 fn coincident_samples_use_the_values_before_them() {
-    // The times 3*0.1 and 0.3 differ by rounding. The second controller measures the force before the sample.
+    // The times 3*0.1 and 0.3 differ because of rounding. The second controller measures the force before the sample.
     let controllers = r#"
 [controllers.fast]
 period = 0.1

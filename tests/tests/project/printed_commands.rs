@@ -1,5 +1,5 @@
 //! Tests of the commands in README.md and docs/. The commands of a page run in order in one folder, with the files that
-//! the page tells the reader to save. Their output and the pictures that they write ([`pictures`]) must match the page.
+//! the reader of the page must save. Their output and the pictures that they write ([`pictures`]) must match the page.
 //! Other commands must be in `.ci/run`. A command of an unknown form fails the test.
 //!
 //! The folders consist of links, and the commands need a Unix shell.

@@ -13,7 +13,7 @@ pub(super) struct Mode {
     pub(super) wavenumber: f64,
     /// Amplitude a of the sine.
     pub(super) sine: f64,
-    /// Amplitude c of the cosine; xi_r of Eq. (17) for a clamped start.
+    /// Amplitude c of the cosine; xi_r of Eq. (17) of the paper for a clamped start.
     pub(super) cosine: f64,
     /// Amplitude f of the exponential that decays from the start.
     pub(super) falling: f64,

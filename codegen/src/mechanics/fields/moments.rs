@@ -48,7 +48,7 @@ pub(crate) fn build_shapes_at(
     }
 }
 
-/// Builds the shapes of Eq. (17) from xi_r and (1 + xi_r) exp(beta_r l).
+/// Builds the shapes of Eq. (17) of the paper from xi_r and (1 + xi_r) exp(beta_r l).
 fn build_clamped_shapes(graph: &mut Graph, domain: &Domain, s: NodeId, derivative: u8) -> NodeId {
     let beta = domain.table(graph, TableKind::Wavenumber);
     let xi = domain.table(graph, TableKind::Mixing);

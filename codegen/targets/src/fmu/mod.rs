@@ -1,9 +1,9 @@
 //! Functional mock-up units. A unit is an archive that contains the description of the variables, the specification,
 //! and the library that simulates the model.
 //!
-//! `variables` lists the variables of a unit, `units` their units of measurement; `description`, `fmi2` and `fmi3` write
-//! both as XML; `library` finds the library, which is built from the crate `eomgen-unit`; [`crate::archive`] packs all
-//! files.
+//! `variables` lists the variables of a unit, `units` their units of measurement; `description`, `fmi2` and `fmi3`
+//! write both as XML; `library` finds the library, which is built from the crate `eomgen-unit`; [`crate::archive`]
+//! packs all files.
 
 mod description;
 mod fmi2;
@@ -48,7 +48,7 @@ pub fn emit_file(model: &Model, orders: &[usize], version: Version) -> Result<Em
     })
 }
 
-/// Returns the model with its parameter values written to the text of its specification, because the unit contains
+/// Returns the model with its parameter values written to the text of its specification, because the FMU contains
 /// this text.
 fn write_parameters(model: &Model) -> Result<Model> {
     let checked = eomgen_model_spec::check(model.source.clone());

@@ -68,7 +68,7 @@ pub struct Unit {
     pub variables: Vec<Variable>,
     /// Units of measurement.
     pub units: Units,
-    /// True if the unit contains sampled controllers, which model exchange does not support.
+    /// True if the FMU contains sampled controllers, which model exchange does not support.
     pub has_controllers: bool,
     /// True if the equations depend on time.
     depends_on_time: bool,

@@ -41,7 +41,7 @@ fn mean_product(i: usize, j: usize) -> f64 {
     0.5 / (1.0 - sum * sum) + 0.5 / (1.0 - difference * difference)
 }
 
-/// Returns an interpolation point of a degree, as a fraction of the panel, 0 to 1.
+/// Returns the Chebyshev point `index` for interpolation with a polynomial of this degree, as a fraction of the panel.
 pub(super) fn chebyshev_point(index: usize, degree: usize) -> f64 {
     0.5 * (1.0 - cosine(index, degree))
 }

@@ -22,7 +22,7 @@ pub(super) enum SurfaceState {
         since: f64,
         allowed: [f64; 2],
     },
-    /// The surface has released the motion to this side, but its function is still within rounding; the surface is
+    /// Breakaway to this side has occurred, but the switching function is still zero within rounding; the surface is
     /// displaced by `moved`.
     Leaving { side: f64, moved: f64 },
 }

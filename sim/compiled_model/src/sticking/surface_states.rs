@@ -9,7 +9,7 @@ use super::sided_model::SidedModel;
 use super::surface_state::{SurfaceState, find_allowed};
 
 /// Largest distance of a state from a surface that holds it, relative to the largest value of the switching function.
-/// Beyond this distance the state is corrected.
+/// The state is corrected if it is farther than this distance from the surface.
 pub(super) const MAX_DRIFT_FRACTION: f64 = 1e-12;
 
 /// Additional distance, relative to the effect of the surface's own force on its function since the surface began to
@@ -141,7 +141,7 @@ impl SurfaceStates {
         self.kept.is_some() || !self.discs.is_empty() || !self.is_free()
     }
 
-    /// Writes the modes of the surfaces that hold or release the motion.
+    /// Writes the modes of the surfaces with sticking or breakaway.
     pub fn write_modes(&self, modes: &mut [SurfaceMode]) {
         for (surface, place) in self.places.iter().enumerate() {
             let slot = &mut modes[self.sided.guard_index(surface)];
@@ -318,7 +318,7 @@ impl SurfaceStates {
         }
     }
 
-    /// Replaces the guards `out` of surfaces that hold or release the motion; the first call starts the motion. The
+    /// Replaces the guards `out` of surfaces with sticking or breakaway; the first call starts the motion. The
     /// guard of a surface that holds the motion changes its sign when its force reaches a limit. If contacts or other
     /// surfaces stop the motion at a surface, its guard changes its sign when they move it.
     pub fn write_guards(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {

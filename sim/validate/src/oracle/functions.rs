@@ -90,7 +90,7 @@ where
     }
 }
 
-/// f_k of Eq. (7).
+/// f_k of Eq. (7) of the paper.
 fn deadzone<N>(p: N, b: N) -> N
 where
     N: DualNum<Primitive = f64> + Copy,

@@ -77,8 +77,9 @@ impl Shape {
         }
     }
 
-    /// Returns the shape of Eq. (18) and (19) as printed. Eq. (18) is z = (r - 1/2) pi, so cos z = 0 and sin z =
-    /// (-1)^(r+1). With the printed sign of Eq. (19), (1 + xi)/2 tends to 1 and the growing exp(u) remains.
+    /// Returns the shape of Eq. (18) and (19) of the paper as printed. Eq. (18) is z = (r - 1/2) pi, so cos z = 0 and
+    /// sin z = (-1)^(r+1). With the printed sign of Eq. (19) of the paper, (1 + xi)/2 tends to 1 and the growing exp(u)
+    /// remains.
     fn from_printed_equations(r: usize) -> Self {
         let half_waves = r as f64 - 0.5;
         let sign = if r.is_multiple_of(2) { -1.0 } else { 1.0 };

@@ -49,8 +49,8 @@ pub(super) fn compute_mode(from: End, to: End, number: usize) -> Mode {
     }
 }
 
-/// Computes the mode `number` with beta_r l and xi_r as printed in Eq. (18) and (19). This shape does not satisfy the
-/// boundary conditions at its end, and its integrals have no closed form.
+/// Computes the mode `number` with beta_r l and xi_r as printed in Eq. (18) and (19) of the paper. This shape does not
+/// satisfy the boundary conditions at its end, and its integrals have no closed form.
 pub(super) fn compute_printed_mode(number: usize) -> Mode {
     let wavenumber = std::f64::consts::PI * (number as f64 - 0.5);
     let sine = -alternating_sign(number);

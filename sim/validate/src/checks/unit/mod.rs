@@ -1,7 +1,7 @@
-//! Comparison of a functional mock-up unit with its model. The description is compared with the specification: names,
-//! causalities, initial values, ranges, units of measurement and derivatives. The library in the unit is compared with
-//! the program. A separate process loads the library, sets time, state, inputs and parameters by the names in the
-//! description, and reads rates and observables.
+//! Comparison of a functional mock-up unit (FMU) with its model. The file modelDescription.xml is compared with the
+//! specification: names, causalities, initial values, ranges, units of measurement and derivatives. The library in the
+//! unit is compared with the program. A separate process loads the library, sets time, state, inputs and parameters by
+//! the names in the description, and reads rates and observables.
 //!
 //! `description` parses the description, `expected` compares it.
 
