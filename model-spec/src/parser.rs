@@ -291,7 +291,8 @@ fn nest(syntax: Syntax, below: usize) -> Parsed {
 
 fn depth_error(place: Span) -> Diagnostic {
     Diagnostic::error(format!(
-        "the expression has more than {MAX_DEPTH} nested levels; each term of a sum and each factor of a product counts as one level"
+        "the expression has more than {MAX_DEPTH} nested levels; each term of a sum and each factor of a product counts \
+         as one level"
     ))
     .with_span(place, "the limit is exceeded here")
     .with_help("move parts of it to [definitions]")

@@ -427,7 +427,7 @@ impl Simulation<'_> {
             true => Ok(()),
             false => Err(Error::Request(format!(
                 "a simulation that reached {now:?} s cannot continue to {until:?} s with these samples: times must be \
-                 finite, ascending and greater than {now:?} s"
+                 finite, ascending and between both times"
             ))),
         }
     }

@@ -89,7 +89,8 @@ impl Unit {
         let motion = self.external()?;
         if motion.is_beyond_surface(t, &state) {
             return Err(unavailable(
-                "derivatives are not available after the motion crosses a switching surface and before its event is handled",
+                "derivatives are not available after the motion crosses a switching surface and before its event is \
+                 handled",
             ));
         }
         match motion.system().is_free() {
@@ -181,7 +182,8 @@ impl Unit {
                 let mut motion = self.start_external(&parameters, &modes)?;
                 if motion.modes() != modes {
                     return Err(unavailable(
-                        "the derivative with respect to a parameter does not exist, because any change of this parameter ends sticking",
+                        "the derivative with respect to a parameter does not exist, because any change of this \
+                         parameter ends sticking",
                     ));
                 }
                 Ok(evaluate_motion(&mut motion, layout.observables, t, &state))

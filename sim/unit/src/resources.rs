@@ -7,8 +7,8 @@ use eomgen_compiled_model::{CompiledModel, Orders};
 
 use crate::rejection::{Outcome, Rejection, invalid};
 
-/// Returns the token that links the description of a unit to its specification: hash of the specification, orders of the
-/// fields and version of the program.
+/// Returns the token that links the description of an FMU to its specification: hash of the specification, orders of
+/// the fields and version of the program.
 pub fn token(program: &Program) -> String {
     let orders = program.fields.iter().map(|field| field.order.to_string());
     let orders: Vec<String> = orders.collect();
