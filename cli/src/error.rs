@@ -80,6 +80,7 @@ impl Error {
         match refusal {
             Refusal::Description(found) => Self::Specification(found),
             Refusal::Record(message) => Self::Input(message),
+            Refusal::Column(missing) => Self::Input(missing.message),
         }
     }
 

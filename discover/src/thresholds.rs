@@ -517,6 +517,10 @@ pub const VARIANCE_ITERATION_COUNT: usize = 12;
 /// Maximum standard deviation of a drawn point of a profile, as a fraction of the largest force.
 pub const MAX_DRAWN_SD: f64 = 0.5;
 
+/// Maximum standard deviation of a value that sets the scale of a profile, relative to the median of
+/// the standard deviations.
+pub const MAX_SD_OVER_MEDIAN: f64 = 10.0;
+
 /// Minimum number of points of a drawn profile.
 pub const MIN_DRAWN_POINT_COUNT: usize = 2;
 

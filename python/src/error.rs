@@ -59,5 +59,6 @@ pub fn records(refusal: Refusal) -> PyErr {
     match refusal {
         Refusal::Description(found) => specification(&found),
         Refusal::Record(message) => PyValueError::new_err(message),
+        Refusal::Column(missing) => PyValueError::new_err(missing.message),
     }
 }

@@ -147,10 +147,10 @@ fn find_largest_amplitudes(units: &[String], sizes: &[f64]) -> Vec<usize> {
     places
 }
 
-/// Returns the unit of an amplitude; `None` if all amplitudes have the same unit.
+/// Returns the unit of an amplitude; `None` if all amplitudes are dimensionless.
 fn unit_shown(units: &[String], place: usize) -> Option<&str> {
-    let is_mixed = units.iter().any(|unit| *unit != units[0]);
-    is_mixed.then(|| match &units[place][..] {
+    let is_dimensional = units.iter().any(|unit| !unit.is_empty());
+    is_dimensional.then(|| match &units[place][..] {
         "" => "1",
         unit => unit,
     })

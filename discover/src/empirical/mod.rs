@@ -119,7 +119,8 @@ fn add_empirical(
         Err(reason) => found.rejected.push(RejectedCandidate {
             reason: format!("{}: {reason}", candidate.term),
             candidate,
-            best_reduction: None,
+            best_of_round: None,
+            is_fitted: true,
             is_untestable: false,
             p_value: None,
         }),

@@ -156,11 +156,10 @@ fn write_site(of: &EffectSite) -> Value {
 /// Returns a rejected effect. `files`: experiments for effects that the records cannot show.
 fn write_rejected(of: &RejectedEffect, files: Option<&[ExperimentFile]>) -> Value {
     let mut entry = write_site(&of.at);
-    entry["reason"] = match of.best_reduction {
+    entry["reason"] = match &of.best_of_round {
         Some(best) => json!(format!(
-            "{}, the best effect of the same round by {:.1} %",
-            of.reason,
-            100.0 * best
+            "{} (best of the same round: {}, {})",
+            of.reason, best.label, best.reduction
         )),
         None => json!(of.reason),
     };

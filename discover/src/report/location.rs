@@ -1,11 +1,13 @@
 //! Sentences about the difference between model and records: channel, time, speed and frequency.
 
 use crate::fit::fit_result::Fit;
+use crate::fit::noise_floor::NoiseFloor;
 use crate::fit::residual_spectrum::{SpectralLine, SpectralPeak, find_training_peak};
 use crate::ids::{ChannelId, WindowId};
 use crate::model::problem::EstimationProblem;
 use crate::model::smoothing::differentiate_column;
 use crate::report::quantity::{format_number, format_quantity};
+use crate::report::remaining_gap::format_floors;
 use crate::residual_force::types::ResidualForce;
 use crate::residual_force::wording::describe_residual_force;
 use crate::thresholds;
@@ -14,9 +16,10 @@ use crate::thresholds;
 pub fn describe_location(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
+    floor: &NoiseFloor,
     force: Option<&ResidualForce>,
 ) -> String {
-    let channel = describe_channel(problem, fit);
+    let channel = describe_channel(problem, fit, floor);
     match force {
         Some(force) => format!("{} {channel}", describe_residual_force(force)),
         None => channel,
@@ -24,30 +27,30 @@ pub fn describe_location(
 }
 
 /// Describes the channel with the largest difference, with time, speed and frequency.
-fn describe_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
+fn describe_channel(problem: &EstimationProblem<'_>, fit: &Fit, floor: &NoiseFloor) -> String {
     let count = problem.noise.len();
-    let normalised_rms: Vec<f64> = fit
+    let in_floors: Vec<f64> = fit
         .train
         .channel_rms
         .iter()
-        .zip(&problem.noise)
-        .map(|(gap, noise)| gap / noise)
+        .zip(&floor.channels)
+        .map(|(gap, floor)| gap / floor)
         .collect();
     let Some(worst) =
-        ChannelId::first(count).max_by(|a, b| normalised_rms[*a].total_cmp(&normalised_rms[*b]))
+        ChannelId::first(count).max_by(|a, b| in_floors[*a].total_cmp(&in_floors[*b]))
     else {
         return String::new();
     };
     let channel = &problem.dataset.channels[worst];
     let tested = fit.test.channel_rms[worst];
     let mut text = format!(
-        "The residual of the training records is largest in {}: {} or {} times its noise; that of the test records is \
-         {} or {} times.",
+        "The residual of the training records is largest in {}: {} or {} noise floors; that of the test records is \
+         {} or {} noise floors.",
         channel.name,
         format_quantity(fit.train.channel_rms[worst], 3, &channel.unit),
-        format_number(normalised_rms[worst], 3),
+        format_floors(in_floors[worst]),
         format_quantity(tested, 3, &channel.unit),
-        format_number(tested / problem.noise[worst], 3)
+        format_floors(tested / floor.channels[worst])
     );
     if let Some(worst) = find_worst_window(problem, fit) {
         let window = &problem.train.windows[worst];

@@ -2,7 +2,7 @@
 //! the training records with the largest residuals of the original model.
 
 use eomgen_plot::{Panel, Series, SeriesRole, TimeHistory, time_history_at};
-use eomgen_records::windows::{Window, Windows};
+use eomgen_records::windows::{MAX_DELAY_SAMPLES, MAX_LEAD_SAMPLES, Window, Windows};
 use maud::{Markup, html};
 
 use crate::fit::fit_result::Fit;
@@ -27,8 +27,9 @@ pub(crate) fn draw_overlays(
     let test = list_residuals(before, after, |fit| &fit.test);
     let seen = RecordColumns::from_records(problem, (&problem.test, 0), &test);
     let caption = format!(
-        "{}, which was not used in the fit.",
-        name_record(&problem.test.records[0])
+        "{}, which was not used in the fit. {}",
+        name_record(&problem.test.records[0]),
+        explain_windows(problem)
     );
     let whole = seen.draw(0..seen.times.len(), &caption);
     let train = list_residuals(before, after, |fit| &fit.train);
@@ -47,6 +48,23 @@ pub(crate) fn draw_overlays(
             h3 { "Largest residual of the original model" }
             (trained.draw(stretch, &caption))
         }
+    }
+}
+
+/// Explains why simulated curves have gaps and do not start at the first measured sample.
+fn explain_windows(problem: &EstimationProblem<'_>) -> String {
+    match (problem.dataset.window, problem.estimates_initial_states()) {
+        (Some(_), true) => {
+            format!(
+                "The record is divided into windows. Each simulation starts from a state that is fitted to the whole \
+                 window, so it need not start on the measurement. The first {MAX_DELAY_SAMPLES} and the last \
+                 {MAX_LEAD_SAMPLES} samples of a window allow for delays of sensors and are not compared."
+            )
+        }
+        (Some(_), false) => {
+            "The record is divided into windows, which are simulated separately.".to_owned()
+        }
+        (None, _) => "The simulation starts at the beginning of the record.".to_owned(),
     }
 }
 

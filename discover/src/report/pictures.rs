@@ -30,18 +30,23 @@ pub(crate) fn draw_force_section(force: &ResidualForce, after: Option<&ResidualF
         }
     };
     let headings = [
-        "a force on",
-        "explained fraction of the squares, by a force that depends on speed or position",
+        "force on",
+        "explained fraction, by a force that depends on speed or position",
         "explained fraction, by a force that depends on time",
     ];
     html! {
+        p { "A force in one of these equations explains this fraction of the squared residual:" }
         (table(&headings, &rows))
+        h3 { "Missing force on " (quantity_symbol(force.profiled_equation_name())) }
         p.note {
             "Force in this equation, with error bars of one standard deviation"
             @if after.is_some() { ", before and after the found effects are added" }
             ". A line connects the values along a rate, a time or a frequency; crosses are "
             "single values. "
-            "Parts that the records do not show are omitted."
+            "Values with a standard deviation above half of the largest force are omitted."
+            @if after.is_some() {
+                " A picture is marked as \"before only\" if this applies to all values after the search."
+            }
         }
         (responsive_figure("Estimated from all training records together.", |width| {
             Ok(figures_of_force(force, after, width))

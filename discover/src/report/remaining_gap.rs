@@ -89,6 +89,25 @@ impl RemainingGap {
         }
     }
 
+    /// Describes the decrease of the gap to that of another model. If the largest gaps are in
+    /// different channels, both are named.
+    pub(crate) fn describe_fall_to(&self, after: &Self) -> String {
+        let is_number = self.floors.is_finite() && after.floors.is_finite();
+        let (before, left) = (self.describe(), after.describe());
+        match (self.is_only, self.channel == after.channel && is_number) {
+            (true, _) => format!("The residual fell from {before} to {left}"),
+            (false, true) => format!(
+                "The residual of {} fell from {} noise floors to {} noise floors",
+                self.channel,
+                format_floors(self.floors),
+                format_floors(after.floors)
+            ),
+            (false, false) => {
+                format!("The largest residual of a channel fell from {before} to {left}")
+            }
+        }
+    }
+
     /// Returns an explanation to be appended to the text of `describe`.
     pub(crate) fn explain_level(&self) -> &'static str {
         match self.floors < thresholds::MAX_FLOORS_OF_CORRECT_MODEL {
@@ -98,7 +117,8 @@ impl RemainingGap {
     }
 }
 
-fn format_floors(floors: f64) -> String {
+/// Formats a number of noise floors.
+pub(crate) fn format_floors(floors: f64) -> String {
     match floors < 10.0 {
         true => format!("{floors:.1}"),
         false => format_number(floors, 3),

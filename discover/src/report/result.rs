@@ -11,6 +11,7 @@ use crate::report::origin::Origin;
 use crate::report::playback::Playback;
 use crate::report::resimulation::Resimulation;
 use crate::search::acceptance::TestStatistics;
+use crate::search::search_result::BestOfRound;
 use crate::thresholds;
 
 /// Values for the training and the test records.
@@ -68,6 +69,8 @@ pub struct CommonResult {
     pub refitted: BTreeMap<String, EstimateWithUnit>,
     /// Sensor of each channel, by the name of the channel.
     pub sensors: BTreeMap<String, SensorEstimate>,
+    /// Noise floor over all channels, in standard deviations of the noise.
+    pub noise_floor: f64,
     /// Sentences about the location of the difference.
     pub location: String,
     /// Notes.
@@ -126,8 +129,8 @@ pub(crate) struct ResultFigures {
     pub residuals: Markup,
     /// Next experiments with their predictions.
     pub experiments: Markup,
-    /// Name of the equation of the residual force, and the profiles of the force.
-    pub force: Option<(String, Markup)>,
+    /// Comparison of the equations, and profiles of the residual force.
+    pub force: Option<Markup>,
 }
 
 /// Result of a comparison.
@@ -274,9 +277,10 @@ pub struct RejectedEffect {
     pub at: EffectSite,
     /// Reason for the rejection.
     pub reason: String,
-    /// Fraction of the squared residual by which the best effect of the same round would reduce it,
-    /// if the reason is a predicted reduction.
-    pub best_reduction: Option<f64>,
+    /// Best effect of the same round, if the reason is a reduction of the residual.
+    pub best_of_round: Option<BestOfRound>,
+    /// True if the effect was fitted, at least to the initial segments of windows.
+    pub is_fitted: bool,
     /// Experiment that shows the effect.
     pub experiment: String,
     /// Proposed input for the experiment, if it was computed.

@@ -91,10 +91,7 @@ pub fn compare(
         overlay: draw_overlays(&problem, &fit, None),
         residuals: draw_residuals(&problem, &fit, None),
         experiments: Markup::default(),
-        force: force.as_ref().map(|force| {
-            let equation = force.profiled_equation_name().to_owned();
-            (equation, draw_force_section(force, None))
-        }),
+        force: force.as_ref().map(|force| draw_force_section(force, None)),
     };
     let nuisances = list_nuisances(&problem, &fit);
     let mut notes = [
@@ -120,7 +117,8 @@ pub fn compare(
             gap: compute_gap(&problem, &fit, None, &floor),
             refitted: list_refitted(&fit, &[]),
             sensors: list_sensors(&problem, &fit),
-            location: describe_location(&problem, &fit, force.as_ref()),
+            noise_floor: floor.rms,
+            location: describe_location(&problem, &fit, &floor, force.as_ref()),
             notes,
             nuisances,
             origin: Origin::record_inputs(specification, dataset, seed),
@@ -180,7 +178,6 @@ pub fn discover_until(
         force,
         notes: of_constraints,
     } = null?;
-    let mut location = describe_location(&problem, &fit, force.as_ref());
     stop.start_timer();
     let found = search(&problem, fit, catalogue, before.rms, progress);
     stop.check_not_stopped()?;
@@ -198,6 +195,7 @@ pub fn discover_until(
     let after = after.and_then(|(force, last)| {
         estimate_residual_force(&problem, last, Some(force.profiled_equation_name()))
     });
+    let mut location = describe_location(&problem, null, &floor, force.as_ref());
     if let Some(after) = &after {
         location += &format!(" {}", describe_remaining_force(after));
     }
@@ -221,10 +219,9 @@ pub fn discover_until(
         overlay: draw_overlays(&problem, null, found.extended_fit.as_ref()),
         residuals: draw_residuals(&problem, null, found.extended_fit.as_ref()),
         experiments: draw_experiments(&problem, &experiments.files),
-        force: force.as_ref().map(|force| {
-            let equation = force.profiled_equation_name().to_owned();
-            (equation, draw_force_section(force, after.as_ref()))
-        }),
+        force: force
+            .as_ref()
+            .map(|force| draw_force_section(force, after.as_ref())),
     };
     let gap = compute_gap(&problem, null, Some(best), &floor);
     let nuisances = list_nuisances(&problem, best);
@@ -304,6 +301,7 @@ pub fn discover_until(
             gap,
             refitted: list_refitted(best, &found.accepted),
             sensors: list_sensors(&problem, best),
+            noise_floor: floor.rms,
             location,
             notes,
             nuisances,
@@ -334,14 +332,14 @@ fn note_of_unconfirmed(of: &UnconfirmedHypothesis, null: &Fit, floor: f64) -> St
         .map(|id| format_unknown(fit, *id, floor))
         .collect();
     format!(
-        "with {label} ({}) the training residual is {:.1} standard deviations instead of {:.1}; the test \
+        "with {label} ({}) the training residual is {:.1} noise floors instead of {:.1}; the test \
          records do not confirm it: {:.1} instead of {:.1}. They may lack another effect, or be from another \
          machine",
         sizes.join(", "),
-        fit.train.rms,
-        null.train.rms,
-        fit.test.rms,
-        null.test.rms
+        fit.train.rms / floor,
+        null.train.rms / floor,
+        fit.test.rms / floor,
+        null.test.rms / floor
     )
 }
 

@@ -135,8 +135,8 @@ fn summarise_effects(
     Summary {
         headline: format!("Found: {found}."),
         details: format!(
-            "The extended model {closed}. The residual fell from {} to {left}{}.",
-            before.describe(),
+            "The extended model {closed}. {}{}.",
+            before.describe_fall_to(after),
             after.explain_level()
         ),
     }

@@ -69,12 +69,12 @@ pub fn draw_profiles(
         .collect();
     let frames = drawn.iter().map(|(picture, series)| Frame {
         panel: Panel {
-            title: picture.title.to_owned(),
+            title: title_picture(picture, series, after.is_some()),
             quantity: "force".to_owned(),
             unit: equation.force_unit().to_owned(),
             series: series
                 .iter()
-                .filter(|(_, points)| points.1.iter().any(|v| v.is_finite()))
+                .filter(|(_, points)| has_values(points))
                 .map(|(role, points)| Series {
                     label: match role {
                         SeriesRole::After => "after",
@@ -99,6 +99,22 @@ pub fn draw_profiles(
     plate_at(&figure, width).unwrap_or_default()
 }
 
+/// Returns the title of a picture. A picture has no legend if the force after the search is too
+/// uncertain to be drawn; its title states this.
+fn title_picture(picture: &Picture, series: &[(SeriesRole, Points)], has_after: bool) -> String {
+    let is_drawn =
+        |(role, points): &(SeriesRole, Points)| *role == SeriesRole::After && has_values(points);
+    match has_after && !series.iter().any(is_drawn) {
+        true => format!("{}, before only", picture.title),
+        false => picture.title.to_owned(),
+    }
+}
+
+/// Returns true if a curve has a drawn point.
+fn has_values(points: &Points) -> bool {
+    points.1.iter().any(|value| value.is_finite())
+}
+
 fn list_pictures(equation: &Equation) -> [Picture; 6] {
     let over = |symbol, unit| Axes::Quantity { symbol, unit };
     let (position, name) = match equation.unit {
@@ -109,12 +125,12 @@ fn list_pictures(equation: &Equation) -> [Picture; 6] {
         "m" => (
             "speed",
             "over the speed",
-            "along the speed, over the largest speed of each window",
+            "one value per window, over its largest speed",
         ),
         _ => (
             "rate",
             "over the rate",
-            "along the rate, over the largest rate of each window",
+            "one value per window, over its largest rate",
         ),
     };
     [
@@ -173,11 +189,13 @@ fn list_pictures(equation: &Equation) -> [Picture; 6] {
 /// Abscissae and ordinates of a curve.
 type Points = (Vec<f64>, Vec<f64>);
 
-/// Returns the largest standard deviation to draw, computed from the force before.
+/// Returns the largest standard deviation to draw, computed from the force before. Values much
+/// less accurate than the others do not count, because they would determine the axis.
 fn compute_largest_sd(profile: &Profile) -> f64 {
+    let accurate = thresholds::MAX_SD_OVER_MEDIAN * compute_median_sd(profile);
     let known = profile.values.iter().zip(&profile.sd);
     let largest = known
-        .filter(|(value, sd)| **sd > 0.0 && value.abs() > 2.0 * **sd)
+        .filter(|(value, sd)| is_known(**sd, accurate) && value.abs() > 2.0 * **sd)
         .map(|(value, _)| value.abs())
         .fold(0.0, f64::max);
     let finite = profile.sd.iter().filter(|sd| **sd > 0.0);
@@ -185,6 +203,15 @@ fn compute_largest_sd(profile: &Profile) -> f64 {
         true => thresholds::MAX_DRAWN_SD * largest,
         false => 3.0 * finite.copied().fold(f64::INFINITY, f64::min),
     }
+}
+
+/// Returns the median of the positive standard deviations; NaN without any.
+fn compute_median_sd(profile: &Profile) -> f64 {
+    let mut sds: Vec<f64> = (profile.sd.iter().copied())
+        .filter(|sd| *sd > 0.0)
+        .collect();
+    sds.sort_by(f64::total_cmp);
+    sds.get(sds.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 /// Returns true if the knots over the time of a window resolve the strongest frequency of the
@@ -242,7 +269,7 @@ fn build_curve(profile: &Profile, is_line: bool, (lowest, most): (f64, f64)) -> 
 
 #[cfg(test)]
 mod tests {
-    use super::build_curve;
+    use super::{build_curve, compute_largest_sd};
     use crate::residual_force::types::Profile;
 
     /// Abscissae of a plotted curve must not decrease.
@@ -262,6 +289,18 @@ mod tests {
             assert_eq!((drawn(2.0), drawn(3.0)), (if is_line { 2 } else { 4 }, 0));
             assert!(values[0].is_nan() && over[0] < 0.0 && over[over.len() - 1] > 5.0);
         }
+    }
+
+    #[test]
+    fn inaccurate_points_do_not_determine_the_axis() {
+        let profile = Profile {
+            arguments: vec![-2.0, -1.0, 0.0, 1.0, 2.0],
+            values: vec![4.0, 4.1, 95.0, -4.0, -4.2],
+            sd: vec![0.3, 0.5, 45.0, 0.5, 0.3],
+            ..Profile::default()
+        };
+        let most = compute_largest_sd(&profile);
+        assert!((0.5..5.0).contains(&most), "{most}");
     }
 
     #[test]

@@ -27,6 +27,7 @@ pub fn select_answer(
         candidates,
         screening,
         mut fitted_hypotheses,
+        ..
     } = tested.swap_remove(best?);
     fitted_hypotheses.retain(|fitted| fitted.explains_records);
     if let Some(answer) = select_best_fit(&fitted_hypotheses) {
@@ -38,6 +39,7 @@ pub fn select_answer(
         candidates,
         screening,
         fitted_hypotheses,
+        preliminary_outcomes: Vec::new(),
     };
     select_hypothesis(round.context, follow_orders(round.context, tested))
 }

@@ -43,7 +43,8 @@ pub fn eliminate_backwards(
         found.rejected.push(RejectedCandidate {
             candidate,
             reason,
-            best_reduction: None,
+            best_of_round: None,
+            is_fitted: true,
             is_untestable: false,
             p_value: None,
         });

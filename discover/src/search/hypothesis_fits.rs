@@ -32,31 +32,93 @@ pub struct FittedHypothesis {
     pub p_value: Option<f64>,
 }
 
+/// Result of a preliminary fit.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PreliminaryOutcome {
+    /// Remaining fraction of the squared residual.
+    Remaining {
+        /// The fraction. If it exceeds 1, the fit did not converge.
+        fraction: f64,
+        /// True if the residual is that of whole windows, false for their initial segments.
+        is_whole: bool,
+    },
+    /// The fit failed for this reason.
+    Failed(String),
+}
+
+impl PreliminaryOutcome {
+    /// Returns the remaining fraction of a fit that converged.
+    pub fn remaining_fraction(&self) -> Option<f64> {
+        match self {
+            Self::Remaining { fraction, .. } if *fraction <= 1.0 => Some(*fraction),
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for PreliminaryOutcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Remaining { fraction, is_whole } => {
+                let residual = match is_whole {
+                    true => "squared residual",
+                    false => "initial-segment residual",
+                };
+                match self.remaining_fraction() {
+                    Some(_) => write!(f, "{:.1} % of the {residual} remains", 100.0 * fraction),
+                    None => write!(
+                        f,
+                        "its fit did not converge: the {residual} did not decrease"
+                    ),
+                }
+            }
+            Self::Failed(reason) => write!(f, "not fitted: {reason}"),
+        }
+    }
+}
+
+/// Preliminary fits that succeeded, the best first, and the results of all fits.
+pub struct PreliminaryFits {
+    /// Fits that succeeded.
+    pub fits: Vec<(Hypothesis, PreliminaryFit)>,
+    /// Results of all fits, by the responses of their candidates.
+    pub outcomes: Vec<(Vec<ResponseId>, PreliminaryOutcome)>,
+}
+
 /// Fits hypotheses to the initial segments of windows in parallel. The best fit is first.
 pub fn run_preliminary_fits(
     pool: &CandidatePool<'_>,
     hypotheses: Vec<Hypothesis>,
 ) -> Vec<(Hypothesis, PreliminaryFit)> {
+    run_reported_fits(pool, hypotheses).fits
+}
+
+/// Runs preliminary fits like [`run_preliminary_fits`], and returns the results of all fits.
+pub fn run_reported_fits(pool: &CandidatePool<'_>, hypotheses: Vec<Hypothesis>) -> PreliminaryFits {
     let without_candidates = pool.screening.predict(&[]).cost;
-    let of = match pool.uses_whole_windows {
-        true => "squared residual",
-        false => "initial-segment residual",
-    };
     // Each result is reported when its fit ends, because some fits take long.
     let fitted = |hypothesis: Hypothesis| {
         let preliminary = hypothesis::fit_preliminary(pool, &hypothesis);
-        let left = match &preliminary {
-            Ok(fit) => describe_remaining(fit.cost / without_candidates, of),
-            Err(error) => describe_failure(error),
+        let outcome = match &preliminary {
+            Ok(fit) => PreliminaryOutcome::Remaining {
+                fraction: fit.cost / without_candidates,
+                is_whole: pool.uses_whole_windows,
+            },
+            Err(error) => PreliminaryOutcome::Failed(shorten_failure(error)),
         };
         let label = hypothesis::describe_hypothesis(pool, &hypothesis);
-        (pool.context.progress)(&format!("  {label}: {left}"));
-        Some((hypothesis, preliminary.ok()?))
+        (pool.context.progress)(&format!("  {label}: {outcome}"));
+        let responses = hypothesis.responses.clone();
+        (
+            preliminary.ok().map(|fit| (hypothesis, fit)),
+            (responses, outcome),
+        )
     };
-    let mut found: Vec<(Hypothesis, PreliminaryFit)> =
-        hypotheses.into_par_iter().filter_map(fitted).collect();
-    found.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
-    found
+    let (fits, outcomes): (Vec<Option<(Hypothesis, PreliminaryFit)>>, Vec<_>) =
+        hypotheses.into_par_iter().map(fitted).unzip();
+    let mut fits: Vec<(Hypothesis, PreliminaryFit)> = fits.into_iter().flatten().collect();
+    fits.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+    PreliminaryFits { fits, outcomes }
 }
 
 /// Continues preliminary fits as full fits in parallel.
@@ -72,8 +134,8 @@ pub fn run_full_fits(
         let new = full_fit::complete_fit(pool.context.problem, preliminary);
         let tested = new.map(|new| test_fit(pool, &hypothesis, new, held_out.as_ref()));
         let outcome = match &tested {
-            Ok(fitted) => fitted.to_string(),
-            Err(error) => describe_failure(error),
+            Ok(fitted) => fitted.describe(pool.context.floor),
+            Err(error) => format!("not fitted: {}", shorten_failure(error)),
         };
         let label = hypothesis::describe_hypothesis(pool, &hypothesis);
         (pool.context.progress)(&format!("  {label}: {outcome}"));
@@ -82,19 +144,11 @@ pub fn run_full_fits(
     preliminaries.into_par_iter().filter_map(fitted).collect()
 }
 
-/// Describes the remaining fraction of a residual. If it exceeds 1, the fit did not converge.
-fn describe_remaining(fraction: f64, of: &str) -> String {
-    match fraction <= 1.0 {
-        true => format!("{:.1} % of the {of} remains", 100.0 * fraction),
-        false => format!("its fit did not converge: the {of} did not decrease"),
-    }
-}
-
-/// Describes a failed fit in one line, without the location in the candidate's specification.
-fn describe_failure(error: &DiscoverError) -> String {
+/// Returns the first line of an error, without the location in the candidate's specification.
+fn shorten_failure(error: &DiscoverError) -> String {
     let message = error.to_string();
     let line = message.lines().next().unwrap_or_default();
-    format!("not fitted: {}", line.trim_start_matches("error: "))
+    line.trim_start_matches("error: ").to_owned()
 }
 
 /// Tests the full fit of a hypothesis.
@@ -127,39 +181,43 @@ fn test_fit(
     }
 }
 
-impl fmt::Display for FittedHypothesis {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (train, test) = (self.fit.train.rms, self.fit.test.rms);
-        if let Err(rejection @ Rejection::Interrupted) = &self.verdict {
-            return write!(
-                f,
-                "a residual of {train:.2} standard deviations of the noise in training records; {rejection}"
-            );
-        }
-        write!(
-            f,
-            "residuals of {train:.2} (training) and {test:.2} (test) standard deviations of the noise; "
-        )?;
+impl FittedHypothesis {
+    /// Describes the residuals and the result of the acceptance test. `floor`: noise floor, in
+    /// standard deviations of the noise.
+    pub fn describe(&self, floor: f64) -> String {
+        let (train, test) = (self.fit.train.rms / floor, self.fit.test.rms / floor);
         match &self.verdict {
-            Ok(_) => write!(f, "accepted"),
-            Err(rejection) => write!(f, "{rejection}"),
+            Err(rejection @ Rejection::Interrupted) => {
+                format!("a training residual of {train:.2} noise floors; {rejection}")
+            }
+            Err(rejection) => format!("{}; {rejection}", describe_residuals(train, test)),
+            Ok(_) => format!("{}; accepted", describe_residuals(train, test)),
         }
     }
 }
 
+/// Describes the residuals of a fit, in noise floors.
+pub(crate) fn describe_residuals(train: f64, test: f64) -> String {
+    format!("residuals of {train:.2} (training) and {test:.2} (test) noise floors")
+}
+
 #[cfg(test)]
 mod tests {
-    use super::describe_remaining;
+    use super::PreliminaryOutcome;
 
     #[test]
     fn failed_fits_have_no_percentage() {
-        let of = "initial-segment residual";
+        let outcome = |fraction: f64| PreliminaryOutcome::Remaining {
+            fraction,
+            is_whole: false,
+        };
         assert_eq!(
-            describe_remaining(0.178, of),
+            outcome(0.178).to_string(),
             "17.8 % of the initial-segment residual remains"
         );
         for fraction in [1.2, 397189.317, f64::INFINITY, f64::NAN] {
-            assert!(!describe_remaining(fraction, of).contains('%'));
+            assert!(!outcome(fraction).to_string().contains('%'));
+            assert_eq!(outcome(fraction).remaining_fraction(), None);
         }
     }
 }

@@ -138,9 +138,8 @@ impl Search<'_> {
             }
             let (number, most) = (found.accepted.len() + 1, thresholds::MAX_EFFECTS);
             progress(&format!(
-                "effect {number} of at most {most}: the residual is {:.1} standard deviations, the noise floor \
-                 {floor:.1}",
-                fit.rms()
+                "effect {number} of at most {most}: the residual over all channels is {:.1} noise floors",
+                fit.rms() / floor
             ));
             let is_first_round = found.accepted.is_empty();
             let round = SearchRound {
@@ -151,7 +150,7 @@ impl Search<'_> {
             // Pairs are numerous, so laws are scanned first: a single law may explain the records.
             if is_first_round && singles.lacks_effect() && !problem.stop.is_requested() {
                 is_scanned = true;
-                note_rejected(&mut found.rejected, &singles.tested);
+                note_rejected(&mut found.rejected, &singles.tested, floor);
                 self.scan_laws(found);
                 if !found.accepted.is_empty() || found.unfinished.is_some() {
                     break;
@@ -169,7 +168,7 @@ impl Search<'_> {
                 break;
             }
             problem.stop.check_not_stopped()?;
-            note_rejected(&mut found.rejected, &tested);
+            note_rejected(&mut found.rejected, &tested, floor);
             let unconfirmed = find_unconfirmed(&mut tested, fit);
             let selected = select_answer(&round, tested);
             if problem.stop.is_time_over() {
@@ -207,7 +206,11 @@ impl Search<'_> {
         };
         found.curve = curve;
         if let Some(tested) = &tested {
-            note_rejected(&mut found.rejected, std::slice::from_ref(tested));
+            note_rejected(
+                &mut found.rejected,
+                std::slice::from_ref(tested),
+                self.floor,
+            );
         }
         note_unfitted(&mut found.rejected, unfitted);
         let Some(mut tested) = tested else {
@@ -228,7 +231,8 @@ impl Search<'_> {
                 candidate,
                 reason: "with a scanned law, the records are explained better without this effect"
                     .to_owned(),
-                best_reduction: None,
+                best_of_round: None,
+                is_fitted: true,
                 is_untestable: false,
                 p_value: None,
             });

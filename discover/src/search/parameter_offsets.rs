@@ -110,6 +110,7 @@ pub fn fit_similar_offsets(
         candidates,
         screening,
         fitted_hypotheses,
+        preliminary_outcomes: Vec::new(),
     };
     Some(SimilarOffsets {
         tested_pool: tested,
@@ -158,6 +159,7 @@ pub fn fit_similar_pairs(
             candidates,
             screening,
             fitted_hypotheses,
+            preliminary_outcomes: Vec::new(),
         },
         selected_responses: own,
     })

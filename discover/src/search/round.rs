@@ -18,7 +18,7 @@ use crate::search::pairs::fit_pairs;
 use crate::search::parameter_offsets::list_offsets;
 use crate::search::pool::CandidatePool;
 use crate::search::screening::{Screening, screen_candidates};
-use crate::search::single_candidates::fit_singles;
+use crate::search::single_candidates::{SingleFits, fit_singles};
 use crate::search::tested_pool::TestedPool;
 use crate::thresholds;
 
@@ -196,15 +196,18 @@ impl SearchRound<'_> {
             window.window_fraction(),
         );
         let (mut from, mut fitted_hypotheses) = (CandidateId::new(0), Vec::new());
+        let mut preliminary_outcomes = Vec::new();
         if repeating.is_empty() || self.predicts_enough(&screened) {
-            fitted_hypotheses =
-                fit_singles(&self.create_pool(window, &candidates, &screened), from);
+            let singles = fit_singles(&self.create_pool(window, &candidates, &screened), from);
+            fitted_hypotheses = singles.fitted_hypotheses;
+            preliminary_outcomes = singles.preliminary_outcomes;
             if repeating.is_empty() || fitted_hypotheses.iter().any(|fitted| self.is_close(fitted))
             {
                 return Some(TestedPool {
                     candidates,
                     screening: screened,
                     fitted_hypotheses,
+                    preliminary_outcomes,
                 });
             }
             from = CandidateId::new(candidates.len());
@@ -230,17 +233,18 @@ impl SearchRound<'_> {
                 candidates,
                 screening: screened,
                 fitted_hypotheses,
+                preliminary_outcomes,
             });
         }
         let screened = rescreened;
-        fitted_hypotheses.extend(fit_singles(
-            &self.create_pool(window, &candidates, &screened),
-            from,
-        ));
+        let periodic = fit_singles(&self.create_pool(window, &candidates, &screened), from);
+        fitted_hypotheses.extend(periodic.fitted_hypotheses);
+        preliminary_outcomes.extend(periodic.preliminary_outcomes);
         Some(TestedPool {
             candidates,
             screening: screened,
             fitted_hypotheses,
+            preliminary_outcomes,
         })
     }
 
@@ -298,7 +302,10 @@ impl SearchRound<'_> {
             &offsets,
             window.window_fraction(),
         );
-        let fitted_hypotheses = fit_singles(
+        let SingleFits {
+            fitted_hypotheses,
+            preliminary_outcomes,
+        } = fit_singles(
             &self.create_pool(window, &offsets, &screening),
             CandidateId::new(0),
         );
@@ -306,6 +313,7 @@ impl SearchRound<'_> {
             candidates: offsets,
             screening,
             fitted_hypotheses,
+            preliminary_outcomes,
         }
     }
 

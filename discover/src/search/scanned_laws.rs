@@ -129,6 +129,7 @@ fn fit_scanned_laws(context: RoundContext<'_>, laws: Vec<ScannedLaw>) -> TestedP
         candidates,
         screening,
         fitted_hypotheses,
+        preliminary_outcomes: Vec::new(),
     }
 }
 
@@ -159,7 +160,8 @@ fn reject_unfitted(candidate: Candidate, reason: String) -> RejectedCandidate {
     RejectedCandidate {
         candidate,
         reason,
-        best_reduction: None,
+        best_of_round: None,
+        is_fitted: false,
         is_untestable: false,
         p_value: None,
     }

@@ -31,6 +31,15 @@ pub struct TestGap {
     pub after: f64,
 }
 
+/// Best candidate of a round, for comparison with rejected candidates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BestOfRound {
+    /// Effect and site, as in [`Candidate::label`].
+    pub label: String,
+    /// Its reduction of the residual, in words.
+    pub reduction: String,
+}
+
 /// Rejected candidate.
 #[derive(Clone, Debug)]
 pub struct RejectedCandidate {
@@ -38,9 +47,10 @@ pub struct RejectedCandidate {
     pub candidate: Candidate,
     /// Reason for the rejection.
     pub reason: String,
-    /// Fraction of the squared residual by which the best candidate of the same round would reduce
-    /// it. It is reported with a predicted reduction in the reason.
-    pub best_reduction: Option<f64>,
+    /// Best candidate of the same round, for comparison with a reduction in the reason.
+    pub best_of_round: Option<BestOfRound>,
+    /// True if the candidate was fitted, at least to the initial segments of windows.
+    pub is_fitted: bool,
     /// True if the records cannot show the effect.
     pub is_untestable: bool,
     /// P-value of the test records; `None` if the candidate was not fitted.

@@ -67,6 +67,7 @@ pub fn select_hypothesis(
         candidates,
         screening,
         fitted_hypotheses,
+        ..
     } = similar.tested_pool;
     let (better, others): (Vec<FittedHypothesis>, Vec<FittedHypothesis>) = fitted_hypotheses
         .into_iter()
@@ -76,6 +77,7 @@ pub fn select_hypothesis(
             candidates,
             screening,
             fitted_hypotheses: better,
+            preliminary_outcomes: Vec::new(),
         };
         return select_best(context, better);
     }
@@ -106,6 +108,7 @@ fn with_other_halves(context: RoundContext<'_>, tested: TestedPool) -> TestedPoo
         candidates,
         screening,
         mut fitted_hypotheses,
+        ..
     } = tested;
     let pool = CandidatePool::new(
         context,
@@ -129,6 +132,7 @@ fn with_other_halves(context: RoundContext<'_>, tested: TestedPool) -> TestedPoo
         candidates,
         screening,
         fitted_hypotheses,
+        preliminary_outcomes: Vec::new(),
     }
 }
 
@@ -140,6 +144,7 @@ fn select_best(context: RoundContext<'_>, tested: TestedPool) -> Option<Selected
         candidates,
         screening,
         mut fitted_hypotheses,
+        ..
     } = tested;
     let least = select_best_fit(&fitted_hypotheses)?;
     let candidate = |response: ResponseId| &candidates[screening.responses[response].candidate];

@@ -4,20 +4,41 @@
 use crate::fit::preliminary_fit::PreliminaryFit;
 use crate::ids::{CandidateId, ResponseId};
 use crate::search::hypothesis::Hypothesis;
-use crate::search::hypothesis_fits::{FittedHypothesis, run_full_fits, run_preliminary_fits};
+use crate::search::hypothesis_fits::{
+    FittedHypothesis, PreliminaryFits, PreliminaryOutcome, run_full_fits, run_preliminary_fits,
+    run_reported_fits,
+};
 use crate::search::pool::CandidatePool;
 use crate::search::shape_restarts::restart_shapes;
 use crate::thresholds;
 
+/// Full and preliminary fits of single candidates.
+pub struct SingleFits {
+    /// Hypotheses that were fitted in full.
+    pub fitted_hypotheses: Vec<FittedHypothesis>,
+    /// Results of the preliminary fits.
+    pub preliminary_outcomes: Vec<(ResponseId, PreliminaryOutcome)>,
+}
+
 /// Fits the best single candidates from index `from` on, and candidates similar to them.
-pub fn fit_singles(pool: &CandidatePool<'_>, from: CandidateId) -> Vec<FittedHypothesis> {
+pub fn fit_singles(pool: &CandidatePool<'_>, from: CandidateId) -> SingleFits {
     let mut ranking = pool.rank_responses();
     ranking.retain(|response| pool.screening.responses[*response].candidate >= from);
+    let hypotheses = choose_hypotheses(pool, &ranking);
     if let Some(best) = ranking.first() {
-        let (count, best) = (ranking.len(), pool.candidate(*best).label());
-        (pool.context.progress)(&format!("{count} candidates worth fitting; best: {best}"));
+        let best = pool.candidate(*best).label();
+        let count = match (ranking.len(), hypotheses.len()) {
+            (all, fitted) if all == fitted => format!("{all} candidates worth fitting"),
+            (all, fitted) => {
+                format!("{all} candidates worth fitting, the best {fitted} are fitted")
+            }
+        };
+        (pool.context.progress)(&format!("{count}; best: {best}"));
     }
-    let mut preliminaries = run_preliminary_fits(pool, choose_hypotheses(pool, &ranking));
+    let PreliminaryFits {
+        fits: mut preliminaries,
+        outcomes,
+    } = run_reported_fits(pool, hypotheses);
     if !pool
         .context
         .fit
@@ -58,7 +79,13 @@ pub fn fit_singles(pool: &CandidatePool<'_>, from: CandidateId) -> Vec<FittedHyp
         fitted_hypotheses.extend(run_full_fits(pool, wanted));
     }
     restart_shapes(pool, &mut fitted_hypotheses);
-    fitted_hypotheses
+    let outcomes = outcomes.into_iter();
+    SingleFits {
+        fitted_hypotheses,
+        preliminary_outcomes: outcomes
+            .map(|(responses, outcome)| (responses[0], outcome))
+            .collect(),
+    }
 }
 
 /// Fits candidates with a sufficient predicted improvement that are similar to a given one. At most

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use eomgen_model_spec::hidden_characters::escape_hidden;
+use eomgen_model_spec::suggest::nearest;
 
 use crate::decimal::Decimal;
 use crate::description::columns::ColumnKey;
@@ -33,12 +34,14 @@ pub fn find_columns(
         let name = match key {
             ColumnKey::Name(name) => &name.text,
             ColumnKey::Number(number, _) if *number <= there.len() => return Ok(number - 1),
-            ColumnKey::Number(number, _) => {
+            ColumnKey::Number(number, span) => {
                 let count = there.len();
-                return Err(Refusal::line_error(
+                return Err(Refusal::column_error(
                     path,
                     line,
+                    *span,
                     format!("there is no column {number}; the file has {count}"),
+                    None,
                 ));
             }
         };
@@ -62,10 +65,12 @@ pub fn find_columns(
                     Some(by) => format!(": its columns are separated by {by}"),
                     None => String::new(),
                 };
-                Err(Refusal::line_error(
+                Err(Refusal::column_error(
                     path,
                     line,
+                    key.span(),
                     format!("there is no column `{name}`; the file has {shown}{parted}"),
+                    nearest(name, there.iter().map(|header| header.trim())),
                 ))
             }
         }

@@ -184,7 +184,8 @@ impl RecordReader<'_> {
         let columns = self.read_columns();
         let mut wanted = vec![&self.description.time.column.column];
         wanted.extend(columns.iter().map(|column| &column.column.column));
-        let mut table = columns::read_columns(place, &self.description.format, &wanted)?;
+        let mut table = columns::read_columns(place, &self.description.format, &wanted)
+            .map_err(|refusal| refusal.locate_column(&self.description.source))?;
         let clock = Clock::new(&table, self.time, self.counts_from_first);
         let read_times = std::mem::replace(&mut table.columns[0], clock.times);
         for (column, read) in table.columns[1..].iter_mut().zip(&columns) {

@@ -278,6 +278,7 @@ fn read_record(
     read_inputs(dataset, name, (model, driven)).map_err(|refusal| match refusal {
         Refusal::Description(found) => Error::Specification(found),
         Refusal::Record(message) => Error::Request(message),
+        Refusal::Column(missing) => Error::Request(missing.message),
     })
 }
 

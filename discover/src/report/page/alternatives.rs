@@ -3,6 +3,7 @@
 use eomgen_page::{prose, section, table};
 use maud::{Markup, html};
 
+use crate::catalogue::effect::effect_in_words;
 use crate::experiment::next_experiment::{ExperimentFile, NextExperiment};
 use crate::report::experiment::describe_experiment;
 use crate::report::quantity::format_readable;
@@ -98,30 +99,47 @@ pub(super) fn list_rejected(list: &[RejectedEffect]) -> Markup {
         "Rejected effects",
         &html! {
             p {
-                @match list.len() {
-                    1 => { "One other effect was tested." }
-                    count => { (count) " other effects and sites were tested." }
-                }
-                @if let Some(best) = describe_best(list) { " " (best) }
+                (describe_counts(list))
+                @if let Some(best) = describe_best(list) { " " (prose(&best)) }
             }
             (write_folded(&groups, &["effect", "reason"], row))
         },
     )
 }
 
-/// Describes the reduction by the best effect of each round, for comparison with the predicted
-/// reductions in the table.
+/// Describes the numbers of rejected, fitted and screened candidates.
+fn describe_counts(list: &[RejectedEffect]) -> String {
+    let fitted = list.iter().filter(|of| of.is_fitted).count();
+    let candidates = match list.len() {
+        1 => "1 candidate (an effect at a site) was rejected".to_owned(),
+        count => format!("{count} candidates (an effect at a site) were rejected"),
+    };
+    format!(
+        "{candidates}: {fitted} after a fit, {} after the screening, which predicts the reduction of the residual \
+         without a fit. Candidates with the same reason share a row.",
+        list.len() - fitted
+    )
+}
+
+/// Describes the reduction by the best effect of each round, for comparison with the reductions in
+/// the table.
 fn describe_best(list: &[RejectedEffect]) -> Option<String> {
-    let of_rounds = list.iter().filter_map(|of| of.best_reduction);
+    let of_rounds = list.iter().filter_map(|of| of.best_of_round.as_ref());
     let mut texts: Vec<String> = of_rounds
-        .map(|best| format!("{:.1} %", 100.0 * best))
+        .map(|best| format!("{}, {}", effect_in_words(&best.label), best.reduction))
         .collect();
     texts.sort();
     texts.dedup();
+    let segments = match texts.iter().any(|text| text.contains("initial-segment")) {
+        true => {
+            " The initial-segment residual is the squared residual at the start of each window."
+        }
+        false => "",
+    };
     (!texts.is_empty()).then(|| {
         format!(
-            "The best effect of a round would reduce the squared residual by {}.",
-            texts.join(" or ")
+            "The best candidates, for comparison: {}.{segments}",
+            texts.join("; ")
         )
     })
 }

@@ -91,7 +91,8 @@ fn capitalise(text: &str) -> String {
     first.unwrap_or_default() + letters.as_str()
 }
 
-/// Lists the test residual after each step and the validation of the extended specification.
+/// Lists the test residual after each step and the validation of the extended specification. The
+/// residuals are those of all channels together; the gap table lists each channel.
 pub(super) fn list_steps(discovery: &Discovery) -> Markup {
     let has_steps = discovery.steps.len() > 1;
     if !has_steps && discovery.validation.is_none() {
@@ -104,13 +105,13 @@ pub(super) fn list_steps(discovery: &Discovery) -> Markup {
     section(
         heading,
         &html! {
-            @if has_steps { (write_step_table(&discovery.steps)) }
+            @if has_steps { (write_step_table(&discovery.steps, discovery.compared.noise_floor)) }
             (write_validation(discovery))
         },
     )
 }
 
-fn write_step_table(steps: &[SearchStep]) -> Markup {
+fn write_step_table(steps: &[SearchStep], noise_floor: f64) -> Markup {
     let rows = html! {
         @for step in steps {
             tr {
@@ -118,13 +119,13 @@ fn write_step_table(steps: &[SearchStep]) -> Markup {
                     @if step.added.is_empty() { "original model" }
                     @else { "with " (prose(&effect_in_words(&step.added.join(", ")))) }
                 }
-                td.number { (format_number(step.test_rms, 3)) }
+                td.number { (format_number(step.test_rms / noise_floor, 3)) }
             }
         }
     };
     let headings = [
         "model",
-        "residual of the held-out records, in standard deviations of the noise",
+        "residual of the held-out records over all channels, in noise floors",
     ];
     table(&headings, &rows)
 }
@@ -134,14 +135,14 @@ fn write_validation(discovery: &Discovery) -> Markup {
     let Some(validation) = &discovery.validation else {
         return html! {};
     };
-    let left = |rms: f64| format_number(rms, 3);
+    let left = |rms: f64| format_number(rms / discovery.compared.noise_floor, 3);
     let written = "The equations of the extended specification were derived again; they ";
     html! {
         @if validation.has_passed {
             p {
                 (written) "pass all " (validation.checks.len()) " checks of " code { "eomgen validate" }
-                ". Its simulated residual is " (left(discovery.resimulation.train))
-                " standard deviations of the noise on the training records and "
+                ". The residual of its simulation over all channels is "
+                (left(discovery.resimulation.train)) " noise floors on the training records and "
                 (left(discovery.resimulation.test)) " on the held-out records."
             }
         } @else {

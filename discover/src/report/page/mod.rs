@@ -15,7 +15,7 @@ mod verdict;
 #[cfg(test)]
 mod tests;
 
-use eomgen_page::{ScriptedDocument, document, prose, quantity_symbol, scripted_document, section};
+use eomgen_page::{ScriptedDocument, document, prose, scripted_document, section};
 use maud::{Markup, html};
 
 use crate::report::playback::Playback;
@@ -115,10 +115,7 @@ fn write_location(compared: &CommonResult) -> Markup {
         @if has_location || force.is_some() {
             (section("Location of the difference", &html! {
                 @if has_location { p { (prose(&format_readable(&compared.location))) } }
-                @if let Some((equation, force)) = force {
-                    h3 { "Missing force on " (quantity_symbol(equation)) }
-                    (force)
-                }
+                @if let Some(force) = force { (force) }
             }))
         }
         (nuisances::list_nuisances(compared))

@@ -10,6 +10,7 @@ use crate::report::result::{
     ResultFigures, SearchStep, SensorEstimate, TrainTest, Validation, Verdict,
 };
 use crate::search::acceptance::TestStatistics;
+use crate::search::search_result::BestOfRound;
 
 /// Returns an experiment with `text` in all fields that contain names from input files.
 fn next_experiment(text: &str) -> NextExperiment {
@@ -53,7 +54,11 @@ fn discovery(text: &str) -> Discovery {
     let rejected = RejectedEffect {
         at: at(),
         reason: name(),
-        best_reduction: Some(0.9),
+        best_of_round: Some(BestOfRound {
+            label: name(),
+            reduction: name(),
+        }),
+        is_fitted: true,
         experiment: name(),
         next_experiment: Some(next_experiment(text)),
         p_values: Some((0.2, 1.0)),
@@ -95,6 +100,7 @@ fn discovery(text: &str) -> Discovery {
         compared: CommonResult {
             title: name(),
             gap: BTreeMap::from([(name(), gap)]),
+            noise_floor: 0.9,
             refitted: BTreeMap::from([(name(), estimated.clone())]),
             sensors: BTreeMap::from([(
                 name(),

@@ -13,7 +13,8 @@ use crate::samples::span;
 use crate::unwrapping::unwrap_values;
 use crate::wrap_detection::WrapPattern;
 
-/// Noise of a channel without visible noise, relative to its range.
+/// Noise of a channel without visible noise, relative to its range. Smaller estimates are the rounding of computed
+/// values.
 const INVISIBLE_NOISE_FRACTION: f64 = 1e-6;
 
 pub(super) fn dataset_text(found: &DetectedRecord<'_>, name: &str) -> String {
@@ -208,6 +209,10 @@ fn channel_table(found: &DetectedRecord<'_>, matched: &Match) -> String {
         );
     }
     let (noise, why) = match estimate_noise(&values) {
+        Some(noise) if noise < INVISIBLE_NOISE_FRACTION * span => (
+            noise,
+            "suspicious: rounding only, so the column looks computed, not measured",
+        ),
         Some(noise) => (noise, "guessed from the differences between samples"),
         None => (
             INVISIBLE_NOISE_FRACTION * span,

@@ -128,7 +128,7 @@ pub(crate) struct Match {
 type Rule = fn(&FileColumn, &Quantity) -> bool;
 
 /// Rules in the order of their reliability.
-const MATCHING_RULES: [(Rule, &str); 5] = [
+const MATCHING_RULES: [(Rule, &str); 6] = [
     (|c, q| c.name == q.name, "the same name"),
     (|c, q| c.stem == q.name, "the same name with a unit"),
     (
@@ -143,10 +143,49 @@ const MATCHING_RULES: [(Rule, &str); 5] = [
         "a similar name: please check",
     ),
     (
+        |c, q| q.is_found_by_unit && contains_name(c, q),
+        "guessed: the name of the column contains this name; please check",
+    ),
+    (
         |c, q| c.unit.is_some() && !q.unit.dimension.is_dimensionless() && q.is_found_by_unit,
         "the only remaining column with this unit: please check",
     ),
 ];
+
+/// Words in the names of columns that are no measurement of a quantity.
+const SETPOINT_WORDS: [&str; 11] = [
+    "ref",
+    "reference",
+    "set",
+    "setpoint",
+    "cmd",
+    "command",
+    "des",
+    "desired",
+    "target",
+    "err",
+    "error",
+];
+
+/// Returns true if the words of a column's name contain the name of a quantity, such as `F_drive`
+/// for `F`. Setpoints and control errors are no channels.
+fn contains_name(column: &FileColumn, quantity: &Quantity) -> bool {
+    let split = |name: &str| -> Vec<String> {
+        let words = name.split(|letter: char| !letter.is_alphanumeric());
+        let words = words.map(normalise_name);
+        words.filter(|word| !word.is_empty()).collect()
+    };
+    let (words, wanted) = (split(&column.stem), split(&quantity.name));
+    let is_setpoint = words
+        .iter()
+        .any(|word| SETPOINT_WORDS.contains(&word.as_str()));
+    let is_rate = |word: &String| ["dot", "ddot"].contains(&word.as_str());
+    let adds_rate = words.iter().any(is_rate) && !wanted.iter().any(is_rate);
+    !wanted.is_empty()
+        && !adds_rate
+        && (quantity.is_input || !is_setpoint)
+        && words.windows(wanted.len()).any(|part| part == wanted)
+}
 
 /// Number of rules that do not guess. They are applied before units are read from the ends of names.
 const EXACT_RULES: usize = 3;
@@ -362,6 +401,16 @@ mod tests {
             ]
         );
         assert_eq!(names(&[("a", "m/s2")]), []);
+        // A name inside a longer name is a guess; setpoints are no channels.
+        assert_eq!(names(&[("u_drive", "")]), [pair("u_drive", "u")]);
+        assert_eq!(
+            names(&[("theta_s.motor", "")]),
+            [pair("theta_s.motor", "theta_s")]
+        );
+        assert_eq!(
+            names(&[("theta_s_ref", ""), ("u_left", ""), ("u_right", "")]),
+            []
+        );
         // Ambiguous columns do not match.
         assert!(names(&[("thetas", "m"), ("note", "")]).is_empty());
         assert!(names(&[("THETA_S", ""), ("theta s", "")]).is_empty());

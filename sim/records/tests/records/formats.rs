@@ -70,6 +70,7 @@ fn rejection_message(folder: &TempDir) -> String {
         Ok(_) => panic!("it is taken"),
         Err(Refusal::Description(found)) => found.render(false),
         Err(Refusal::Record(message)) => message,
+        Err(Refusal::Column(missing)) => missing.message,
     }
 }
 
@@ -211,6 +212,11 @@ fn wrong_formats_are_rejected_with_cure() {
             DESCRIPTION.replace("\"angle\"", "3"),
             "t,angle\n",
             "line 1: there is no column 3; the file has 2",
+        ),
+        (
+            DESCRIPTION.replace("\"angle\"", "\"angel\""),
+            "t,angle\n",
+            "did you mean `angle`?",
         ),
         (
             DESCRIPTION.replace("\"angle\"", "0"),
