@@ -133,7 +133,7 @@ fn discovery(text: &str) -> Discovery {
                 overlay: html! {},
                 residuals: html! {},
                 experiments: html! {},
-                force: Some((name(), html! {})),
+                force: Some(html! {}),
             },
         },
         original: format!("{text} before"),
