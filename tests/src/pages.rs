@@ -80,11 +80,12 @@ pub fn blocks<'a>(text: &'a str, language: &'a str) -> impl Iterator<Item = &'a 
 }
 
 /// Returns the names and texts of the files that the reader of a page must save: blocks below a
-/// paragraph with "Save this as `NAME`".
+/// paragraph with "Save this ... as `NAME`".
 pub fn saved_files(text: &str) -> Vec<(&str, &str)> {
     fn file<'a>(block: FencedBlock<'a>) -> Option<(&'a str, &'a str)> {
         let paragraph = block.before.trim_end().rsplit("\n\n").next()?;
-        let (_, name) = paragraph.split_once("Save this as `")?;
+        let (_, request) = paragraph.split_once("Save this ")?;
+        let (_, name) = request.split_once("as `")?;
         Some((name.split('`').next()?, block.text))
     }
     fenced_blocks(text).into_iter().filter_map(file).collect()

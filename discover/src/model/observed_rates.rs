@@ -143,8 +143,12 @@ side = "sign(x)"
     #[test]
     fn undefined_derivatives_are_rejected() {
         let reasons = [
-            ("velocity", 2, "needs the rate of an acceleration"),
-            ("torque", 2, "needs the rate of an input"),
+            (
+                "velocity",
+                2,
+                "needs the time derivative of an acceleration",
+            ),
+            ("torque", 2, "needs the time derivative of an input"),
             ("size", 2, "not defined at jumps"),
             ("side", 1, "not defined at jumps"),
         ];

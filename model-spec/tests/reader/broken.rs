@@ -139,7 +139,10 @@ fn long_chains_of_definitions_do_not_exhaust_the_stack() {
         text.push_str(&format!("d{index} = \"-d{}\"\n", index - 1));
     }
     let shown = expect_rejection("chain.toml", &text).render(false);
-    assert!(shown.contains("after expansion"), "{shown}");
+    assert!(
+        shown.contains("after its definitions are inserted"),
+        "{shown}"
+    );
 }
 
 #[test]

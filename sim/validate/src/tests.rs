@@ -236,7 +236,7 @@ fn states_outside_the_domain_are_drawn_again_and_counted() {
     assert!(good.passed, "{:?}", failures(&good));
     let detail = &find_check(&good, "accelerations").detail;
     assert!(
-        detail.contains("drawn again, outside the model's domain"),
+        detail.contains("were outside the model's domain and were drawn again"),
         "{detail}"
     );
     let bad = certify_single_coordinate(LOGARITHM, || SingleCoordinate {

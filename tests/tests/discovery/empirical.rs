@@ -7,7 +7,7 @@ use eomgen_tests::measured::Measured;
 use eomgen_tests::program;
 use serde_json::Value;
 
-const SEARCH_MESSAGE: &str = "searching for an expression";
+const SEARCH_MESSAGE: &str = "searching for a force that is an expression";
 
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or(f64::NAN)

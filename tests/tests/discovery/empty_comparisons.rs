@@ -194,7 +194,7 @@ fn missing_channels_and_records_are_rejected_with_location() {
         &measured,
         channel,
         "",
-        &["dataset.toml:2:2", "there is nothing to compare"],
+        &["dataset.toml:2:2", "nothing can be compared"],
     );
     for (from, to, parts) in [
         (

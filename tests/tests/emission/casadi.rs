@@ -216,7 +216,7 @@ fn family_certifies_functions_for_casadi() {
         2,
         &["verify", "lib.rs", "models/both/certificate.json"],
     );
-    let cause = "the certificate covers both.c and both_casadi.c, no Rust";
+    let cause = "the certificate covers both.c and both_casadi.c, not Rust";
     assert!(
         said.contains(cause) && !said.contains("was edited"),
         "{said}"

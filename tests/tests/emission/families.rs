@@ -655,7 +655,7 @@ fn invalid_files_and_certificates_are_rejected_by_verify() {
             &[],
             "has no `specification`",
         ),
-        (&other, &certificate, &[], "neither Rust nor C nor a unit"),
+        (&other, &certificate, &[], "neither Rust nor C nor an FMU"),
         (
             &rust,
             &certificate,

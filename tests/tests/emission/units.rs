@@ -79,7 +79,7 @@ fn certificate_covers_units() {
         assert_eq!(document["unit"]["sha256"], document["source_sha256"]);
         let (status, said) = verify(folder.path());
         assert_eq!(status, Some(0), "{said}");
-        for check in ["The description of the unit", "The library in the unit"] {
+        for check in ["The description of the FMU", "The library in the FMU"] {
             assert!(said.contains(&format!("passed   {check}")), "{said}");
         }
     }

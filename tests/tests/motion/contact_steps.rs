@@ -140,14 +140,14 @@ fn models_without_steps_of_fixed_length_are_rejected() {
     for (specification, part) in [
         (
             BLOCK_ON_CART.replace("restitution = 0", "restitution = 0.5"),
-            "contacts with both friction and restitution; contacts without friction",
+            "contacts with both friction and restitution; remove the friction",
         ),
         (
             BLOCK_ON_CART.replace(
                 "\"-T_c*sign(dot(X))\"",
                 "\"-T_c*dot(X)/sqrt(dot(X)^2 + dot(x)^2)\"",
             ),
-            "a friction against the direction of a velocity",
+            "friction opposite to the direction of a velocity",
         ),
         (
             STRIBECK.replace("\"1/2*m*dot(x)^2\"", "\"1/2*m*(1 + above(x))*dot(x)^2\""),

@@ -152,7 +152,7 @@ fn faulty_libraries_are_rejected_with_their_cause() {
     };
     rejected(&file("none.so"), &[], "the controller cannot be read");
     std::fs::write(file("text.so"), "no library").expect("a file");
-    rejected(&file("text.so"), &[], "no library for this machine");
+    rejected(&file("text.so"), &[], "not a library for this platform");
     let version = "return EOMGEN_CONTROLLER_ABI;";
     let driven = "schedule->driven[0] = 0;";
     for (place, (change, part)) in [

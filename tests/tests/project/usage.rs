@@ -240,7 +240,7 @@ fn proposed_dataset_file_is_complete_or_absent() {
     assert_eq!(printed, measured.read("proposed.toml"));
     let swapped = run_rejected(&["dataset", &spec("emps"), &record]);
     assert!(
-        swapped.contains("the specification comes second"),
+        swapped.contains("give the record first and the specification second"),
         "{swapped}"
     );
     let json: serde_json::Value = serde_json::from_str(&run_accepted(&[
@@ -456,7 +456,10 @@ fn parameters_without_solution_are_rejected() {
     }
     // The general solver runs after the exact one has failed, and prints the reason why it stops.
     let found = stop_message(&["--set", "k_sp=1e300"]);
-    assert!(found.starts_with("warning: not solved exactly"), "{found}");
+    assert!(
+        found.starts_with("warning: solved with rk instead of the exact solver"),
+        "{found}"
+    );
     assert!(found.contains("at t = "), "{found}");
 }
 

@@ -266,7 +266,7 @@ fn two_channels_with_the_same_values_are_rejected() {
     assert!(
         measured
             .rejection()
-            .contains("have the same values up to the sign")
+            .contains("have the same values except for the sign")
     );
 }
 
@@ -462,7 +462,7 @@ fn weaknesses_of_a_record_are_noted() {
     });
     measured.write("train.csv", clipped.as_bytes());
     let (_, warned) = measured.run_command("compare", "clipped");
-    assert!(warned.contains("it may be clipped"), "{warned}");
+    assert!(warned.contains("the sensor may be saturated"), "{warned}");
     let uneven = change_column(0, 1, |place, cell| {
         let t: f64 = cell.parse().expect("a number");
         format!("{:?}", if place % 20 == 0 { t + 0.002 } else { t })

@@ -480,7 +480,10 @@ fn records_without_possible_proposal_are_rejected() {
             "t,elbow\n",
             "no column is an observable, coordinate or rate",
         ),
-        ("theta,other\n", "no column that can be a time increases"),
+        (
+            "theta,other\n",
+            "no column with a unit of time, or without a unit, increases",
+        ),
         ("t,theta,theta\n", "there are two columns `theta`"),
     ];
     for (head, part) in cases {
