@@ -80,7 +80,7 @@ fn modes_and_linearise_report_whether_state_is_equilibrium() {
             assert_eq!(document["equilibrium"], is_equilibrium, "{given:?}");
             let said = String::from_utf8_lossy(&found.stderr).into_owned();
             assert_eq!(
-                said.contains("no equilibrium"),
+                said.contains("not an equilibrium"),
                 !is_equilibrium,
                 "{given:?}: {said}"
             );
