@@ -117,7 +117,7 @@ assert any(b"token" in text for text in messages), messages
 (specification,) = (folder / "resources").glob("*.toml")
 text = specification.read_bytes()
 for change, reason in [
-    (lambda: None, b"location of the resources"),
+    (lambda: None, b"resource location"),
     (lambda: specification.write_bytes(text[: len(text) // 2] + b"["), b"is damaged"),
     (lambda: specification.write_bytes(text + b"# changed\n"), b"token"),
     (lambda: specification.with_name("b.toml").write_bytes(text), b"more than one"),
