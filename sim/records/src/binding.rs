@@ -126,8 +126,8 @@ fn bind_input_priors(
             found.push(
                 Diagnostic::error("a delay of a single input is only estimated if the model has one input".to_owned())
                     .with_span(delay.sd.span, "the model has several inputs")
-                    .with_help("write a delay of all inputs as a negative delay, or shift the late column in the \
-                                record"),
+                    .with_help("write an equal delay of all inputs as a delay of each channel, or shift the late column in \
+                                the record"),
             );
         }
     }
