@@ -206,8 +206,8 @@ static void NAME_cholesky_solve(
     int n, int m, const NAME_real *factor, const NAME_real *right, NAME_real *x
 ) {";
 
-/// Writes the Cholesky factorisation and the solution with the factor, whose matrices are passed as pointers to their
-/// first entries.
+/// Writes the functions for the Cholesky factorisation and for the solution with the factor. Both functions take
+/// matrices as pointers to their first entries.
 fn write_cholesky(program: &Program) -> String {
     let writer = Writer::new(program);
     let function = |description: &str, head: &str, lines: &[Statement]| {

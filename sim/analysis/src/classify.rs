@@ -119,13 +119,13 @@ fn judge(evidence: &Evidence) -> (Motion, &'static str) {
 fn judge_growing(k: f64, lines: Option<f64>) -> (Motion, &'static str) {
     let is_continuous = lines.is_some_and(|share| share < MAX_CONTINUOUS_LINE_SHARE);
     if k >= MIN_CHAOTIC_K {
-        let reason = "neighbouring motions separate and the section diffuses";
+        let reason = "neighbouring motions separate and the 0-1 test indicates chaos";
         (Motion::Chaotic, reason)
     } else if k >= K_LIMIT_WITH_SPECTRUM && is_continuous {
         let reason = "neighbouring motions separate and the spectrum is continuous";
         (Motion::Chaotic, reason)
     } else {
-        let reason = "neighbouring motions separate, although the section does not diffuse";
+        let reason = "neighbouring motions separate, although the 0-1 test does not indicate chaos";
         (Motion::Undecided, reason)
     }
 }
@@ -141,7 +141,7 @@ fn judge_bounded(k: f64, lines: Option<f64>) -> (Motion, &'static str) {
                       lines";
         (Motion::QuasiPeriodic, reason)
     } else {
-        let reason = "neighbouring motions stay together, although the section diffuses";
+        let reason = "neighbouring motions stay together, although the 0-1 test does not indicate regular motion";
         (Motion::Undecided, reason)
     }
 }
@@ -342,7 +342,7 @@ mod tests {
     fn sentence_has_kind_and_numbers() {
         assert_eq!(
             classify(&growing(5.0, 0.25)).sentence,
-            "chaotic: neighbouring motions separate and the section diffuses (largest exponent \
+            "chaotic: neighbouring motions separate and the 0-1 test indicates chaos (largest exponent \
              5.000 ± 0.250 1/s, 1.000 per forcing period; 0-1 test K = 0.97; no period found; \
              20 % of the power outside the forcing harmonics in spectral lines)."
         );

@@ -271,8 +271,8 @@ impl SurfaceStates {
     }
 
     /// Updates the surfaces at a point at which inputs may jump from `earlier`. Releases the motion if an input moves a
-    /// surface away or a force exceeds its limit. The sides of surfaces that cannot hold the motion must follow from
-    /// the state.
+    /// surface away or a force exceeds its limit. Call [`Self::release_other_sides`] first, so that the sides of
+    /// surfaces that cannot hold the motion are computed from the state.
     pub fn update(&mut self, at: (f64, &[f64]), (earlier, inputs): (&[f64], &[f64])) {
         if !self.can_hold {
             return;
