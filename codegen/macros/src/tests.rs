@@ -233,7 +233,7 @@ fn deep_nesting_is_rejected() {
         grammar_error(&format!("kinetic {{ a: {open} x {close} }}"))
     };
     assert!(nested("(", ")").contains("more than 200 nested levels"));
-    assert!(nested("{ a: ", "}").contains("more than 200 nested levels"));
+    assert!(nested("{ a: ", "}").contains("nested more than 200 deep"));
 }
 
 /// Returns the first error message of an expansion, or all its tokens if there is no error.

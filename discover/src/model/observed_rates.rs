@@ -148,7 +148,7 @@ side = "sign(x)"
                 2,
                 "needs the time derivative of an acceleration",
             ),
-            ("torque", 2, "needs the time derivative of an input"),
+            ("torque", 2, "needs the rate of an input"),
             ("size", 2, "not defined at jumps"),
             ("side", 1, "not defined at jumps"),
         ];

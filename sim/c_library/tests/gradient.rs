@@ -28,11 +28,10 @@ damper = "1/2*c*(dot(x)^2 + dot(y)^2)"
 drive = { on = "x", value = "u - F*sign(dot(x))" }
 "#;
 
-/// Returns the folder of compiled files of this test.
-fn compiled_folder() -> PathBuf {
+/// Returns the folder of the compiled library, that of this test.
+fn find_library_folder() -> PathBuf {
     let test = std::env::current_exe().expect("the running test has a path");
-    let profile = test.ancestors().nth(2).expect("target/PROFILE/deps/TEST");
-    profile.to_owned()
+    test.parent().expect("target/PROFILE/deps").to_owned()
 }
 
 #[test]
@@ -45,7 +44,7 @@ fn gradients_in_c_match_differences_through_events() {
     let file = |name: &str| folder.path().join(name);
     std::fs::write(file("slider.toml"), SLIDER).expect("a file");
     let own = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
-    let library = compiled_folder();
+    let library = find_library_folder();
     let compiled = Command::new("cc")
         .args(["-std=c99", "-O2", "-Wall", "-Wextra", "-Werror", "-I"])
         .arg(own.join("include"))
