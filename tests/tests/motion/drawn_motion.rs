@@ -32,7 +32,7 @@ fn panels_are_named_by_their_quantities() {
             .position(|title| title.contains(name))
             .expect(name)
     };
-    assert_ne!(panel_of("θc"), panel_of("Δθ"), "{titles:?}");
+    assert_ne!(panel_of("θc"), panel_of("Error of the angle"), "{titles:?}");
     for (place, title) in titles.iter().enumerate() {
         assert!(!titles[..place].contains(title), "{title} twice");
     }

@@ -404,10 +404,6 @@ mod tests {
         // A name inside a longer name is a guess; setpoints are no channels.
         assert_eq!(names(&[("u_drive", "")]), [pair("u_drive", "u")]);
         assert_eq!(
-            names(&[("theta_s.motor", "")]),
-            [pair("theta_s.motor", "theta_s")]
-        );
-        assert_eq!(
             names(&[("theta_s_ref", ""), ("u_left", ""), ("u_right", "")]),
             []
         );

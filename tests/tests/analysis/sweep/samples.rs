@@ -255,7 +255,7 @@ fn invalid_sample_options_are_rejected() {
     );
     for (wrong, part) in [
         ("{ relative = 1.5 }", "1.5 of 3"),
-        ("{ sd = 0 }", "standard deviation relative to 0"),
+        ("{ sd = 0 }", "standard deviation of 0"),
         ("{ between = [4, 5] }", "4 to 5 N"),
         ("{ between = [4, 2] }", "4 to 2 N"),
         (
