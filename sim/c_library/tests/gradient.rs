@@ -13,7 +13,7 @@ b = { value = 2, unit = "mm" }
 c = { value = 1.5, unit = "N s/m" }
 F = { value = 0.4, unit = "N" }
 [coordinates]
-x = { unit = "m", initial = 0.05 }
+x = { unit = "m", initial = 0.05, initial_rate = -0.2 }
 y = { unit = "m", initial_rate = 0.3 }
 [inputs]
 u = { unit = "N" }

@@ -401,12 +401,8 @@ mod tests {
             ]
         );
         assert_eq!(names(&[("a", "m/s2")]), []);
-        // A name inside a longer name is a guess; setpoints are no channels.
+        // A name inside a longer name is a guess.
         assert_eq!(names(&[("u_drive", "")]), [pair("u_drive", "u")]);
-        assert_eq!(
-            names(&[("theta_s_ref", ""), ("u_left", ""), ("u_right", "")]),
-            []
-        );
         // Ambiguous columns do not match.
         assert!(names(&[("thetas", "m"), ("note", "")]).is_empty());
         assert!(names(&[("THETA_S", ""), ("theta s", "")]).is_empty());

@@ -296,7 +296,10 @@ fn decimation_works_with_and_without_low_pass() {
     assert!(message.contains("line 152: the low-pass"), "{message}");
     write(smooth.path(), "dataset.toml", &every("filter = \"none\""));
     assert!(read(&smooth).is_ok());
-    for (wrong, part) in [("every = 0", "of which one is kept, at least 1"), ("every = 2.5", "not a whole")] {
+    for (wrong, part) in [
+        ("every = 0", "of which one is kept, at least 1"),
+        ("every = 2.5", "not a whole"),
+    ] {
         write(
             smooth.path(),
             "dataset.toml",
