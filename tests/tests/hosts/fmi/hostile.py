@@ -125,7 +125,7 @@ for change, reason in [
 ]:
     change()
     messages.clear()
-    assert not instantiate(False, place=None if reason.startswith(b"location") else resources.encode())
+    assert not instantiate(False, place=None if reason.startswith(b"resource") else resources.encode())
     assert reason in messages[0], (reason, messages)
 assert not instantiate(False, place=b"/no/such/folder") and b"/no/such/folder" in messages[1], messages
 specification.write_bytes(text)
