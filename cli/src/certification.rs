@@ -71,7 +71,7 @@ pub fn applicable_checks(certificate: &Certificate) -> Vec<&Check> {
     checks.filter(|check| !is_not_applicable(check)).collect()
 }
 
-/// Groups passed checks of the same statement. Other checks are groups of their own.
+/// Groups passed checks of the same statement. Every other check is a separate group.
 pub fn group_checks<'a, 'c>(checks: &'a [&'c Check]) -> impl Iterator<Item = &'a [&'c Check]> {
     checks
         .chunk_by(|one, next| one.passed && next.passed && are_of_same_kind(&one.name, &next.name))

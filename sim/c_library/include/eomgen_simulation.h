@@ -47,7 +47,8 @@ void eomgen_discard(eomgen_motion *motion);
 /* Gradient of a number L that depends on the samples of a motion, by the discrete adjoint of its steps and events.
  * weights[count][number of states]: derivatives of L with respect to the samples. Results: derivatives of L with respect
  * to the initial state, the parameters and the inputs, one number for each entry of its list; NULL for a result that is
- * not needed. The time of computation does not depend on the number of parameters. Fails if the motion touches a
+ * not needed. Derivatives with respect to the initial state are NAN if friction holds the motion at the start. The time of
+ * computation does not depend on the number of parameters. Fails if the motion touches a
  * switching surface without crossing it, crosses several at once, or rests in a contact. */
 int eomgen_gradient(const eomgen_motion *motion, const double *weights, double *by_initial, double *by_parameters,
                     double *by_inputs);

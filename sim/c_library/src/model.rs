@@ -141,10 +141,11 @@ impl Motion {
         self.recorded.motion().trajectory.states.concat()
     }
 
-    /// Returns the gradient of a number. `weights`: derivatives with respect to the states of all samples, row by row.
+    /// Returns the gradient of a number. `weights`: derivatives with respect to the states of all samples, row by row. The
+    /// derivatives with respect to the initial state are NaN if friction holds the motion at the start.
     ///
     /// # Errors
-    /// Errors of [`RecordedMotion::gradient`], and a start that friction holds, from which no speed is possible.
+    /// Errors of [`RecordedMotion::gradient`].
     pub fn gradient(&self, weights: &[f64]) -> Result<Gradient, Error> {
         let rows = weights.chunks(self.states.max(1)).map(<[f64]>::to_vec);
         let weights = SampleWeights {

@@ -70,7 +70,7 @@ pub struct Sources {
     pub rust: Option<String>,
     /// C sources, one for each prefix.
     pub c: Vec<CSource>,
-    /// Functions for CasADi. They have requested outputs of their own.
+    /// Functions for CasADi. They have separate requested outputs.
     pub casadi: Option<CasadiSource>,
     /// Functional mock-up unit.
     pub unit: Option<UnitSource>,

@@ -136,15 +136,15 @@ const MATCHING_RULES: [(Rule, &str); 6] = [
         "the same name except for case and signs",
     ),
     (
+        |c, q| q.is_found_by_unit && contains_name(c, q),
+        "guessed: the name of the column contains this name; please check",
+    ),
+    (
         |c, q| {
             nearest(&normalise_name(&c.stem), [normalise_name(&q.name).as_str()]).is_some()
                 && c.stem.len() > 3
         },
         "a similar name: please check",
-    ),
-    (
-        |c, q| q.is_found_by_unit && contains_name(c, q),
-        "guessed: the name of the column contains this name; please check",
     ),
     (
         |c, q| c.unit.is_some() && !q.unit.dimension.is_dimensionless() && q.is_found_by_unit,
@@ -403,6 +403,14 @@ mod tests {
         assert_eq!(names(&[("a", "m/s2")]), []);
         // A name inside a longer name is a guess.
         assert_eq!(names(&[("u_drive", "")]), [pair("u_drive", "u")]);
+        assert_eq!(
+            names(&[("theta_s.motor", "")]),
+            [pair("theta_s.motor", "theta_s")]
+        );
+        assert_eq!(
+            names(&[("theta_s_ref", ""), ("u_left", ""), ("u_right", "")]),
+            []
+        );
         // Ambiguous columns do not match.
         assert!(names(&[("thetas", "m"), ("note", "")]).is_empty());
         assert!(names(&[("THETA_S", ""), ("theta s", "")]).is_empty());
