@@ -391,7 +391,7 @@ fn invalid_ranges_are_rejected() {
         ("x", f64::NAN, 1.0, "is not finite"),
         ("x", 0.0, f64::INFINITY, "is not finite"),
         ("x", 1.0, 0.0, "exchange the ends"),
-        ("z", 0.0, 1.0, "they have t, x, x_dot, u, m, h, k"),
+        ("z", 0.0, 1.0, "the variables are t, x, x_dot, u, m, h, k"),
     ] {
         let message = ranges.set(name, low, high).expect_err("invalid");
         assert!(message.contains(said), "{message}");
