@@ -574,9 +574,9 @@ pub const MAX_FLOORS_OF_CORRECT_MODEL: f64 = 1.5;
 /// low in one of twenty motions with 500 samples.
 pub const MAX_ERROR_OF_NOISE_ESTIMATE: f64 = 0.2;
 
-/// Minimum noted deviation of a nuisance from its prior, in standard deviations. One in twenty is
-/// larger by chance. A constant force of 1 N on an axis with a spring caused a bias of 2.5.
-pub const MIN_NOTED_PRIOR_DEVIATION: f64 = 2.0;
+/// Minimum noted deviation of a nuisance from its prior, and of a size with a member of a class from
+/// the reported size, in standard deviations. One in twenty is larger by chance. A constant force of 1 N on an axis with a spring caused a bias of 2.5.
+pub const MIN_NOTED_DEVIATION: f64 = 2.0;
 
 /// Fraction of `MAX_PRIOR_DEVIATION` above which a nuisance is at its bound, because estimates
 /// reach the bound only within rounding.

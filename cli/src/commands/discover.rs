@@ -58,6 +58,9 @@ fn print(as_json: bool, result: &Value, out: &Path) -> Result {
             word("on"),
             word("status")
         );
+        for size in effect["conditional"].as_array().into_iter().flatten() {
+            text += &format!("    {}\n", size["text"].as_str().unwrap_or(""));
+        }
         if let Some(proposal) = effect["next_experiment"]["text"].as_str() {
             text += &format!("    {proposal}\n");
         }

@@ -4,14 +4,13 @@
 //! The files in the order of their dependence: [`waveform`] (forms of an input), [`bounds`],
 //! [`proposal`] (admissible inputs), [`prediction`] (response of a fitted model), [`separation`]
 //! (residual of another model after a fit to this response), [`discrimination`] (input that
-//! separates best), [`detection`] (input that shows an undetectable effect best), `members` (fits
-//! of a class), `experiment_csv` (the CSV file), [`next_experiment`] (the result).
+//! separates best), [`detection`] (input that shows an undetectable effect best), `experiment_csv`
+//! (the CSV file), [`next_experiment`] (the result).
 
 pub mod bounds;
 pub mod detection;
 pub mod discrimination;
 mod experiment_csv;
-mod members;
 pub mod next_experiment;
 pub mod prediction;
 pub mod proposal;
@@ -26,7 +25,6 @@ use crate::error::DiscoverError;
 use crate::experiment::bounds::Bounds;
 use crate::experiment::detection::{Detection, HiddenEffect, PredictedExperiment};
 use crate::experiment::discrimination::{Discrimination, Members, NoExperiment, PairSeparation};
-use crate::experiment::members::fit_equivalents;
 use crate::experiment::next_experiment::{
     ClassMember, DetectableSize, ExperimentFile, Experiments, MemberPair, NextExperiment,
 };
@@ -37,11 +35,17 @@ use crate::fit::fit_result::Fit;
 use crate::ids::EffectId;
 use crate::model::unknowns::UnknownKind;
 use crate::search::context::RoundContext;
+use crate::search::member_fits::MemberFit;
 use crate::search::search_result::SearchResult;
 use crate::thresholds;
 
-/// Proposes the next experiments for the result of a search. `context`: context of the search.
-pub fn propose_experiments(context: RoundContext<'_>, found: &SearchResult) -> Experiments {
+/// Proposes the next experiments for the result of a search. `context`: context of the search;
+/// `classes`: members of the class of each accepted effect.
+pub fn propose_experiments(
+    context: RoundContext<'_>,
+    found: &SearchResult,
+    classes: &[Vec<MemberFit>],
+) -> Experiments {
     let problem = context.problem;
     let model = found.null_fit.model.specification();
     let inputs = &model.inputs;
@@ -72,10 +76,10 @@ pub fn propose_experiments(context: RoundContext<'_>, found: &SearchResult) -> E
         family,
     };
     let mut experiments = Experiments::default();
-    for effect in EffectId::first(found.accepted.len()) {
-        let next = match found.accepted[effect].equivalents.is_empty() {
+    for (effect, class) in EffectId::first(found.accepted.len()).zip(classes) {
+        let next = match class.is_empty() {
             true => None,
-            false => Some(plan.propose_for_class(found, effect, &mut experiments.files)),
+            false => Some(plan.propose_for_class(found, (effect, class), &mut experiments.files)),
         };
         experiments.for_effects.push(next);
     }
@@ -112,7 +116,7 @@ impl ExperimentSearch<'_> {
     fn propose_for_class(
         &self,
         found: &SearchResult,
-        effect: EffectId,
+        (effect, class): (EffectId, &[MemberFit]),
         files: &mut Vec<ExperimentFile>,
     ) -> NextExperiment {
         let accepted = &found.accepted[effect];
@@ -122,17 +126,16 @@ impl ExperimentSearch<'_> {
         (self.context.progress)(&format!(
             "searching for an experiment that separates {} from {} others",
             accepted.candidate.label(),
-            accepted.equivalents.len()
+            class.len()
         ));
-        let equivalent = fit_equivalents(self.context, found, effect);
         let mut members = vec![(
             ClassMember::from_candidate(&accepted.candidate),
             found.best_fit(),
         )];
         let mut left_out = Vec::new();
-        for (candidate, fit) in &equivalent {
-            match fit {
-                Some(fit) => members.push((ClassMember::from_candidate(candidate), fit)),
+        for MemberFit { candidate, fitted } in class {
+            match fitted {
+                Some((fit, _)) => members.push((ClassMember::from_candidate(candidate), fit)),
                 None => left_out.push(ClassMember::from_candidate(candidate)),
             }
         }

@@ -6,18 +6,20 @@ use eomgen_records::dataset::Channel;
 
 use crate::catalogue::candidate::Candidate;
 use crate::empirical::EMPIRICAL_EFFECT;
-use crate::experiment::next_experiment::{Experiments, NextExperiment};
+use crate::experiment::next_experiment::Experiments;
 use crate::fit::fit_result::Fit;
 use crate::fit::noise_floor::NoiseFloor;
 use crate::ids::{ChannelId, UnknownId};
 use crate::model::input_faults::{find_declared, find_delayed_input};
 use crate::model::problem::{EstimationProblem, TestCounter};
 use crate::model::unknowns::{Unknown, UnknownKind};
+use crate::report::effect_sizes::{SizesByMember, list_equivalents, list_sizes};
 use crate::report::quantity::{format_estimate, format_quantity};
 use crate::report::result::{
     ChannelGap, EffectSite, EffectStatus, EstimateWithUnit, FoundEffect, Nuisance, RejectedEffect,
     SearchStep, SensorEstimate, ShaftOrder, TrainTest,
 };
+use crate::search::member_fits::MemberFit;
 use crate::search::search_result::{AcceptedEffect, RejectedCandidate, SearchResult};
 use crate::thresholds;
 
@@ -49,31 +51,33 @@ pub(crate) struct Certainty {
     pub floor: f64,
 }
 
-/// Returns the accepted effects, sorted by decreasing closure.
+/// Returns the accepted effects, sorted by decreasing closure. `classes`: members of the class of
+/// each accepted effect.
 pub(crate) fn summarise_effects(
     problem: &EstimationProblem<'_>,
     found: &SearchResult,
-    experiments: &Experiments,
+    (classes, experiments): (&[Vec<MemberFit>], &Experiments),
     certainty: Certainty,
 ) -> Vec<FoundEffect> {
-    let mut order: Vec<(&AcceptedEffect, &Option<NextExperiment>)> = (found.accepted.iter())
-        .zip(&experiments.for_effects)
-        .collect();
-    order.sort_by(|(a, _), (b, _)| {
-        // Squared gaps are additive, so that the contribution of an effect hardly depends on
-        // earlier effects.
-        let closed = |effect: &AcceptedEffect| {
-            effect.test_gap.before.powi(2) - effect.test_gap.after.powi(2)
-        };
-        closed(b).total_cmp(&closed(a))
-    });
-    let effects = order.into_iter();
-    effects
-        .map(|(effect, next)| FoundEffect {
-            next_experiment: next.clone(),
-            ..create_found_effect(problem, found.best_fit(), effect, certainty)
-        })
-        .collect()
+    let mut order: Vec<usize> = (0..found.accepted.len()).collect();
+    // Squared gaps are additive, so that the contribution of an effect hardly depends on earlier
+    // effects.
+    let closed = |index: &usize| {
+        let gap = &found.accepted[*index].test_gap;
+        gap.before.powi(2) - gap.after.powi(2)
+    };
+    order.sort_by(|a, b| closed(b).total_cmp(&closed(a)));
+    let create = |index: usize| {
+        let others = found.accepted.iter().zip(classes).enumerate();
+        let others = others.filter(move |(other, _)| *other != index);
+        let effect = (&found.accepted[index], &classes[index][..]);
+        let others = others.map(|(_, other)| other);
+        FoundEffect {
+            next_experiment: experiments.for_effects[index].clone(),
+            ..create_found_effect(problem, found.best_fit(), effect, others, certainty)
+        }
+    };
+    order.into_iter().map(create).collect()
 }
 
 /// Returns the rejected effects, either the testable or the untestable ones.
@@ -156,43 +160,24 @@ pub(crate) fn compute_closure(
     }
 }
 
-fn create_found_effect(
+/// Converts an accepted effect. `others`: the other accepted effects with the members of their
+/// classes.
+fn create_found_effect<'a>(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
-    effect: &AcceptedEffect,
+    (effect, class): (&AcceptedEffect, &[MemberFit]),
+    others: impl Iterator<Item = (&'a AcceptedEffect, &'a Vec<MemberFit>)>,
     Certainty { is_sure, floor }: Certainty,
 ) -> FoundEffect {
     let candidate = &effect.candidate;
-    let theta = &fit.train.estimate.theta;
-    let sd = |id: &UnknownId| fit.sd_with_misfit(*id, floor);
-    let mut term = candidate.term.clone();
-    let own = candidate.parameters.iter().zip(&effect.unknowns);
-    let mut parameters: BTreeMap<String, EstimateWithUnit> = own
-        .map(|(parameter, id)| {
-            let (value, sd) = match fit.unknowns[*id].kind {
-                UnknownKind::InverseParameter(_) => {
-                    let inverse = theta[*id];
-                    (1.0 / inverse, sd(id) / (inverse * inverse))
-                }
-                _ => {
-                    let per_si = parameter.units_per_si();
-                    (per_si * theta[*id], per_si * sd(id))
-                }
-            };
-            let unit = parameter.unit.clone();
-            (parameter.name.clone(), EstimateWithUnit { value, sd, unit })
-        })
-        .collect();
-    if candidate.dropped_prior.is_some()
-        && let Some(id) = effect.unknowns.first()
-        && let Some((name, per_si, unit)) = name_unknown(problem, fit, &fit.unknowns[*id].kind)
-    {
-        let value = per_si * theta[*id];
-        let sd = per_si * sd(id);
-        term = format!("{name} = {value}");
-        parameters.insert(name, EstimateWithUnit { value, sd, unit });
-    }
-    let equivalent = effect.equivalents.iter().map(locate);
+    let mut parameters = list_sizes(problem, (fit, &effect.unknowns), candidate, floor);
+    let term = match (&candidate.dropped_prior, parameters.first_key_value()) {
+        (Some(_), Some((name, size))) => format!("{name} = {}", size.value),
+        _ => candidate.term.clone(),
+    };
+    let by_member = SizesByMember::collect(problem, (fit, effect), others, floor);
+    let conditional = by_member.list_different(&parameters);
+    by_member.widen(&mut parameters);
     let has_equivalent = !effect.equivalents.is_empty();
     FoundEffect {
         at: locate(candidate),
@@ -203,8 +188,9 @@ fn create_found_effect(
             (_, false, true) => EffectStatus::Named,
             (_, false, false) => EffectStatus::Provisional,
         },
-        equivalents: equivalent.collect(),
+        equivalents: list_equivalents(problem, effect, class, floor),
         parameters,
+        conditional,
         term,
         statistics: effect.statistics.clone(),
         adjusted_p_value: (effect.statistics.p_value)
@@ -216,7 +202,7 @@ fn create_found_effect(
 }
 
 /// Returns effect, site and order of a candidate.
-fn locate(candidate: &Candidate) -> EffectSite {
+pub(crate) fn locate(candidate: &Candidate) -> EffectSite {
     let order = candidate.angle_order.clone();
     EffectSite {
         effect: candidate.effect.clone(),
@@ -263,7 +249,7 @@ pub(crate) fn list_nuisances(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<
 pub(crate) fn describe_deviations(nuisances: &[Nuisance]) -> Vec<String> {
     let far = nuisances
         .iter()
-        .filter(|of| of.deviations_from_prior().abs() >= thresholds::MIN_NOTED_PRIOR_DEVIATION);
+        .filter(|of| of.deviations_from_prior().abs() >= thresholds::MIN_NOTED_DEVIATION);
     let note = |of: &Nuisance| {
         let (mean, sd) = of.declared;
         let unit = &of.estimate.unit;
@@ -284,7 +270,7 @@ pub(crate) fn describe_deviations(nuisances: &[Nuisance]) -> Vec<String> {
 
 /// Returns the name of an unknown of the null model, the value of one SI unit in its unit, and the
 /// unit.
-fn name_unknown(
+pub(crate) fn name_unknown(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     what: &UnknownKind,

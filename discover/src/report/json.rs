@@ -8,10 +8,10 @@ use crate::experiment::next_experiment::{ClassMember, ExperimentFile, MemberPair
 use crate::free_function::curves::Curve;
 use crate::report::experiment::describe_experiment;
 use crate::report::result::{
-    ChannelGap, CommonResult, Comparison, Discovery, EffectSite, EstimateWithUnit, FoundEffect,
-    RejectedEffect, SensorEstimate, TrainTest,
+    ChannelGap, CommonResult, Comparison, ConditionalSize, Discovery, EffectSite, EstimateWithUnit,
+    FoundEffect, RejectedEffect, SensorEstimate, TrainTest,
 };
-use crate::report::summary::Summary;
+use crate::report::summary::{Summary, describe_conditional};
 
 /// Schema version of both documents.
 const SCHEMA: u32 = 2;
@@ -173,11 +173,28 @@ fn write_rejected(of: &RejectedEffect, files: Option<&[ExperimentFile]>) -> Valu
     entry
 }
 
+fn write_conditional(of: &ConditionalSize) -> Value {
+    let size = BTreeMap::from([(of.parameter.clone(), of.size.clone())]);
+    let mut entry = write_site(&of.with);
+    entry["in_place_of"] = write_site(&of.in_place_of);
+    entry["parameters"] = estimates_to_json(&size);
+    entry["text"] = json!(describe_conditional(of));
+    entry
+}
+
 fn write_effect(of: &FoundEffect, files: &[ExperimentFile]) -> Value {
     let mut entry = write_site(&of.at);
     entry["status"] = json!(of.status.name());
-    entry["equivalent"] = of.equivalents.iter().map(write_site).collect();
+    let equivalent = of.equivalents.iter().map(|other| {
+        let mut entry = write_site(&other.at);
+        entry["parameters"] = estimates_to_json(&other.parameters);
+        entry
+    });
+    entry["equivalent"] = equivalent.collect();
     entry["parameters"] = estimates_to_json(&of.parameters);
+    if !of.conditional.is_empty() {
+        entry["conditional"] = of.conditional.iter().map(write_conditional).collect();
+    }
     entry["term"] = json!(of.term);
     entry["evidence"] = json!({
         "held_out_gap_reduction": of.statistics.held_out_reduction,

@@ -1,5 +1,5 @@
 //! Results of a comparison or search. Computation: [`run`] from the input ([`origin`]) to the
-//! [`result`], filled in `discovery`; extended specification ([`write_back`]), its simulation
+//! [`result`], filled in `discovery` and `effect_sizes`; extended specification ([`write_back`]), its simulation
 //! ([`mod@resimulation`]) and validation (`certification`). Texts: [`location`] of the difference,
 //! `remaining_gap`, `summary`, formatted numbers (`quantity`), `experiment`. Documents: `json`, and
 //! the HTML page (`page`) with `pictures`, `overlay` of measured and simulated motion, and the
@@ -13,6 +13,7 @@ mod common_delay;
 mod common_lag;
 mod declared_noise;
 mod discovery;
+mod effect_sizes;
 mod experiment;
 mod held_input;
 mod high_floor;

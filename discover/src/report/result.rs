@@ -243,6 +243,28 @@ pub struct ShaftOrder {
     pub order: u32,
 }
 
+/// Effect that is inseparable from an accepted effect.
+#[derive(Clone, Debug)]
+pub struct EquivalentEffect {
+    /// Effect and site.
+    pub at: EffectSite,
+    /// Parameters of the effect in its fit, by name; empty if the effect was not fitted.
+    pub parameters: BTreeMap<String, EstimateWithUnit>,
+}
+
+/// Size of an accepted effect if another accepted effect is replaced by a member of its class.
+#[derive(Clone, Debug)]
+pub struct ConditionalSize {
+    /// Name of the parameter.
+    pub parameter: String,
+    /// Its estimate with the member.
+    pub size: EstimateWithUnit,
+    /// The member.
+    pub with: EffectSite,
+    /// The replaced effect.
+    pub in_place_of: EffectSite,
+}
+
 /// Accepted effect.
 #[derive(Clone, Debug)]
 pub struct FoundEffect {
@@ -253,9 +275,12 @@ pub struct FoundEffect {
     /// Certainty of the name of the effect.
     pub status: EffectStatus,
     /// Effects that are inseparable from this effect.
-    pub equivalents: Vec<EffectSite>,
-    /// Parameters of the effect, by name.
+    pub equivalents: Vec<EquivalentEffect>,
+    /// Parameters of the effect, by name. The standard deviations contain the deviations of the
+    /// estimates with members of the classes of other effects.
     pub parameters: BTreeMap<String, EstimateWithUnit>,
+    /// Sizes with members of the classes of other effects, if they differ significantly.
+    pub conditional: Vec<ConditionalSize>,
     /// Added line that represents the change of the specification.
     pub term: String,
     /// Statistics of the acceptance test.

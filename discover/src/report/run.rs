@@ -48,6 +48,7 @@ use crate::residual_force::estimate_residual_force;
 use crate::residual_force::types::ResidualForce;
 use crate::residual_force::wording::describe_remaining_force;
 use crate::search::context::RoundContext;
+use crate::search::member_fits::fit_members;
 use crate::search::search;
 use crate::search::unconfirmed_hypothesis::UnconfirmedHypothesis;
 use crate::threads::prepare_threads;
@@ -208,10 +209,17 @@ pub fn discover_until(
         effects: catalogue,
         progress,
     };
-    // Experiments take as long as some fits and are skipped after the time limit.
-    let experiments = match &found.unfinished {
-        None => propose_experiments(context, &found),
-        Some(_) => Experiments::empty(found.accepted.len(), found.rejected.len()),
+    // Experiments take as long as some fits; both are skipped after the time limit.
+    let (classes, experiments) = match &found.unfinished {
+        None => {
+            let classes = fit_members(context, &found);
+            let experiments = propose_experiments(context, &found, &classes);
+            (classes, experiments)
+        }
+        Some(_) => (
+            found.accepted.iter().map(|_| Vec::new()).collect(),
+            Experiments::empty(found.accepted.len(), found.rejected.len()),
+        ),
     };
     stop.check_not_stopped()?;
     let pictures = ResultFigures {
@@ -284,7 +292,7 @@ pub fn discover_until(
             (true, true) => Verdict::NoSignificantGap,
             (true, false) => Verdict::Unexplained,
         },
-        effects: summarise_effects(&problem, &found, &experiments, certainty),
+        effects: summarise_effects(&problem, &found, (&classes, &experiments), certainty),
         rejected: list_rejected(&problem.tested_hypotheses, &found, &experiments, false),
         untestable: list_rejected(&problem.tested_hypotheses, &found, &experiments, true),
         experiments: experiments.files,

@@ -1,11 +1,14 @@
 //! Summary of a result as text, for page, document and terminal. The first sentence contains the
 //! result and its certainty, the following sentences the evidence.
 
+use std::collections::BTreeMap;
+
 use crate::catalogue::effect::effect_in_words;
 use crate::report::quantity::{format_estimate, format_percent};
 use crate::report::remaining_gap::{ModelStage, RemainingGap};
 use crate::report::result::{
-    Comparison, Discovery, EffectSite, EffectStatus, FoundEffect, Nuisance, TrainTest, Verdict,
+    Comparison, ConditionalSize, Discovery, EffectSite, EffectStatus, EstimateWithUnit,
+    FoundEffect, Nuisance, TrainTest, Verdict,
 };
 
 /// Summary of a comparison or search.
@@ -165,22 +168,43 @@ fn list_effects(effects: &[FoundEffect]) -> String {
 
 /// Describes an effect with its size and the effects that are inseparable from it.
 fn name_effect(effect: &FoundEffect) -> String {
-    let sizes = effect.parameters.iter();
-    let sizes =
-        sizes.map(|(name, of)| format!("{name} = {}", format_estimate(of.value, of.sd, &of.unit)));
-    let sizes: Vec<String> = sizes.collect();
-    let mut text = describe_with_order(&effect.at);
-    if !sizes.is_empty() {
-        text += &format!(", {}", sizes.join(" and "));
-    }
+    let mut text = describe_with_sizes(&effect.at, &effect.parameters);
     if effect.status == EffectStatus::Class && !effect.equivalents.is_empty() {
-        let others: Vec<String> = effect.equivalents.iter().map(describe_with_order).collect();
+        let others = effect.equivalents.iter();
+        let others = others.map(|other| describe_with_sizes(&other.at, &other.parameters));
+        let others: Vec<String> = others.collect();
         text += &format!(
             " (or {}; the records do not separate them)",
             others.join(", or ")
         );
     }
     text
+}
+
+/// Describes an effect with its sizes.
+pub(crate) fn describe_with_sizes(
+    at: &EffectSite,
+    sizes: &BTreeMap<String, EstimateWithUnit>,
+) -> String {
+    let sizes = sizes
+        .iter()
+        .map(|(name, of)| format!("{name} = {}", format_estimate(of.value, of.sd, &of.unit)));
+    let sizes: Vec<String> = sizes.collect();
+    match sizes.is_empty() {
+        true => describe_with_order(at),
+        false => format!("{}, {}", describe_with_order(at), sizes.join(" and ")),
+    }
+}
+
+/// Describes the size of an effect with a member of the class of another effect.
+pub(crate) fn describe_conditional(of: &ConditionalSize) -> String {
+    format!(
+        "{} = {} with {} in place of {}",
+        of.parameter,
+        format_estimate(of.size.value, of.size.sd, &of.size.unit),
+        describe_with_order(&of.with),
+        describe_with_order(&of.in_place_of)
+    )
 }
 
 /// Returns name, site and order of an effect in words.

@@ -182,6 +182,11 @@ fn test_fit(
 }
 
 impl FittedHypothesis {
+    /// Returns the number of unknowns of the candidates, and the fit.
+    pub fn size_and_fit(&self) -> (usize, &Fit) {
+        (self.effect_unknowns.len(), &self.fit)
+    }
+
     /// Describes the residuals and the result of the acceptance test. `floor`: noise floor, in
     /// standard deviations of the noise.
     pub fn describe(&self, floor: f64) -> String {

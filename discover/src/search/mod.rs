@@ -8,7 +8,7 @@
 //! [`parameter_offsets`], [`selection`], `alternatives`, `neighbouring_orders`;
 //! `excitation_window`, `dropped_priors`, `round`, `answer_selection`, `unfinished_round`,
 //! [`unconfirmed_hypothesis`]; [`search_result`], `rejected_candidates`, [`backward_elimination`];
-//! `scanned_laws`.
+//! `scanned_laws`; `joint_classes`, [`member_fits`].
 
 pub mod acceptance;
 mod alternatives;
@@ -19,6 +19,8 @@ mod dropped_priors;
 mod excitation_window;
 pub mod hypothesis;
 pub mod hypothesis_fits;
+mod joint_classes;
+pub mod member_fits;
 mod motion_of_fit;
 mod neighbouring_orders;
 mod pair_halves;
@@ -53,6 +55,7 @@ use crate::search::answer_selection::select_answer;
 use crate::search::backward_elimination::eliminate_backwards;
 use crate::search::context::RoundContext;
 use crate::search::hypothesis_fits::FittedHypothesis;
+use crate::search::joint_classes::find_joint_members;
 use crate::search::rejected_candidates::{note_rejected, note_unfitted};
 use crate::search::round::SearchRound;
 use crate::search::scanned_laws::{ScanResult, scan_records};
@@ -94,6 +97,12 @@ pub fn search(
     let is_scanned = search.select_forward(&mut found)?;
     if !is_scanned && found.unfinished.is_none() && !found.best_fit().is_at_floor(floor) {
         search.scan_laws(&mut found);
+    }
+    if found.unfinished.is_none() {
+        let members = find_joint_members(search.context(&found.null_fit), &found);
+        for (effect, members) in found.accepted.iter_mut().zip(members) {
+            effect.equivalents.extend(members);
+        }
     }
     problem.stop.remove_time_limit();
     problem.stop.check_not_stopped()?;

@@ -84,6 +84,33 @@ pub fn fit_similar_offsets(
             "parameters of the model and of inputs",
         ),
     };
+    fit_similar_candidates(context, selected, (offsets, called))
+}
+
+/// Fits undeclared parameters, declared parameters, inputs and sensors in place of an accepted
+/// effect. Keeps those that explain the records. `None` if no candidate is similar. The context
+/// contains the fit without the effect.
+pub fn fit_similar_values(
+    context: RoundContext<'_>,
+    accepted: &Candidate,
+) -> Option<SimilarOffsets> {
+    let mut values = list_offsets(context);
+    values.extend(list_prior_candidates(context.problem, context.fit));
+    values.retain(|value| !value.is_same_effect_as(accepted));
+    fit_similar_candidates(
+        context,
+        accepted,
+        (values, "parameters, inputs and sensors"),
+    )
+}
+
+/// Screens candidates, called `called` in messages, together with the named effect, and fits those
+/// whose responses are similar to that of the named effect.
+fn fit_similar_candidates(
+    context: RoundContext<'_>,
+    selected: &Candidate,
+    (offsets, called): (Vec<Candidate>, &str),
+) -> Option<SimilarOffsets> {
     if offsets.is_empty() {
         return None;
     }

@@ -90,7 +90,11 @@ pub fn select_hypothesis(
             continue;
         };
         let similarity = compute_pair_similarity(&candidates, &screening, *own, *response);
-        if is_inseparable(&selected.hypothesis, fitted, similarity) {
+        if is_inseparable(
+            selected.hypothesis.size_and_fit(),
+            fitted.size_and_fit(),
+            similarity,
+        ) {
             equivalents.push(candidates[screening.responses[*response].candidate].clone());
         }
     }
@@ -290,10 +294,11 @@ fn find_inseparable_half(
     let is_all_else = shared.count() + 1 == fitted.responses.len();
     let similarity =
         compute_pair_similarity(candidates, screening, fitted.responses[half], response);
-    (is_all_else && is_inseparable(fitted, other, similarity)).then_some(InseparableHalf {
-        effect: EffectId::new(half),
-        response,
-    })
+    (is_all_else && is_inseparable(fitted.size_and_fit(), other.size_and_fit(), similarity))
+        .then_some(InseparableHalf {
+            effect: EffectId::new(half),
+            response,
+        })
 }
 
 /// Returns the similarity of two responses, 0 to 1. It is 1 for two names of one effect.
@@ -313,15 +318,19 @@ fn compute_pair_similarity(
     }
 }
 
-/// Returns true if two fitted hypotheses are inseparable: their responses or residuals are similar,
+/// Returns true if two fitted hypotheses, given by the number of their unknowns and their fit, are
+/// inseparable: their responses or residuals are similar,
 /// and the other fit is no worse on the test records. Unless they are two names of one effect, the
 /// other fit must also be no worse on the training records. It may be better, but not so clearly
 /// that it would be selected instead.
-fn is_inseparable(one: &FittedHypothesis, other: &FittedHypothesis, similarity: f64) -> bool {
-    let leave_same = one.effect_unknowns.len() == other.effect_unknowns.len()
-        && has_same_residuals(&one.fit.train, &other.fit.train)
-        && has_same_residuals(&one.fit.test, &other.fit.test);
-    let (one, other) = (&one.fit, &other.fit);
+pub fn is_inseparable(
+    (size, one): (usize, &Fit),
+    (other_size, other): (usize, &Fit),
+    similarity: f64,
+) -> bool {
+    let leave_same = size == other_size
+        && has_same_residuals(&one.train, &other.train)
+        && has_same_residuals(&one.test, &other.test);
     let statistics = compute_test_statistics(one, other, &[]);
     let (part, errors) = (
         -statistics.held_out_reduction,

@@ -1,4 +1,5 @@
-//! Test that inseparable faults of a sensor and of an input of a linear model form one class.
+//! Test that inseparable faults of a linear model form classes, and that sizes that depend on the choice of a member have
+//! standard deviations that contain these sizes.
 
 use eomgen_tests::program;
 use serde_json::Value;
@@ -63,8 +64,8 @@ const NONE: Faults = Faults {
     lag: 0.0,
 };
 
-/// Returns a record of the oscillator with these faults.
-fn record(faults: Faults, shift: f64) -> String {
+/// Returns a record of the oscillator with these faults and this number of samples.
+fn record(faults: Faults, shift: f64, samples: u32) -> String {
     let Faults { gain, offset, lag } = faults;
     let (m, k, c) = (1.3, 210.0, 1.1);
     let force = |t: f64| {
@@ -72,7 +73,7 @@ fn record(faults: Faults, shift: f64) -> String {
     };
     let (mut x, mut v, mut filtered, mut noise) = (0.0, 0.0, 0.0, 0.31 + 0.1 * shift);
     let mut text = "t,F,x\n".to_owned();
-    for sample in 0..800 {
+    for sample in 0..samples {
         let t = 0.01 * f64::from(sample);
         noise = 4.0 * noise * (1.0 - noise) * 0.999_999;
         let sensed: f64 = if lag > 0.0 { filtered } else { x };
@@ -102,13 +103,18 @@ fn record(faults: Faults, shift: f64) -> String {
 
 /// Runs `discover` on records with these faults and returns the document.
 fn answer(faults: Faults) -> Value {
+    answer_with(faults, 800, OSCILLATOR, DATASET)
+}
+
+/// Runs `discover` on records with this number of samples, with this specification and dataset file.
+fn answer_with(faults: Faults, samples: u32, specification: &str, dataset: &str) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |name: &str| folder.path().join(name);
     for (name, text) in [
-        ("oscillator.toml", OSCILLATOR.to_owned()),
-        ("dataset.toml", DATASET.to_owned()),
-        ("train.csv", record(faults, 0.0)),
-        ("test.csv", record(faults, 1.0)),
+        ("oscillator.toml", specification.to_owned()),
+        ("dataset.toml", dataset.to_owned()),
+        ("train.csv", record(faults, 0.0, samples)),
+        ("test.csv", record(faults, 1.0, samples)),
     ] {
         std::fs::write(file(name), text).expect("a file");
     }
@@ -152,6 +158,39 @@ fn offsets_of_a_sensor_and_of_a_force_form_a_class() {
     for offset in [0.02, -0.015] {
         let expected = ["force_offset on x", "input_bias on F", "sensor_bias on x"];
         assert_eq!(find_class(1.0, offset), expected, "{offset}");
+    }
+}
+
+/// With a wrong mass, a wrong stiffness and uncertain damping, the mass is known only up to the gain.
+#[test]
+fn size_that_depends_on_a_class_has_a_wide_interval() {
+    let specification = OSCILLATOR.replace("value = 1.3", "value = 1.5");
+    let specification = specification.replace("value = 210", "value = 240");
+    let dataset = format!("{DATASET}\n[uncertain]\nc = {{ relative = 0.5 }}\n");
+    let document = answer_with(NONE, 300, &specification, &dataset);
+    let effects = document["effects"].as_array().expect("effects");
+    let gain = effects
+        .iter()
+        .find(|effect| effect["effect"] == "sensor_gain");
+    let gain = gain.unwrap_or_else(|| panic!("no gain: {document:#}"));
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let size = &gain["parameters"]["gain"];
+    let sizes = gain["conditional"]
+        .as_array()
+        .expect("sizes that depend on the class");
+    assert!(!sizes.is_empty(), "{document:#}");
+    for of in sizes {
+        let other = &of["parameters"]["gain"];
+        let difference = (number(&other["value"]) - number(&size["value"])).abs();
+        assert!(difference > 2.0 * number(&other["sd"]), "{of:#}");
+        assert!(difference < 3.0 * number(&size["sd"]), "{of:#}");
+    }
+    for of in effects
+        .iter()
+        .flat_map(|effect| effect["equivalent"].as_array().expect("a list"))
+    {
+        let sizes = of["parameters"].as_object().expect("sizes");
+        assert!(!sizes.is_empty(), "{of:#}");
     }
 }
 

@@ -8,7 +8,7 @@ use crate::experiment::next_experiment::ExperimentFile;
 use crate::report::experiment::describe_experiment;
 use crate::report::quantity::{format_estimate, format_number, format_percent, format_readable};
 use crate::report::result::{Discovery, EffectStatus, FoundEffect, SearchStep};
-use crate::report::summary::{describe_effect, describe_with_order};
+use crate::report::summary::{describe_conditional, describe_effect, describe_with_sizes};
 
 /// Lists the effects; empty without effects, because the verdict reports this.
 pub(super) fn list_effects(effects: &[FoundEffect], files: &[ExperimentFile]) -> Markup {
@@ -38,10 +38,11 @@ fn write_effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
                 },
                 EffectStatus::Class => {
                     "The records do not separate it from "
-                    (prose(&effect.equivalents.iter().map(describe_with_order).collect::<Vec<String>>().join(", or from "))) "."
+                    (prose(&effect.equivalents.iter().map(|other| describe_with_sizes(&other.at, &other.parameters)).collect::<Vec<String>>().join(", or from "))) "."
                 },
                 EffectStatus::Empirical => { "It does not identify the cause." },
             }
+            @for size in &effect.conditional { " " (prose(&describe_conditional(size))) "." }
             @if let Some(order) = &effect.at.order {
                 " It repeats " (order.order) " times per turn of " (quantity_symbol(&order.angle)) "."
             }

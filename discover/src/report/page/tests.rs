@@ -6,8 +6,9 @@ use crate::report::origin::{HashedFile, Origin};
 use crate::report::playback::Playback;
 use crate::report::resimulation::Resimulation;
 use crate::report::result::{
-    ChannelGap, EffectSite, EffectStatus, EstimateWithUnit, FoundEffect, Nuisance, RejectedEffect,
-    ResultFigures, SearchStep, SensorEstimate, TrainTest, Validation, Verdict,
+    ChannelGap, ConditionalSize, EffectSite, EffectStatus, EquivalentEffect, EstimateWithUnit,
+    FoundEffect, Nuisance, RejectedEffect, ResultFigures, SearchStep, SensorEstimate, TrainTest,
+    Validation, Verdict,
 };
 use crate::search::acceptance::TestStatistics;
 use crate::search::search_result::BestOfRound;
@@ -70,8 +71,17 @@ fn discovery(text: &str) -> Discovery {
             at: at(),
             description: name(),
             status: EffectStatus::Class,
-            equivalents: vec![at()],
+            equivalents: vec![EquivalentEffect {
+                at: at(),
+                parameters: BTreeMap::from([(name(), estimated.clone())]),
+            }],
             parameters: BTreeMap::from([(name(), estimated.clone())]),
+            conditional: vec![ConditionalSize {
+                parameter: name(),
+                size: estimated.clone(),
+                with: at(),
+                in_place_of: at(),
+            }],
             term: name(),
             statistics: TestStatistics {
                 held_out_reduction: 0.5,
