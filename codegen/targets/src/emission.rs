@@ -27,18 +27,13 @@ pub fn emit(
 ) -> Result<Vec<EmittedFile>> {
     let program = &variant.program;
     let name = &program.name;
-    let controllers: Vec<String> = (model.controllers.iter())
-        .map(|controller| format!("`{}`", controller.name))
-        .collect();
-    let controllers = controllers.join(", ");
-    if target.has_casadi_functions() && !controllers.is_empty() {
+    if target.has_casadi_functions() && !model.controllers.is_empty() {
+        let controllers: Vec<String> = (model.controllers.iter())
+            .map(|controller| format!("`{}`", controller.name))
+            .collect();
+        let controllers = controllers.join(", ");
         warn(&format!(
             "note: the functions for CasADi do not sample the controllers of the model ({controllers}): they are those of the machine without them"
-        ));
-    }
-    if matches!(target, Target::Fmu2 | Target::Fmu3) && !controllers.is_empty() {
-        warn(&format!(
-            "note: the unit supports co-simulation only: it samples the controllers of the model ({controllers}) in its own steps"
         ));
     }
     match target {

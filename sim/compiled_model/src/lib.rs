@@ -126,7 +126,8 @@ mod unresolved_integrals;
 
 pub use audit::{Audit, Imbalance};
 pub use controllers::{
-    ControlMemory, DeclaredController, NextSample, PendingOutputs, Sample, SampledController,
+    ControlLoop, ControlMemory, DeclaredController, NextSample, PendingOutputs, Sample,
+    SampledController,
 };
 pub use driven_model::DrivenModel;
 #[cfg(feature = "derive")]

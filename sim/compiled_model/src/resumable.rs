@@ -7,7 +7,7 @@ use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{Method, ObservedStep, Surface, SurfaceMode, Trajectory};
 use eomgen_sim::piecewise_linear::{Motion as ExactMotion, Propagator, StepObserver};
 
-use crate::controllers::{ControlLoop, LoopRecord, SampledController};
+use crate::controllers::{ControlLoop, LoopRecord};
 use crate::driven_model::DrivenModel;
 use crate::error::Error;
 use crate::event_log::{LoggedEvent, log_events};
@@ -103,10 +103,8 @@ impl<'m> Instance<'m> {
         if self.model().model().controllers.is_empty() {
             return self.start_plant(start, inputs, options);
         }
-        let declared = self.controllers()?.into_iter();
-        let declared = declared.map(|own| Box::new(own) as Box<dyn SampledController>);
-        let controlled = self.prepare_controlled((start, inputs), options, declared.collect());
-        let mut simulation = controlled?;
+        let controllers = self.boxed_controllers()?;
+        let mut simulation = self.prepare_controlled((start, inputs), options, controllers)?;
         simulation.advance(start.0)?;
         Ok(simulation)
     }

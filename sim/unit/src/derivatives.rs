@@ -30,7 +30,10 @@ impl Unit {
         let unknowns = self.find_variables(unknowns, |variable| {
             matches!(
                 variable,
-                Variable::State(_) | Variable::Rate(_) | Variable::Observable(_)
+                Variable::State(_)
+                    | Variable::Rate(_)
+                    | Variable::Observable(_)
+                    | Variable::ControllerState(_)
             )
         })?;
         let knowns = self.find_variables(knowns, |variable| {

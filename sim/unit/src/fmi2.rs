@@ -316,17 +316,17 @@ pub unsafe extern "C" fn fmi2NewDiscreteStates(c: *mut c_void, info: *mut EventI
     // SAFETY: the importer's pointers, see `boundary`.
     unsafe {
         call(c, (EVENT, "fmi2NewDiscreteStates"), |unit| {
-            let found = |states_changed: bool| EventInfo {
+            let found = |(states_changed, next): (bool, Option<f64>)| EventInfo {
                 new_discrete_states_needed: 0,
                 terminate_simulation: 0,
                 nominals_changed: 0,
                 states_changed: c_int::from(states_changed),
-                next_event_time_defined: 0,
-                next_event_time: 0.0,
+                next_event_time_defined: c_int::from(next.is_some()),
+                next_event_time: next.unwrap_or(0.0),
             };
-            write(info, found(false), "the event's information")?;
-            let states_changed = unit.apply_event()?;
-            write(info, found(states_changed), "the event's information")
+            let what = "the event's information";
+            write(info, found((false, None)), what)?;
+            write(info, found(unit.apply_event()?), what)
         })
     }
 }

@@ -519,8 +519,10 @@ pub unsafe extern "C" fn fmi3UpdateDiscreteStates(
                 write(flag, 0, what)?;
             }
             write(next, 0.0, what)?;
-            let is_changed = unit.apply_event()?;
-            write(states_changed, u8::from(is_changed), what)
+            let (is_changed, instant) = unit.apply_event()?;
+            write(states_changed, u8::from(is_changed), what)?;
+            write(next_defined, u8::from(instant.is_some()), what)?;
+            write(next, instant.unwrap_or(0.0), what)
         })
     }
 }

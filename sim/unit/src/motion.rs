@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use eomgen_compiled_model::{SampledController, Solver, SolverOptions};
+use eomgen_compiled_model::{ControlLoop, Error, Sample, SampledController, Solver, SolverOptions};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{ExternalMotion, SurfaceMode};
 
@@ -16,17 +16,16 @@ impl Unit {
     /// Projects the state onto the constraints and starts the motion.
     pub fn end_initialization(&mut self) -> Outcome {
         self.forget_motion();
+        self.now.control = None;
         match self.kind {
             Kind::ModelExchange => {
                 let inputs = HeldInputs::constant(self.now.inputs.clone());
                 let instance = self.instance()?;
                 let found = instance.find_consistent_state(&self.now.state, self.now.t, &inputs)?;
                 self.now.state = found.0;
+                self.now.control = self.controls()?.map(|controls| controls.memory());
             }
-            Kind::CoSimulation => {
-                self.now.control = None;
-                self.start_simulation()?;
-            }
+            Kind::CoSimulation => self.start_simulation()?,
         }
         if self.rates()?.iter().any(|rate| !rate.is_finite()) {
             return Err(invalid(
@@ -154,8 +153,8 @@ impl Unit {
         if self.is_simulating() {
             self.update_simulation()?;
         }
-        if let Some(simulation) = &self.simulation {
-            return Ok(simulation.controller_states());
+        if let Some(memory) = &self.now.control {
+            return Ok(memory.states.clone());
         }
         let controllers = self.instance()?.controllers()?;
         let states = controllers.iter().map(SampledController::states);
@@ -244,10 +243,68 @@ impl Unit {
         self.now.mode = Mode::Event;
     }
 
-    /// Applies the events at the current point. Returns true if the state changed.
-    pub fn apply_event(&mut self) -> Outcome<bool> {
+    /// Returns the controllers of a motion for model exchange at the current time; `None` without controllers.
+    fn controls(&mut self) -> Outcome<Option<ControlLoop<'static>>> {
+        if self.compiled.model().controllers.is_empty() {
+            return Ok(None);
+        }
+        let inputs = HeldInputs::constant(self.now.inputs.clone());
+        let now = (self.now.t, inputs);
+        let controls = self
+            .instance()?
+            .control_loop(now, self.now.control.as_ref());
+        Ok(Some(controls?))
+    }
+
+    /// Takes the samples that are due in event mode, with the inputs before it. Returns the controllers.
+    pub fn take_samples(&mut self) -> Outcome<Option<ControlLoop<'static>>> {
+        let Some(mut controls) = self.controls()? else {
+            return Ok(None);
+        };
+        let t = self.now.t;
+        let late = |instant: &f64| t - instant > TIME_ROUNDING * t.abs();
+        if let Some(instant) = controls.next_instant().filter(late) {
+            return Err(invalid(format!(
+                "t = {t:?}: the importer has passed the time event at {instant:?} s, at which a controller is sampled or \
+                 its outputs act"
+            )));
+        }
+        let inputs = self.now.earlier_inputs.clone();
+        let held = HeldInputs::constant(inputs.clone());
+        self.external()?.system_mut().set_inputs(held);
+        let observables = self.observables()?;
+        let at = Sample {
+            t,
+            state: &self.now.state,
+            inputs: &inputs,
+            observables: &observables,
+        };
+        controls.take_samples(t, &at).map_err(Error::from)?;
+        self.now.control = Some(controls.memory());
+        Ok(Some(controls))
+    }
+
+    /// Applies the events at the current point: surfaces, samples of controllers, then jumps of inputs. Returns true if
+    /// the state changed, and the time (s) of the next sample or output action.
+    pub fn apply_event(&mut self) -> Outcome<(bool, Option<f64>)> {
+        let (mut is_changed, mut next) = (false, None);
+        if self.now.control.is_some() {
+            is_changed = self.apply_motion_event(self.now.earlier_inputs.clone())?;
+        }
+        if let Some(mut controls) = self.take_samples()? {
+            let inputs = controls.apply_outputs(self.now.t);
+            self.now.inputs.copy_from_slice(inputs);
+            self.now.control = Some(controls.memory());
+            next = controls.next_instant();
+        }
+        is_changed |= self.apply_motion_event(self.now.inputs.clone())?;
+        Ok((is_changed, next))
+    }
+
+    /// Applies the events of the motion at the current point, with a jump to these inputs. Returns true if the state
+    /// changed.
+    fn apply_motion_event(&mut self, inputs: Vec<f64>) -> Outcome<bool> {
         let (t, mut state) = (self.now.t, self.now.state.clone());
-        let inputs = self.now.inputs.clone();
         let count = inputs.len();
         let rows = [&self.now.earlier_inputs[..], &inputs].concat();
         let jump = HeldInputs::new(vec![t.next_down(), t], rows, count);
@@ -256,7 +313,8 @@ impl Unit {
             motion.system_mut().set_inputs(jump);
         }
         let is_changed = motion.apply_event(t, &mut state);
-        motion.system_mut().set_inputs(HeldInputs::constant(inputs));
+        let held = HeldInputs::constant(inputs.clone());
+        motion.system_mut().set_inputs(held);
         if state.iter().any(|entry| !entry.is_finite()) {
             let reason = motion.system().stop_message();
             let reason = reason.unwrap_or_else(|| {
@@ -265,7 +323,7 @@ impl Unit {
             return Err(unavailable(reason));
         }
         self.now.state = state;
-        self.now.earlier_inputs.clone_from(&self.now.inputs);
+        self.now.earlier_inputs = inputs;
         Ok(is_changed)
     }
 

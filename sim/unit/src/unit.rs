@@ -97,15 +97,8 @@ impl Unit {
     /// Creates an instance with the values of the specification.
     ///
     /// # Errors
-    /// Invalid values, or model exchange of a model with controllers.
+    /// Invalid values.
     pub fn new(compiled: CompiledModel, kind: Kind) -> Outcome<Self> {
-        let controller = compiled.model().controllers.first();
-        if let (Kind::ModelExchange, Some(controller)) = (kind, controller) {
-            return Err(invalid(format!(
-                "the model has controllers (`{}`), which the FMU supports only in co-simulation: use co-simulation",
-                controller.name
-            )));
-        }
         let compiled = Arc::new(compiled);
         let instance = compiled.share_with_parameters(&[])?;
         let surfaces = find_surfaces(&instance)?;

@@ -105,6 +105,10 @@ impl Unit {
                     self.follow_inputs();
                 }
                 Variable::Parameter(place) if self.now.parameters[place] != *value => {
+                    // A sample at this time precedes the change.
+                    if self.now.mode == Mode::Event && self.instance.is_some() {
+                        self.take_samples()?;
+                    }
                     self.keep_resting_modes();
                     self.now.parameters[place] = *value;
                     self.forget_parameters();

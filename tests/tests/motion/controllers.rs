@@ -592,10 +592,6 @@ fn commands_simulate_controllers_or_print_a_note() {
     }
     for (arguments, note) in [
         (
-            vec!["generate", &spec, "--target", "fmu2", "--out", &other],
-            "the unit supports co-simulation only",
-        ),
-        (
             vec!["generate", &spec, "--target", "casadi", "--out", &other],
             "do not sample the controllers",
         ),

@@ -25,9 +25,7 @@ pub fn write_description(unit: &Unit) -> Result<Vec<u8>> {
     ];
     write_document(|xml| {
         write_element(xml, "fmiModelDescription", &root, |xml| {
-            if !unit.has_controllers {
-                write_interface(xml, unit, "ModelExchange", &[])?;
-            }
+            write_interface(xml, unit, "ModelExchange", &[])?;
             let steps = ("canHandleVariableCommunicationStepSize", "true".to_owned());
             write_interface(xml, unit, "CoSimulation", &[steps])?;
             write_unit_definitions(xml, unit)?;

@@ -23,9 +23,7 @@ pub fn write_description(unit: &Unit) -> Result<Vec<u8>> {
     ];
     write_document(|xml| {
         write_element(xml, "fmiModelDescription", &root, |xml| {
-            if !unit.has_controllers {
-                write_interface(xml, unit, "ModelExchange", &[])?;
-            }
+            write_interface(xml, unit, "ModelExchange", &[])?;
             let steps = ("canHandleVariableCommunicationStepSize", "true".to_owned());
             write_interface(xml, unit, "CoSimulation", &[steps])?;
             write_unit_definitions(xml, unit)?;
@@ -81,10 +79,7 @@ fn write_structure(xml: &mut Xml, unit: &Unit) -> Written {
                 Kind::Rate(_) | Kind::Observable | Kind::ControllerState
             )
         })?;
-        // Only model exchange uses event indicators.
-        write_listed(xml, unit, "EventIndicator", |kind| {
-            kind == Kind::Indicator && !unit.has_controllers
-        })
+        write_listed(xml, unit, "EventIndicator", |kind| kind == Kind::Indicator)
     })
 }
 

@@ -68,8 +68,6 @@ pub struct Unit {
     pub variables: Vec<Variable>,
     /// Units of measurement.
     pub units: Units,
-    /// True if the FMU contains sampled controllers, which model exchange does not support.
-    pub has_controllers: bool,
     /// True if the equations depend on time.
     depends_on_time: bool,
 }
@@ -139,7 +137,6 @@ impl Unit {
             token: token(program),
             variables: list.variables,
             units: list.units,
-            has_controllers: !model.controllers.is_empty(),
             depends_on_time: program.ids().any(|id| program.value(id).op == Op::Time),
         })
     }

@@ -31,9 +31,7 @@ impl<'m> Instance<'m> {
         let schedules = controllers.iter().map(|own| own.schedule());
         let options = limit_steps(options, schedules);
         let mut simulation: Simulation<'c> = self.start_plant(start, inputs.clone(), options)?;
-        let program = self.model().program();
-        let counts = (program.inputs.len(), program.observables.len());
-        simulation.controls = Some(ControlLoop::new(controllers, inputs, start.0, counts));
+        simulation.controls = Some(self.create_loop((start.0, inputs), controllers));
         Ok(simulation)
     }
 
@@ -49,14 +47,46 @@ impl<'m> Instance<'m> {
         options: SolverOptions,
         memory: &ControlMemory,
     ) -> Result<Simulation<'m>, Error> {
-        let declared = self.controllers()?.into_iter();
-        let declared = declared.map(|own| Box::new(own) as Box<dyn SampledController>);
         let start = ((t, state), inputs);
-        let mut simulation = self.prepare_controlled(start, options, declared.collect())?;
+        let mut simulation = self.prepare_controlled(start, options, self.boxed_controllers()?)?;
         if let Some(controls) = &mut simulation.controls {
             controls.resume(t, memory)?;
         }
         Ok(simulation)
+    }
+
+    /// Returns the controllers of the specification for a motion with steps made by an external solver, at a time (s)
+    /// with the present inputs. They continue with a memory, or start before the samples at this time.
+    ///
+    /// # Errors
+    /// The memory belongs to other controllers; see also [`Instance::controllers`].
+    pub fn control_loop(
+        &self,
+        (t, inputs): (f64, HeldInputs),
+        memory: Option<&ControlMemory>,
+    ) -> Result<ControlLoop<'m>, Error> {
+        let mut controls = self.create_loop((t, inputs), self.boxed_controllers()?);
+        if let Some(memory) = memory {
+            controls.resume(t, memory)?;
+        }
+        Ok(controls)
+    }
+
+    fn create_loop<'c>(
+        &self,
+        (t, inputs): (f64, HeldInputs),
+        controllers: Vec<Box<dyn SampledController + 'c>>,
+    ) -> ControlLoop<'c> {
+        let program = self.model().program();
+        let counts = (program.inputs.len(), program.observables.len());
+        ControlLoop::new(controllers, inputs, t, counts)
+    }
+
+    /// Returns the controllers of the specification in their initial states.
+    pub(crate) fn boxed_controllers(&self) -> Result<Vec<Box<dyn SampledController + 'm>>, Error> {
+        let declared = self.controllers()?.into_iter();
+        let boxed = declared.map(|own| Box::new(own) as Box<dyn SampledController>);
+        Ok(boxed.collect())
     }
 
     fn check_driven_once(

@@ -106,7 +106,7 @@ pub(crate) fn limit_steps(
 }
 
 /// Controllers, their clock and the inputs of a motion.
-pub(crate) struct ControlLoop<'c> {
+pub struct ControlLoop<'c> {
     /// Controllers in the order of their states and inputs.
     controllers: Vec<Box<dyn SampledController + 'c>>,
     clock: Clock,
@@ -124,7 +124,7 @@ pub(crate) struct ControlLoop<'c> {
 impl<'c> ControlLoop<'c> {
     /// Creates a loop at a time (s), before the samples at this time. An input has at most one controller, and no
     /// controller drives an input that is a function of time.
-    pub fn new(
+    pub(crate) fn new(
         controllers: Vec<Box<dyn SampledController + 'c>>,
         given: HeldInputs,
         t: f64,
@@ -147,7 +147,7 @@ impl<'c> ControlLoop<'c> {
     ///
     /// # Errors
     /// Times that are not possible for the motion.
-    pub fn follow(
+    pub(crate) fn follow(
         &mut self,
         plant: &mut dyn Plant,
         (until, rows): (f64, &[f64]),
@@ -227,40 +227,47 @@ impl<'c> ControlLoop<'c> {
         instant: f64,
         record: &mut LoopRecord<'_>,
     ) -> Result<Option<EarlyStop>, Error> {
-        let due = self.clock.due_samples(instant);
-        if !due.is_empty() {
-            plant.write_observables(&mut self.observables);
+        let mut observables = std::mem::take(&mut self.observables);
+        if !self.clock.due_samples(instant).is_empty() {
+            plant.write_observables(&mut observables);
         }
-        let inputs = self.current.evaluate_before(instant, &self.held);
-        for place in due {
-            let at = Sample {
-                t: plant.evaluation_time(),
-                state: plant.state(),
-                inputs: &inputs,
-                observables: &self.observables,
-            };
-            let controller = &mut self.controllers[place];
-            let mut outputs = vec![0.0; controller.driven_inputs().len()];
-            if let Err(reason) = controller.sample(&at, &mut outputs) {
-                return Ok(Some(EarlyStop {
-                    t: Some(instant),
-                    reason: format!("at t = {instant:?} s {reason}"),
-                    cause: StopCause::NotFinite,
-                }));
-            }
-            self.clock.complete_sample(instant, place, outputs);
+        let at = Sample {
+            t: plant.evaluation_time(),
+            state: plant.state(),
+            inputs: &self.current.evaluate_before(instant, &self.held),
+            observables: &observables,
+        };
+        let taken = self.take_samples(instant, &at);
+        self.observables = observables;
+        match taken {
+            Ok(()) => self.update_inputs(plant, instant, record),
+            Err(stop) => Ok(Some(stop)),
         }
-        self.update_inputs(plant, instant, record)
     }
 
-    /// Applies the outputs that act at an instant, and the changes of the other inputs.
-    fn update_inputs(
-        &mut self,
-        plant: &mut dyn Plant,
-        instant: f64,
-        record: &mut LoopRecord<'_>,
-    ) -> Result<Option<EarlyStop>, Error> {
-        let before = self.held.clone();
+    /// Samples the controllers that are due at an instant (s). Their outputs are pending until
+    /// [`ControlLoop::apply_outputs`].
+    ///
+    /// # Errors
+    /// An output or a state that is not finite.
+    pub fn take_samples(&mut self, instant: f64, at: &Sample<'_>) -> Result<(), EarlyStop> {
+        for place in self.clock.due_samples(instant) {
+            let controller = &mut self.controllers[place];
+            let mut outputs = vec![0.0; controller.driven_inputs().len()];
+            let sampled = controller.sample(at, &mut outputs);
+            sampled.map_err(|reason| EarlyStop {
+                t: Some(instant),
+                reason: format!("at t = {instant:?} s {reason}"),
+                cause: StopCause::NotFinite,
+            })?;
+            self.clock.complete_sample(instant, place, outputs);
+        }
+        Ok(())
+    }
+
+    /// Applies the outputs that act at an instant (s), and the changes of the other inputs. Returns the held inputs from
+    /// then on.
+    pub fn apply_outputs(&mut self, instant: f64) -> &[f64] {
         self.hold_external_inputs(instant);
         for action in self.clock.take_actions(instant) {
             let driven = self.controllers[action.controller].driven_inputs();
@@ -269,6 +276,23 @@ impl<'c> ControlLoop<'c> {
                 self.has_acted[*place] = true;
             }
         }
+        &self.held
+    }
+
+    /// Returns the time (s) of the next sample or output action.
+    pub fn next_instant(&self) -> Option<f64> {
+        self.clock.next_instant()
+    }
+
+    /// Changes the inputs of the motion at an instant.
+    fn update_inputs(
+        &mut self,
+        plant: &mut dyn Plant,
+        instant: f64,
+        record: &mut LoopRecord<'_>,
+    ) -> Result<Option<EarlyStop>, Error> {
+        let before = self.held.clone();
+        self.apply_outputs(instant);
         if self.held == before {
             return Ok(None);
         }
@@ -297,7 +321,7 @@ impl<'c> ControlLoop<'c> {
 
     /// Changes the external inputs at the current time. Returns the inputs of the motion from then on. Driven inputs
     /// keep the values of the controller outputs.
-    pub fn change_external_inputs(&mut self, t: f64, inputs: HeldInputs) -> HeldInputs {
+    pub(crate) fn change_external_inputs(&mut self, t: f64, inputs: HeldInputs) -> HeldInputs {
         let before = self.current.evaluate(t).into_owned();
         self.given = inputs;
         self.hold_external_inputs(t);
@@ -319,7 +343,7 @@ impl<'c> ControlLoop<'c> {
     ///
     /// # Errors
     /// The memory belongs to another model.
-    pub fn resume(&mut self, t: f64, memory: &ControlMemory) -> Result<(), Error> {
+    pub(crate) fn resume(&mut self, t: f64, memory: &ControlMemory) -> Result<(), Error> {
         let outputs = |controller: usize| {
             let own = self.controllers.get(controller);
             own.map(|own| own.driven_inputs().len())
@@ -345,18 +369,18 @@ impl<'c> ControlLoop<'c> {
     }
 
     /// Returns true if a controller drives an input.
-    pub fn drives(&self, input: usize) -> bool {
+    pub(crate) fn drives(&self, input: usize) -> bool {
         let mut controllers = self.controllers.iter();
         controllers.any(|own| own.driven_inputs().contains(&input))
     }
 
     /// Returns the states of all controllers.
-    pub fn states(&self) -> Vec<f64> {
+    pub(crate) fn states(&self) -> Vec<f64> {
         collect_states(&self.controllers)
     }
 
     /// Returns the names of the states of all controllers.
-    pub fn state_names(&self) -> Vec<String> {
+    pub(crate) fn state_names(&self) -> Vec<String> {
         let controllers = self.controllers.iter();
         controllers.flat_map(|own| own.state_names()).collect()
     }

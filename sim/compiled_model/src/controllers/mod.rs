@@ -18,7 +18,8 @@ mod memory;
 #[cfg(feature = "derive")]
 mod simulation;
 
-pub(crate) use control_loop::{ControlLoop, LoopRecord, Plant, limit_steps};
+pub use control_loop::ControlLoop;
+pub(crate) use control_loop::{LoopRecord, Plant, limit_steps};
 pub use controller::{Sample, SampledController};
 pub use declared::DeclaredController;
 pub use memory::{ControlMemory, NextSample, PendingOutputs};

@@ -185,6 +185,40 @@ fn units_sample_controllers_like_simulate() {
 }
 
 #[test]
+fn both_kinds_of_units_with_controllers_match_simulate() {
+    let what = "units with sampled controllers were not simulated";
+    if !is_available("fmpy, numpy", what) {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let own = project().join("tests/tests/hosts/fmi/units");
+    let loops = project().join("examples/closed_loop");
+    for (spec, until, (tolerance, limit)) in [
+        // Dry friction, two periods, a quantised output, a delay longer than the period.
+        (own.join("sampled_block.toml"), "1.5", ("1e-9", "1e-5")),
+        (own.join("sampled_ball.toml"), "2", ("1e-9", "1e-5")),
+        (loops.join("regulator.toml"), "0.2", ("1e-11", "1e-5")),
+        (own.join("released_arm.toml"), "0.02", ("1e-12", "1e-4")),
+    ] {
+        compare_with_simulate(&spec, None, until, (tolerance, limit), folder.path());
+    }
+}
+
+#[test]
+fn controllers_are_sampled_at_time_events() {
+    let what = "time events of units were not applied";
+    if !is_available("fmpy, numpy", what) {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let spec = project().join("tests/tests/hosts/fmi/units/sampled_ball.toml");
+    for target in VERSIONS {
+        let unit = write_unit_of(&spec, None, target, folder.path());
+        run_python("time_events.py", &[&unit.to_string_lossy()]);
+    }
+}
+
+#[test]
 fn casadi_differentiates_unit() {
     let what = "CasADi did not import functional mock-up units";
     if !is_available("casadi, numpy", what) {
@@ -201,7 +235,7 @@ fn casadi_differentiates_unit() {
             run_python("derivatives.py", &[&unit.to_string_lossy()]);
         }
     }
-    for name in ["held_pendulum", "slider_crank", "puck"] {
+    for name in ["held_pendulum", "slider_crank", "puck", "sampled_block"] {
         let spec = project().join(format!("tests/tests/hosts/fmi/units/{name}.toml"));
         for target in VERSIONS {
             let unit = write_unit_of(&spec, None, target, folder.path());
