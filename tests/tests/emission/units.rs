@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use eomgen_targets::archive::{pack, unpack};
-use eomgen_tests::models::path;
+use eomgen_tests::models::{path, project};
 use eomgen_tests::program::eomgen;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -32,8 +32,11 @@ fn run(folder: &Path, arguments: &[&str], compiler: &str) -> (Option<i32>, Strin
 
 /// Generates a certified unit of Furuta's pendulum.
 fn certified(target: &str, compiler: &str) -> (TempDir, Option<i32>, Value) {
+    certify(&path("furuta_pendulum"), target, compiler)
+}
+
+fn certify(spec: &Path, target: &str, compiler: &str) -> (TempDir, Option<i32>, Value) {
     let folder = tempfile::tempdir().expect("a folder");
-    let spec = path("furuta_pendulum");
     let spec = spec.to_string_lossy();
     let arguments = [
         "generate",
@@ -82,6 +85,19 @@ fn certificate_covers_units() {
         for check in ["The description of the FMU", "The library in the FMU"] {
             assert!(said.contains(&format!("passed   {check}")), "{said}");
         }
+    }
+}
+
+#[test]
+fn certificate_covers_units_with_controllers() {
+    if !has_compiler() {
+        return;
+    }
+    let spec = project().join("tests/tests/hosts/fmi/units/sampled_block.toml");
+    for target in ["fmu2", "fmu3"] {
+        let (_folder, status, document) = certify(&spec, target, "cc");
+        assert_eq!(status, Some(0), "{document:#}");
+        assert_eq!(document["verdict"], "passed");
     }
 }
 

@@ -30,6 +30,7 @@ pub struct Variable {
 pub struct Variables {
     pub states: Vec<Variable>,
     pub rates: Vec<Variable>,
+    /// Inputs that no controller drives.
     pub inputs: Vec<Variable>,
     pub parameters: Vec<Variable>,
     pub observables: Vec<Variable>,
@@ -106,7 +107,7 @@ impl Variables {
             rates.push(rate);
         }
         let inputs = model.inputs.iter().zip(default_inputs).enumerate();
-        let inputs: Vec<Variable> = inputs
+        let (driven, inputs): (Vec<Variable>, Vec<Variable>) = inputs
             .map(|(place, (input, start))| {
                 let is_driven = model.is_controlled(place);
                 let (causality, variability, start) = match is_driven {
@@ -116,7 +117,7 @@ impl Variables {
                 let variable = names.variable(("input", &input.name), causality, variability);
                 variable.in_unit(&input.unit).with_number("start", start)
             })
-            .collect();
+            .partition(|variable| variable.causality == "local");
         let parameters: Vec<Variable> = (program.parameters.iter())
             .map(|own| {
                 let name = &own.quantity.name;
@@ -142,7 +143,7 @@ impl Variables {
             let variable = names.variable(("controller", name), "output", "discrete");
             variable.in_unit(unit)
         });
-        let others = controllers.chain([time]).collect();
+        let others = controllers.chain(driven).chain([time]).collect();
         Self {
             states,
             rates,

@@ -82,19 +82,27 @@ pub fn check(
     };
     let worst = Worst::from_deviation(differences.len() as f64, detail);
     let mut checks = vec![Check::from_deviation(DESCRIPTION, worst, 0.0)];
-    let samples: Vec<Sample> = draw_samples(oracle)?.into_iter().take(STATES).collect();
-    let not_run = |reason: &str| Check::not_run(LIBRARY, LIBRARY_TOLERANCE, reason);
-    if !model.controllers.is_empty() {
-        let reason = "the controllers in the library of the FMU drive inputs";
-        checks.push(not_run(reason));
-        return Ok(checks);
+    let mut samples: Vec<Sample> = draw_samples(oracle)?.into_iter().take(STATES).collect();
+    // Before the first sample of its controller, an input has its default value.
+    for (place, value) in default_inputs.iter().enumerate() {
+        if model.is_controlled(place) {
+            samples
+                .iter_mut()
+                .for_each(|sample| sample.inputs[place] = *value);
+        }
     }
+    let not_run = |reason: &str| Check::not_run(LIBRARY, LIBRARY_TOLERANCE, reason);
     if samples.is_empty() {
         checks.push(not_run("no state in the model's domain was found"));
         return Ok(checks);
     }
     let parameters = parameter_sets(model, program);
-    let found = run_library(unit, &description, &variables, (&samples, &parameters));
+    let found = run_library(
+        unit,
+        (model, &description),
+        &variables,
+        (&samples, &parameters),
+    );
     checks.push(match found {
         Ok(lines) => {
             let worst = compare_numbers(program, (&samples, &parameters), &lines);
@@ -191,7 +199,7 @@ fn parameter_sets(model: &Model, program: &Program) -> Vec<Vec<f64>> {
 /// Returns the lines of bits that the library prints: rates and observables.
 fn run_library(
     unit: &UnitSource,
-    description: &Description,
+    (model, description): (&Model, &Description),
     variables: &Variables,
     (samples, parameters): (&[Sample], &[Vec<f64>]),
 ) -> Result<String, Obstacle> {
@@ -245,7 +253,10 @@ fn run_library(
     let mut input = String::new();
     for set in parameters {
         for sample in samples {
-            let numbers = [&[sample.time], &**set, &sample.state, &sample.inputs].concat();
+            let inputs = sample.inputs.iter().enumerate();
+            let free = inputs.filter(|(place, _)| !model.is_controlled(*place));
+            let inputs: Vec<f64> = free.map(|(_, value)| *value).collect();
+            let numbers = [&[sample.time], &**set, &sample.state, &inputs].concat();
             input += &(format_bits(&numbers) + "\n");
         }
     }
