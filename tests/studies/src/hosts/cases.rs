@@ -10,15 +10,16 @@ use super::drawn::{self, Sine};
 use super::kind::Kind;
 use crate::sample::Sample;
 
-/// Folders of the shipped specifications and examples.
-const FOLDERS: [&str; 7] = [
-    "model-spec/models",
+/// Folders of the shipped specifications and examples. The order determines the seeds of the machines.
+const FOLDERS: [&str; 8] = [
     "examples/constrained",
     "examples/drawn",
     "examples/friction",
     "examples/impacts",
     "examples/measured",
     "examples/recipes",
+    "model-spec/models",
+    "examples/closed_loop",
 ];
 
 /// Number of intervals between the samples of a motion.
@@ -130,6 +131,7 @@ fn shipped_files() -> Result<Vec<PathBuf>, String> {
     let project = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut files = Vec::new();
     for folder in FOLDERS {
+        let first = files.len();
         let entries =
             std::fs::read_dir(project.join(folder)).map_err(|e| format!("{folder}: {e}"))?;
         for entry in entries {
@@ -139,8 +141,8 @@ fn shipped_files() -> Result<Vec<PathBuf>, String> {
                 files.push(path);
             }
         }
+        files[first..].sort();
     }
-    files.sort();
     Ok(files)
 }
 
