@@ -3,7 +3,7 @@
 
 use crate::ast::BinaryOperator;
 use crate::checks::for_each_expression;
-use crate::evaluate::binary;
+use crate::evaluate::apply_binary;
 use crate::function::call;
 use crate::model::{CoefficientKind, Expr, ExprKind, Function, Model};
 use crate::span::Span;
@@ -102,7 +102,7 @@ impl Constants<'_> {
                 span: right.span,
             });
         }
-        Ok(one.zip(other).map(|(x, y)| binary(operator, x, y)))
+        Ok(one.zip(other).map(|(x, y)| apply_binary(operator, x, y)))
     }
 
     fn call(&self, function: Function, arguments: &[Expr], whole: &Expr) -> Constant {

@@ -41,7 +41,7 @@ pub fn evaluate_with(expr: &Expr, leaf: &dyn Fn(&ExprKind) -> f64) -> f64 {
         ExprKind::Negate(operand) => -evaluate_with(operand, leaf),
         ExprKind::Binary(operator, left, right) => {
             let (left, right) = (evaluate_with(left, leaf), evaluate_with(right, leaf));
-            binary(*operator, left, right)
+            apply_binary(*operator, left, right)
         }
         ExprKind::Call(function, arguments) => {
             let argument = |index: usize| {
@@ -87,7 +87,7 @@ pub fn enclose_with(expr: &Expr, leaf: &dyn Fn(&ExprKind) -> Interval) -> Interv
 }
 
 /// Evaluates a binary operation.
-pub(crate) fn binary(operator: BinaryOperator, left: f64, right: f64) -> f64 {
+pub(crate) fn apply_binary(operator: BinaryOperator, left: f64, right: f64) -> f64 {
     match operator {
         BinaryOperator::Add => left + right,
         BinaryOperator::Subtract => left - right,

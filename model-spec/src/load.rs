@@ -57,9 +57,9 @@ pub fn check(source: Source) -> Result<Checked, Diagnostics> {
         return Err(Diagnostics::from_one(source, too_large(size)));
     }
     let mut document = document::read(&source)?;
-    let mut demands = space::expand(&mut document, &source)?;
-    let unused = std::mem::take(&mut demands.unused);
-    let mut resolved = resolve(document, demands, &source)?;
+    let mut requirements = space::expand(&mut document, &source)?;
+    let unused = std::mem::take(&mut requirements.unused);
+    let mut resolved = resolve(document, requirements, &source)?;
     let mut found = Diagnostics::new(source.clone());
     motion::check(&mut resolved.model, &mut found);
     units_check::check(&mut resolved, &mut found);

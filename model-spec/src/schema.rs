@@ -72,13 +72,13 @@ fn table(keys: &Keys) -> Value {
         "required": required,
         "properties": properties
     });
-    let demand = |names: &[&str]| json!({ "required": names });
+    let require = |names: &[&str]| json!({ "required": names });
     if !keys.one_of.is_empty() {
-        let sets = keys.one_of.iter().map(|names| demand(names));
+        let sets = keys.one_of.iter().map(|names| require(names));
         schema["oneOf"] = sets.collect();
     }
     if !keys.any_of.is_empty() {
-        schema["anyOf"] = keys.any_of.iter().map(|name| demand(&[name])).collect();
+        schema["anyOf"] = keys.any_of.iter().map(|name| require(&[name])).collect();
     }
     match keys.shorthand {
         Some(kind) => json!({ "anyOf": [reference(kind), schema] }),

@@ -29,7 +29,7 @@ pub fn check(resolved: &mut ResolvedModel, found: &mut Diagnostics) {
     units.check_inputs();
     units.check_fields();
     // A wrong unit of gravity would be reported at the rotations of frames, whose definitions contain it.
-    if units.check_demands(&resolved.required_units)
+    if units.check_required_units(&resolved.required_units)
         && units.check_definitions()
         && units.check_shorthands(&resolved.required_units, &resolved.same_unit_vectors)
     {
@@ -286,27 +286,27 @@ impl Units<'_, '_> {
     /// are then not checked, because they would repeat the error.
     fn check_shorthands(
         &mut self,
-        demanded: &[(Expr, Dimension, String)],
+        required: &[(Expr, Dimension, String)],
         vectors: &[Vec<Expr>],
     ) -> bool {
         let clean = self.found.is_empty();
         for vector in vectors {
             self.expect_same_unit(vector);
         }
-        self.check_demands(demanded);
+        self.check_required_units(required);
         !clean || self.found.is_empty()
     }
 
     /// Checks the units of the quantities that have a unit. Returns false after an error.
-    fn check_demands(&mut self, demanded: &[(Expr, Dimension, String)]) -> bool {
+    fn check_required_units(&mut self, required: &[(Expr, Dimension, String)]) -> bool {
         let clean = self.found.is_empty();
-        for (value, dimension, subject) in demanded {
+        for (value, dimension, subject) in required {
             let expected = format!("expected {}", UnitPhrase(*dimension));
             self.expect(value, *dimension, subject, &expected);
         }
         // A quotient with the divisor 0 has no unit; the module `constants` reports this error.
         let has_unit = |(value, ..): &(Expr, Dimension, String)| !self.divides_by_zero(value);
-        let all_have_units = demanded.iter().all(has_unit);
+        let all_have_units = required.iter().all(has_unit);
         !clean || self.found.is_empty() && all_have_units
     }
 

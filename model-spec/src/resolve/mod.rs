@@ -22,7 +22,7 @@ use crate::quantity::{Name, Quantity, StringValue};
 use crate::rate_order::{Expanded, rate_order};
 use crate::raw::{Document, RawController, RawImpact, RawSensor, RawTerm};
 use crate::source::Source;
-use crate::space::{Demands, Inertia};
+use crate::space::{Inertia, Requirements};
 use crate::span::Span;
 use crate::unit::Unit;
 
@@ -40,14 +40,14 @@ pub struct ResolvedModel {
 
 pub fn resolve(
     document: Document,
-    demands: Demands,
+    requirements: Requirements,
     source: &Source,
 ) -> Result<ResolvedModel, Diagnostics> {
     let mut found = Diagnostics::new(source.clone());
     let names = Names::declare(&document, &mut found);
     let mut builder = Builder { names, found };
     let mut resolved = builder.build_model(document, source);
-    builder.resolve_demands(demands, &mut resolved);
+    builder.resolve_requirements(requirements, &mut resolved);
     if builder.found.is_empty() {
         Ok(resolved)
     } else {
@@ -86,7 +86,7 @@ impl Builder {
             fields: self.build_all(document.fields, Self::build_field),
             kinetic: self.build_all(document.kinetic, Self::build_term),
             potential: self.build_all(document.potential, Self::build_term),
-            // `demands` sets this field after the names are resolved.
+            // `requirements` sets this field after the names are resolved.
             rigid_tree: None,
             dissipation: self.build_all(document.dissipation, Self::build_term),
             forces: self.build_all(document.forces, Self::build_force),
@@ -131,22 +131,22 @@ impl Builder {
         controllers
     }
 
-    fn resolve_demands(&mut self, demands: Demands, resolved: &mut ResolvedModel) {
+    fn resolve_requirements(&mut self, requirements: Requirements, resolved: &mut ResolvedModel) {
         if !self.found.is_empty() {
             return;
         }
-        for demand in demands.units {
-            if let Some(value) = self.resolve_expression(&demand.value, Scope::Motion) {
-                let required_units = (value, demand.dimension, demand.subject);
+        for requirement in requirements.units {
+            if let Some(value) = self.resolve_expression(&requirement.value, Scope::Motion) {
+                let required_units = (value, requirement.dimension, requirement.subject);
                 resolved.required_units.push(required_units);
             }
         }
-        for vector in demands.same_unit_vectors {
+        for vector in requirements.same_unit_vectors {
             let mut component = |value: &Quantity| self.resolve_expression(value, Scope::Motion);
             let components: Option<Vec<Expr>> = vector.iter().map(&mut component).collect();
             resolved.same_unit_vectors.extend(components);
         }
-        for inertia in demands.inertias {
+        for inertia in requirements.inertias {
             let mut constant = |value: &Quantity| self.resolve_expression(value, Scope::Parameters);
             let mass = match &inertia.mass {
                 Some(mass) => match constant(mass) {
@@ -163,7 +163,7 @@ impl Builder {
                 span: inertia.span,
             }));
         }
-        if let Some(tree) = demands.rigid_tree.filter(|_| self.found.is_empty()) {
+        if let Some(tree) = requirements.rigid_tree.filter(|_| self.found.is_empty()) {
             let mut resolver = Resolver::new(&self.names, Scope::Motion);
             let tree = tree.try_map(|syntax| resolver.resolve(syntax));
             resolved.model.rigid_tree = self.found.push_error(tree);

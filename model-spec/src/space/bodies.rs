@@ -2,9 +2,9 @@
 //! gravity, where p is the position of the centre of mass.
 
 use super::definitions::Owner;
-use super::demands::{Inertia, UnitDemand};
 use super::expression::Reader;
 use super::frames::Motion;
+use super::requirements::{Inertia, UnitRequirement};
 use super::scalar::{add, expansion, half, is_literal, multiply, negate, number, square};
 use super::state::ExpansionState;
 use super::vector::{Vector, cross, inner, sum, zero};
@@ -112,7 +112,7 @@ fn read_parts(
     let owner = Owner::new(own, &body.doc);
     let mass = match &body.mass {
         Some(mass) => {
-            space.demands.units.push(UnitDemand {
+            space.requirements.units.push(UnitRequirement {
                 value: mass.clone(),
                 dimension: Dimension::MASS,
                 subject: format!("the mass of `{}`", own.text),
@@ -133,7 +133,7 @@ fn read_parts(
     let mut inertia = Vec::new();
     for value in body.inertia.iter().flatten() {
         inertia.push(found.push_error(value.syntax())?);
-        space.demands.units.push(UnitDemand {
+        space.requirements.units.push(UnitRequirement {
             value: value.clone(),
             dimension: Dimension::from_mechanical_exponents([1, 2, 0, 0]),
             subject: format!("the inertia of `{}`", own.text),
@@ -153,7 +153,7 @@ fn read_parts(
     }
     let elements = body.inertia.clone().unwrap_or_default();
     let span = elements.iter().map(Quantity::span).reduce(Span::join);
-    space.demands.inertias.push(Inertia {
+    space.requirements.inertias.push(Inertia {
         body: own.clone(),
         mass: body.mass.clone(),
         elements,

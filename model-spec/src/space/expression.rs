@@ -2,7 +2,7 @@
 //! several times gets a name, so that nested products do not double in size at every level.
 
 use super::definitions::Owner;
-use super::demands::UnitDemand;
+use super::requirements::UnitRequirement;
 use super::rotation::Factor;
 use super::scalar::{expansion, is_plain, negate, set_span};
 use super::state::ExpansionState;
@@ -190,7 +190,7 @@ impl<'s> Reader<'s> {
         let syntax = written.syntax()?;
         let vector = self.evaluate_spatial_vector(&syntax, subject)?;
         for (component, axis) in vector.iter().zip(AXES) {
-            self.space.demands.units.push(UnitDemand {
+            self.space.requirements.units.push(UnitRequirement {
                 value: expansion(component.clone()),
                 dimension,
                 subject: format!("the {axis} component of {subject}"),
@@ -240,7 +240,7 @@ impl<'s> Reader<'s> {
         if self.open_scopes == 0 {
             let components = vector.iter().map(|c| expansion(c.clone()));
             self.space
-                .demands
+                .requirements
                 .same_unit_vectors
                 .push(components.collect());
         }

@@ -2,7 +2,7 @@
 //! positive semidefinite. No principal moment exceeds the sum of the other two, because I_xx + I_yy - I_zz is twice
 //! the integral of z^2 over the mass.
 
-use super::demands::Inertia;
+use super::requirements::Inertia;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::evaluate::evaluate;
 use crate::model::Expr;

@@ -11,11 +11,10 @@
 //! (positions of frames), `expression`, `operations` and `functions` (evaluation to the kinds
 //! in `value`), `references` (order of evaluation), `sections` and `terms` (expansion entry by
 //! entry), `bodies` (energies), `tree` (declared bodies), `known` (state of the expansion),
-//! `demands` (checks for later steps), `inertia` (admissible masses and inertias).
+//! `requirements` (checks for later steps), `inertia` (admissible masses and inertias).
 
 mod bodies;
 mod definitions;
-mod demands;
 mod expression;
 mod frames;
 mod functions;
@@ -24,6 +23,7 @@ mod moving_names;
 mod operations;
 mod placement;
 mod references;
+mod requirements;
 mod rotation;
 mod scalar;
 mod sections;
@@ -37,22 +37,22 @@ use crate::diagnostic::Diagnostics;
 use crate::raw::Document;
 use crate::source::Source;
 
-pub use demands::{Demands, Inertia};
 pub use inertia::check as check_inertias;
+pub use requirements::{Inertia, Requirements};
 
 /// Replaces vectors, frames, bodies and gravity by scalars.
 ///
 /// # Errors
 /// Frames are cyclic or unknown, a rotation is invalid, the mass or inertia of a body is not constant, or a scalar is
 /// given instead of a vector or a vector instead of a scalar.
-pub fn expand(document: &mut Document, source: &Source) -> Result<Demands, Diagnostics> {
+pub fn expand(document: &mut Document, source: &Source) -> Result<Requirements, Diagnostics> {
     if !sections::has_vectors(document) {
-        return Ok(Demands::default());
+        return Ok(Requirements::default());
     }
     let mut found = Diagnostics::new(source.clone());
-    let demands = sections::expand(document, &mut found);
-    match demands {
-        Some(demands) if found.is_empty() => Ok(demands),
+    let requirements = sections::expand(document, &mut found);
+    match requirements {
+        Some(requirements) if found.is_empty() => Ok(requirements),
         _ => Err(found),
     }
 }

@@ -4,11 +4,11 @@
 use std::collections::HashSet;
 
 use super::definitions::{Definitions, Owner};
-use super::demands::{Demands, UnitDemand};
 use super::expression::Reader;
 use super::frames::Frames;
 use super::placement::Placements;
 use super::references::{Entry, Expressions, FrameExpressions, sort_entries};
+use super::requirements::{Requirements, UnitRequirement};
 use super::rotation::{Turn, turns};
 use super::scalar::{expansion, is_literal, is_plain, name, number};
 use super::state::{ExpansionState, is_spatial};
@@ -48,7 +48,7 @@ fn quantities(document: &Document) -> impl Iterator<Item = &Quantity> {
 }
 
 /// Replaces all vectors, frames and bodies; `None` if definitions cannot be sorted.
-pub fn expand(document: &mut Document, found: &mut Diagnostics) -> Option<Demands> {
+pub fn expand(document: &mut Document, found: &mut Diagnostics) -> Option<Requirements> {
     let expressions = Expressions::read(document, found)?;
     let order = sort_entries(document, &expressions, found)?;
     let mentioned = referenced_names(document);
@@ -62,7 +62,7 @@ pub fn expand(document: &mut Document, found: &mut Diagnostics) -> Option<Demand
             .collect(),
         placements: Placements::default(),
         definitions: Definitions::from_document(document),
-        demands: Demands::default(),
+        requirements: Requirements::default(),
         constraint_outputs: HashSet::new(),
         invalid_entries: HashSet::new(),
     };
@@ -99,7 +99,7 @@ pub fn expand(document: &mut Document, found: &mut Diagnostics) -> Option<Demand
     terms::expand(document, &mut space, found);
     if found.is_empty() {
         let bodies = bodies::expand(document, &mut space, found);
-        space.demands.rigid_tree = tree(&space.frames, bodies);
+        space.requirements.rigid_tree = tree(&space.frames, bodies);
     }
     document.frames.clear();
     document.definitions.extend(space.definitions.take());
@@ -107,8 +107,8 @@ pub fn expand(document: &mut Document, found: &mut Diagnostics) -> Option<Demand
         let component = |axis: &&str| mentioned.contains(&format!("{}_{axis}", vector.text));
         !mentioned.contains(&vector.text) && !AXES.iter().any(component)
     };
-    space.demands.unused = document.vectors.iter().filter(is_unused).cloned().collect();
-    Some(space.demands)
+    space.requirements.unused = document.vectors.iter().filter(is_unused).cloned().collect();
+    Some(space.requirements)
 }
 
 fn referenced_names(document: &Document) -> HashSet<String> {
@@ -287,7 +287,7 @@ fn expand_placement(
         let mut reader = Reader::new(space, owner);
         let subject = format!("an angle of `{}`", name.text);
         turn.angle = reader.scalar(&written, &subject, "give a scalar")?;
-        space.demands.units.push(UnitDemand {
+        space.requirements.units.push(UnitRequirement {
             value: expansion(turn.angle.clone()),
             dimension: Dimension::DIMENSIONLESS,
             subject,

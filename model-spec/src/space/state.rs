@@ -3,9 +3,9 @@
 use std::collections::{HashMap, HashSet};
 
 use super::definitions::Definitions;
-use super::demands::Demands;
 use super::frames::Frames;
 use super::placement::Placements;
+use super::requirements::Requirements;
 use super::value::Value;
 use crate::ast::{Syntax, SyntaxKind};
 use crate::functions::VECTOR_FUNCTIONS;
@@ -18,7 +18,7 @@ pub struct ExpansionState {
     /// Positions of frames computed so far.
     pub placements: Placements,
     pub definitions: Definitions,
-    pub demands: Demands,
+    pub requirements: Requirements,
     /// Names of multipliers and residuals of constraints.
     pub constraint_outputs: HashSet<String>,
     /// Definitions and frames with errors, which are not reported again.

@@ -7,8 +7,8 @@ use crate::rigid_tree::RigidTree;
 use crate::span::Span;
 
 #[derive(Default)]
-pub struct Demands {
-    pub units: Vec<UnitDemand>,
+pub struct Requirements {
+    pub units: Vec<UnitRequirement>,
     /// Components of vectors; the components of one vector must have equal units.
     pub same_unit_vectors: Vec<Vec<Quantity>>,
     pub inertias: Vec<Inertia<Quantity>>,
@@ -17,7 +17,7 @@ pub struct Demands {
     pub rigid_tree: Option<RigidTree<Syntax>>,
 }
 
-pub struct UnitDemand {
+pub struct UnitRequirement {
     pub value: Quantity,
     pub dimension: Dimension,
     /// Name of the quantity in messages.
