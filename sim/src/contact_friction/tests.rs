@@ -147,6 +147,28 @@ fn single_impact_follows_the_closed_forms_of_a_ball() {
     }
 }
 
+/// Integrates the rates over the normal impulse in small steps, and returns the tangential impulse and the works of the
+/// normal impulse in compression and in restitution.
+fn integrate_works(impact: &SingleImpact, normal_impulse: f64) -> (f64, [f64; 2]) {
+    const STEPS: usize = 100_000;
+    let w = &impact.w;
+    let length = normal_impulse / STEPS as f64;
+    let [mut normal_rate, mut slip] = impact.rates;
+    let (mut tangential_impulse, mut works) = (0.0, [0.0; 2]);
+    for _ in 0..STEPS {
+        // Tangential impulse that stops the slip in this step, within the friction cone.
+        let limit = impact.friction * length;
+        let tangential = (-(slip + w[1][0] * length) / w[1][1]).clamp(-limit, limit);
+        let change = w[0][0] * length + w[0][1] * tangential;
+        let mean = normal_rate + 0.5 * change;
+        works[usize::from(mean > 0.0)] += mean * length;
+        normal_rate += change;
+        slip += w[1][0] * length + w[1][1] * tangential;
+        tangential_impulse += tangential;
+    }
+    (tangential_impulse, works)
+}
+
 #[test]
 fn single_impacts_lose_energy_and_obey_the_ratio_of_works() {
     let mut numbers = Numbers::new(7);
@@ -174,5 +196,15 @@ fn single_impacts_lose_energy_and_obey_the_ratio_of_works() {
             p[1].abs() <= impact.friction * p[0] + 1e-12,
             "{case}: {p:?}"
         );
+        if case % 20 == 0 {
+            let (tangential, [compression, restitution]) = integrate_works(&impact, p[0]);
+            let expected = -impact.restitution.powi(2) * compression;
+            let size = compression.abs();
+            assert!(
+                (restitution - expected).abs() < 1e-3 * size,
+                "{case}: {restitution} {expected}"
+            );
+            assert!((tangential - p[1]).abs() < 1e-3 * p[0], "{case}: {p:?}");
+        }
     }
 }
