@@ -122,7 +122,7 @@ pub struct Measurement {
     pub dr: Amplitude,
     /// Contribution of each mode to the tip; empty for a rigid arm.
     pub shares: TipShares,
-    /// Mean square of phi_i(l) q_i above the band of the first mode, m^2, which excludes the
+    /// Mean square of phi_i(l) q_i from the lower limit of the first mode's band on, m^2, which excludes the
     /// quasi-static deflection.
     pub vibration: Vec<f64>,
     /// Power of dr in bands around the natural frequencies of the clamped arm. With closed meshes the first frequency
@@ -251,7 +251,7 @@ fn line_share(x_sp: &[f64], interval: f64, samples: usize) -> Result<Option<f64>
     Ok(welch(&rest, interval, PERIODS_PER_SEGMENT * samples, Trend::Mean)?.line_share())
 }
 
-/// Computes the power above the band of the first mode. Frequencies above half the sampling rate are aliased and keep
+/// Computes the power from the lower limit of the first mode's band on. Frequencies above half the sampling rate are aliased and keep
 /// their power, except for a small part that is aliased below the band.
 fn compute_vibration(
     modal: &[Vec<f64>],

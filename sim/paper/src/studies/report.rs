@@ -101,7 +101,7 @@ fn parameters(model: &Model) -> Value {
 }
 
 /// Returns the tables of a sampled case: time series and spectra.
-pub(super) fn tables(display: &SampledCase) -> [Table; 2] {
+pub(super) fn list_sampled_tables(display: &SampledCase) -> [Table; 2] {
     let id = format_case_name(&display.case);
     let history = &display.history;
     let column = |name: &str, values: &[f64]| (name.to_owned(), values.to_vec());

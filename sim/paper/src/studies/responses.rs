@@ -15,7 +15,7 @@ use super::display::SampledCase;
 use super::error::StudyError;
 use super::figures::{FigureRow, Heading, Quantity, Row, draw_rows};
 use super::machine::draw_machine;
-use super::report::{Figure, Study, Table, case_json, format_case_name, tables};
+use super::report::{Figure, Study, Table, case_json, format_case_name, list_sampled_tables};
 
 /// Truncation order of the paper.
 const PAPER_ORDER: usize = 4;
@@ -241,12 +241,15 @@ fn list_tables(display: &SampledCase) -> Vec<Table> {
         .into_iter()
         .enumerate();
     let columns =
-        names.map(|(place, name)| (name.to_owned(), display.extract_section_column(place)));
+        names.map(|(index, name)| (name.to_owned(), display.extract_section_column(index)));
     let section = Table {
         file: section_table(&display.case),
         columns: columns.collect(),
     };
-    tables(display).into_iter().chain([section]).collect()
+    list_sampled_tables(display)
+        .into_iter()
+        .chain([section])
+        .collect()
 }
 
 /// Definitions of the numbers in the JSON document.
@@ -258,5 +261,5 @@ const NOTES: [&str; 8] = [
     "f_la is Eq. (24) as printed, l dtheta + dr; trend is the logarithm of the ratio of its rms in the second half of the record to that in the first",
     "natural_frequencies are those with both meshes in contact on one side, Hz; dominant_band uses those of the clamped arm, which are lower",
     "the section has a point per forcing period; bifurcation tables have x_sp and dr at 80 forcing periods after 160 from rest, for each b",
-    "dominant_mode has the largest vibration at the arm's end, without frequencies below the first mode's band; dominant_mode_with_static includes them",
+    "dominant_mode is the mode with the largest vibration at the arm's end, at frequencies from the lower limit of the first mode's band on; dominant_mode_with_static includes lower frequencies",
 ];

@@ -19,7 +19,7 @@ use super::arm::{Arm, Case};
 use super::case::{Amplitude, RunLength, measure};
 use super::display::{FIGURE_WINDOW_S, SampledCase, even_times, sample_series};
 use super::error::StudyError;
-use super::report::{Study, case_json, tables};
+use super::report::{Study, case_json, list_sampled_tables};
 use super::responses::{Progress, create_paper_case};
 use differences::{compute_convergence, format_convergence_json, table};
 use plates::{draw_chaotic_convergence, draw_fig_4};
@@ -98,7 +98,7 @@ fn study(
     let whole = compute_convergence(tight, FIGURE_WINDOW_S)?;
     let short = compute_convergence(loose, SHORT_TIME_S)?;
     let (without, with) = displays.split_at_checked(2).unwrap_or_default();
-    let tables = displays.iter().flat_map(tables);
+    let tables = displays.iter().flat_map(list_sampled_tables);
     Ok(Study {
         figures: vec![
             draw_fig_4(tight, without, &whole)?,
