@@ -60,10 +60,10 @@ pub fn run(options: &Claims) -> Result {
     write_file(&table, search_report::csv(&found).as_bytes())?;
     let claims = format_markdown(&assumed, &shares(&found.screened));
     write_file(&out.join("claims.md"), claims.as_bytes())?;
-    for figure in draw_charts(&found, &assumed).map_err(input_error)? {
+    let report = search_report::document(&request, &assumed, &found);
+    for figure in draw_charts(&report).map_err(input_error)? {
         write_file(&out.join(&figure.file), figure.svg.as_bytes())?;
     }
-    let report = search_report::document(&request, &assumed, &found);
     write_file(&document, format!("{report:#}\n").as_bytes())?;
     if options.output.json {
         return print_json(&report);

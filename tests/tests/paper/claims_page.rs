@@ -1,6 +1,8 @@
-//! Comparison of docs/claims.md with docs/claims.json, which the command on the page writes. `study_search` checks that
-//! the program still gives these verdicts for the assumed values.
+//! Comparison of docs/claims.md and its figures with docs/claims.json and docs/claims_search.json, which contain numbers
+//! of the documents that the commands on the page write. `study_search` checks that the program still gives these
+//! verdicts for the assumed values.
 
+use eomgen_paper::studies::charts::draw_charts;
 use eomgen_tests::models::project;
 use serde_json::Value;
 
@@ -8,9 +10,13 @@ fn page() -> String {
     std::fs::read_to_string(project().join("docs/claims.md")).expect("the page")
 }
 
-fn claims_document() -> Value {
-    let text = std::fs::read_to_string(project().join("docs/claims.json")).expect("the document");
+fn read_document(name: &str) -> Value {
+    let text = std::fs::read_to_string(project().join("docs").join(name)).expect("the document");
     serde_json::from_str(&text).expect("JSON")
+}
+
+fn claims_document() -> Value {
+    read_document("claims.json")
 }
 
 fn list<'a>(document: &'a Value, name: &str) -> &'a [Value] {
@@ -82,4 +88,28 @@ fn page_names_the_command_of_the_document() {
         "paper claims --sets {} --seed {} --out assumed",
         document["sets"], document["seed"]
     ));
+}
+
+#[test]
+fn figures_and_table_show_the_numbers_of_the_search() {
+    let document = read_document("claims_search.json");
+    for figure in draw_charts(&document).expect("figures") {
+        let kept = std::fs::read_to_string(project().join("docs").join(&figure.file));
+        assert!(
+            kept.expect("a figure") == figure.svg,
+            "docs/{} differs from the figure of docs/claims_search.json",
+            figure.file
+        );
+    }
+    let claims = list(&document, "claims");
+    assert_eq!(claims.len(), 30);
+    for claim in claims {
+        let share = |name: &str| 100.0 * claim["screened"][name].as_f64().expect(name);
+        assert_page_contains(&format!(
+            "| `{}` | {:.0} % | {:.0} % |",
+            claim["id"].as_str().expect("a name"),
+            share("holds"),
+            share("undecided"),
+        ));
+    }
 }

@@ -1,78 +1,101 @@
-//! Figures of a search: number of claims that hold at once, and share of parameter sets in which each claim holds.
+//! Figures of a search: number of claims that hold at once, and share of parameter sets in which each claim holds. They
+//! show the numbers of the search's JSON document.
 
 use eomgen_plot::bars::{Histogram, Shares, histogram, shares};
 use eomgen_plot::{PlotError, Reference};
+use serde_json::Value;
 
 use super::claims::CLAIMS;
 use super::error::StudyError;
-use super::judge::{Judgement, Verdict};
+use super::judge::Verdict;
 use super::report::Figure;
-use super::search::SearchResult;
-use super::tally;
 
-/// Draws the figures of a search, with the claims judged at the assumed values.
+/// Draws the figures of a search from its [document](super::search_report::document).
 ///
 /// # Errors
-/// A search without judged sets.
-pub fn draw_charts(found: &SearchResult, assumed: &[Judgement]) -> Result<Vec<Figure>, StudyError> {
-    let refused = |error: PlotError| StudyError::Request(error.to_string());
+/// A document without judged sets, or without a number of the figures.
+pub fn draw_charts(document: &Value) -> Result<Vec<Figure>, StudyError> {
     Ok(vec![
-        draw_claims_at_once(found, assumed).map_err(refused)?,
-        draw_shares_of_claims(found).map_err(refused)?,
+        draw_claims_at_once(document)?,
+        draw_shares_of_claims(document)?,
     ])
 }
 
+fn plot_error(error: PlotError) -> StudyError {
+    StudyError::Request(error.to_string())
+}
+
+/// Returns a number of the document.
+fn number(document: &Value, pointer: &str) -> Result<f64, StudyError> {
+    let found = document.pointer(pointer).and_then(Value::as_f64);
+    found.ok_or_else(|| StudyError::Request(format!("the search has no number {pointer}")))
+}
+
+/// Returns a count of the document.
+fn count(document: &Value, pointer: &str) -> Result<usize, StudyError> {
+    Ok(number(document, pointer)? as usize)
+}
+
 /// Draws a histogram of the parameter sets over the number of claims that hold.
-fn draw_claims_at_once(found: &SearchResult, assumed: &[Judgement]) -> Result<Figure, PlotError> {
-    let holds = |judgement: &&Judgement| judgement.holding == Verdict::Holds;
+fn draw_claims_at_once(document: &Value) -> Result<Figure, StudyError> {
     let mark = |label: &str, number: usize| Reference {
         label: format!("{label}: {number}"),
         value: number as f64,
     };
-    let mut marks = vec![mark("assumed values", assumed.iter().filter(holds).count())];
-    if let Some(best) = found.confirmed.first() {
-        marks.push(mark("best", best.holding_claims()));
+    let letter = Verdict::Holds.letter().to_string();
+    let holds = |index: &usize| {
+        let verdict = document.pointer(&format!("/claims/{index}/assumed/verdict"));
+        verdict.and_then(Value::as_str) == Some(&letter)
+    };
+    let mut marks = vec![mark(
+        "assumed values",
+        (0..CLAIMS.len()).filter(holds).count(),
+    )];
+    if document.pointer("/confirmed/0").is_some() {
+        marks.push(mark("best", count(document, "/confirmed/0/holding")?));
     }
     marks.sort_by(|a, b| a.value.total_cmp(&b.value));
     let caption = format!(
         "How many of the {} claims hold at once, for {} parameter sets",
         CLAIMS.len(),
-        found.screened.len()
+        count(document, "/sets")?
     );
+    let counts = (0..=CLAIMS.len()).map(|index| count(document, &format!("/histogram/{index}")));
     let svg = histogram(&Histogram {
         title: caption.clone(),
         horizontal_label: "claims that hold".to_owned(),
         vertical_label: "parameter sets".to_owned(),
-        counts: &tally::histogram(&found.screened),
+        counts: &counts.collect::<Result<Vec<usize>, StudyError>>()?,
         marks,
-    })?;
-    Ok(figure("together.svg", caption, svg))
+    });
+    Ok(figure("together.svg", caption, svg.map_err(plot_error)?))
 }
 
 /// Draws the share of parameter sets in which each claim holds.
-fn draw_shares_of_claims(found: &SearchResult) -> Result<Figure, PlotError> {
-    let rows = CLAIMS.iter().zip(tally::shares(&found.screened));
-    let rows = rows.map(|(claim, share)| {
+fn draw_shares_of_claims(document: &Value) -> Result<Figure, StudyError> {
+    let rows = CLAIMS.iter().enumerate().map(|(index, claim)| {
+        let share = |name: &str| number(document, &format!("/claims/{index}/screened/{name}"));
+        let strictly = share("holds_strictly")?;
         let parts = vec![
-            share.holds_strictly,
-            share.holds - share.holds_strictly,
-            share.undecided_share,
-            share.fails,
+            strictly,
+            share("holds")? - strictly,
+            share("undecided")?,
+            share("fails")?,
         ];
-        (claim.label(), parts)
+        Ok((claim.label(), parts))
     });
     let caption = format!(
         "How often each claim holds, over {} parameter sets",
-        found.screened.len()
+        count(document, "/sets")?
     );
     let svg = shares(&Shares {
         title: caption.clone(),
         parts: ["holds strictly", "holds", "undecided", "fails"]
             .map(str::to_owned)
             .into(),
-        rows: rows.collect(),
-    })?;
-    Ok(figure("claims.svg", caption, svg))
+        rows: rows.collect::<Result<_, StudyError>>()?,
+    });
+    Ok(figure("claims.svg", caption, svg.map_err(plot_error)?))
 }
 
 fn figure(file: &str, caption: String, svg: String) -> Figure {
