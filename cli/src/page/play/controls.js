@@ -175,9 +175,12 @@ class Page {
     return places.map((place) => ({ ...all[place], place }));
   }
 
-  /** Shows the reason for a stopped motion. */
+  /** Returns the reason for a stopped motion, with the values that the reader changed. */
   obstacle() {
-    return this.motion.failed ? `There is no motion from here on: ${readable(this.motion.reason)}.` : "";
+    if (!this.motion.failed) return "";
+    const inputs = this.signals.flatMap((signal) => signal.controls);
+    const changed = changedValues([...this.controls, ...inputs]);
+    return `There is no motion from here on${changed && ` with ${changed}`}: ${readable(this.motion.reason)}.`;
   }
 
   /** Updates the status and the clock. */

@@ -7,9 +7,40 @@ const TRAIL = 1500;
 /** Smallest distance between points of a trail, as a fraction of the visible range. */
 const TRAIL_DISTANCE = 0.003;
 
-/** Space of a name in the drawing, px. */
+/** Largest width of a name in the drawing, px. */
 const NAME_WIDTH = 70;
-const NAME_HEIGHT = 18;
+
+/** Distances of a name from its point, px: across, base line above it, base line below it. */
+const NAME_OFFSET = { across: 11, up: 9, down: 20 };
+
+/** Height of letters above and below their base line, px. */
+const LETTER_HEIGHT = { up: 11, down: 5 };
+
+/** Sides of a point at which its name can be, the preferred one first: across and up. */
+const SIDES = [
+  [1, 1],
+  [-1, 1],
+  [1, -1],
+  [-1, -1],
+];
+
+/** Distance of the tested points of a line, px. */
+const LINE_STEP = 3;
+
+/** Returns whether two boxes overlap. */
+function overlap(a, b) {
+  return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+}
+
+/** Returns whether a line between two points crosses a box. */
+function crosses(box, [[x0, y0], [x1, y1]]) {
+  const steps = Math.ceil(Math.hypot(x1 - x0, y1 - y0) / LINE_STEP);
+  for (let step = 0; step <= steps; step += 1) {
+    const [x, y] = [x0 + ((x1 - x0) * step) / (steps || 1), y0 + ((y1 - y0) * step) / (steps || 1)];
+    if (x > box.left && x < box.right && y > box.top && y < box.bottom) return true;
+  }
+  return false;
+}
 
 /** Points and lines in a plane. */
 class Plane {
@@ -21,6 +52,8 @@ class Plane {
   clear() {
     this.bounds = null;
     this.trails = this.drawing.points.map(() => []);
+    /** Side of each point at which its name was last. */
+    this.sides = this.drawing.points.map(() => SIDES[0]);
   }
 
   place(point, state, observables) {
@@ -85,28 +118,40 @@ class Plane {
       context.fillStyle = fixed ? colour.soft : colour.marks[(index - 1) % colour.marks.length];
       context.fill();
     }
-    this.name(context, { width, onto, colour });
+    this.name(context, { width, height, onto, colour });
   }
 
-  /** Writes the names of the points at the ends of lines next to them, unless they are fixed or a name is there. */
-  name(context, { width, onto, colour }) {
+  /** Writes the names of the points at the ends of lines next to them, unless they are fixed. A name covers no line and
+   * no other text if one of its sides is free; it is omitted if every side has another text. */
+  name(context, { width, height, onto, colour }) {
     const ends = new Set(this.drawing.lines.flatMap((line) => [line[0], line.at(-1)]));
-    const written = [];
+    const places = this.places.map(onto);
+    const segments = this.drawing.lines.flatMap((line) => line.slice(1).map((end, index) => [places[line[index]], places[end]]));
+    const written = [this.scaleText];
     context.fillStyle = colour.ink;
     for (const [index, { symbol, x: across, y: up }] of this.drawing.points.entries()) {
-      if (!ends.has(index) || (across.number !== undefined && up.number !== undefined)) continue;
-      const [x, y] = onto(this.places[index]);
-      const isNear = ([otherX, otherY]) => Math.abs(x - otherX) < NAME_WIDTH && Math.abs(y - otherY) < NAME_HEIGHT;
-      if (!Number.isFinite(x) || !Number.isFinite(y) || written.some(isNear)) continue;
-      written.push([x, y]);
-      const isAtEdge = x > width - NAME_WIDTH;
-      context.textAlign = isAtEdge ? "right" : "left";
-      writeSymbol(context, symbol, "", [isAtEdge ? x - 11 : x + 11, y - 9], NAME_WIDTH);
+      const [x, y] = places[index];
+      const isFixed = across.number !== undefined && up.number !== undefined;
+      if (!ends.has(index) || isFixed || !Number.isFinite(x) || !Number.isFinite(y)) continue;
+      const wide = Math.min(NAME_WIDTH, symbolWidth(context, symbol));
+      const options = [this.sides[index], ...SIDES].map((side) => {
+        const left = side[0] > 0 ? x + NAME_OFFSET.across : x - NAME_OFFSET.across - wide;
+        const base = side[1] > 0 ? y - NAME_OFFSET.up : y + NAME_OFFSET.down;
+        return { side, base, left, right: left + wide, top: base - LETTER_HEIGHT.up, bottom: base + LETTER_HEIGHT.down };
+      });
+      const allowed = options.filter(
+        (box) => box.left >= 0 && box.right <= width && box.top >= 0 && box.bottom <= height && !written.some((other) => overlap(box, other)),
+      );
+      const box = allowed.find((option) => !segments.some((segment) => crosses(option, segment))) ?? allowed[0];
+      if (!box) continue;
+      this.sides[index] = box.side;
+      written.push(box);
+      context.textAlign = "left";
+      writeSymbol(context, symbol, "", [box.left, box.base], NAME_WIDTH);
     }
-    context.textAlign = "left";
   }
 
-  /** Draws grid lines at round distances. Returns the distance. */
+  /** Draws grid lines at round distances and writes the distance. */
   grid(context, { width, height, scale, onto, colour }) {
     const step = round(70 / scale);
     const [x0, y0] = onto([0, 0]);
@@ -124,7 +169,16 @@ class Plane {
     context.stroke();
     context.fillStyle = colour.soft;
     context.textAlign = "left";
-    context.fillText(`grid ${shown(step)} m`, 10, height - 10);
+    const scaled = multiple(step, "m");
+    const text = `grid ${shown(step / scaled.size)} ${scaled.unit}`;
+    const base = height - 10;
+    context.fillText(text, 10, base);
+    this.scaleText = {
+      left: 10,
+      right: 10 + context.measureText(text).width,
+      top: base - LETTER_HEIGHT.up,
+      bottom: base + LETTER_HEIGHT.down,
+    };
   }
 
   trail(context, trail, onto, colour, index) {

@@ -12,7 +12,8 @@ class Signal {
     const rates = element.dataset.rates.split(" ").filter(Boolean);
     this.places = [0, 1, 2].map((order) => Number([element.dataset.place, ...rates][order] ?? -1));
     this.quantities = { value: declared };
-    for (const control of element.querySelectorAll("[data-kind]")) {
+    this.controls = Array.from(element.querySelectorAll("[data-kind]"));
+    for (const control of this.controls) {
       const name = control.dataset.kind;
       const number = control.querySelector("input[type=number]");
       this.quantities[name] ??= Number(number.value);
@@ -38,7 +39,7 @@ class Signal {
 
   reset() {
     this.form.value = "constant";
-    for (const control of this.element.querySelectorAll("[data-kind]")) control.reset();
+    for (const control of this.controls) control.reset();
     this.show();
   }
 

@@ -75,9 +75,12 @@ class Page {
     this.draw();
   }
 
+  /** Returns the reason for a stopped simulation, with the values that the reader changed. */
   obstacle() {
     const { motion } = this.playback;
-    return motion.failed ? `With this value the simulation fails before its end: ${motion.reason}.` : "";
+    if (!motion.failed) return "";
+    const changed = changedValues(this.controls);
+    return `${changed ? `With ${changed} the` : "The"} simulation fails before its end: ${motion.reason}.`;
   }
 
   write(which, place, value, unit) {

@@ -9,10 +9,8 @@ function font(size) {
   return `${size}px system-ui, "Segoe UI", "Helvetica Neue", Arial, sans-serif`;
 }
 
-/** Writes a symbol with its subscript and a text after it, at most `widest` px wide; narrower letters make it fit.
- * `symbol`: letters of the name and of its subscript. */
-function writeSymbol(context, symbol, rest, [x, y], widest = Infinity) {
-  const [head, subscript] = symbol;
+/** Returns the parts of a symbol with a text after it: text, font size, offset downwards and width of each, px. */
+function symbolParts(context, [head, subscript], rest) {
   const parts = [
     [head, LETTERS, 0],
     [subscript, SUBSCRIPTS, 3],
@@ -21,6 +19,19 @@ function writeSymbol(context, symbol, rest, [x, y], widest = Infinity) {
     context.font = font(size);
     return { text, size, down, width: context.measureText(text).width };
   });
+  context.font = font(LETTERS);
+  return parts;
+}
+
+/** Returns the width of a symbol, px. */
+function symbolWidth(context, symbol) {
+  return symbolParts(context, symbol, "").reduce((sum, { width }) => sum + width, 0);
+}
+
+/** Writes a symbol with its subscript and a text after it, at most `widest` px wide; narrower letters make it fit.
+ * `symbol`: letters of the name and of its subscript. */
+function writeSymbol(context, symbol, rest, [x, y], widest = Infinity) {
+  const parts = symbolParts(context, symbol, rest);
   const total = parts.reduce((sum, { width }) => sum + width, 0);
   context.save();
   const shift = { center: 0.5, right: 1 }[context.textAlign] ?? 0;

@@ -8,7 +8,8 @@ function written(value) {
 }
 
 /** Connects a slider and its number field. `change` receives the value in SI, or undefined for the value of the
- * specification, which needs no conversion. Adds `reset` to the control. */
+ * specification, which needs no conversion. Adds `reset` to the control, and `changed`: its name, value and unit, or an
+ * empty text if it has the value of the specification. */
 function join(control, change) {
   const [number, slider] = control.querySelectorAll("input");
   const factor = Number(control.dataset.factor);
@@ -27,11 +28,24 @@ function join(control, change) {
     slider.value = number.value;
     apply(number.value);
   });
+  control.changed = () => {
+    const { name, unit } = control.dataset;
+    if (number.value === declared || !number.checkValidity()) return "";
+    return `${name} = ${number.value}${unit === "1" ? "" : ` ${unit}`}`;
+  };
   control.reset = () => {
     number.value = declared;
     slider.value = declared;
     apply(declared);
   };
+}
+
+/** Returns the changed values of controls as a list: "m = 0 kg, l = 2 m". */
+function changedValues(controls) {
+  return controls
+    .map((control) => control.changed())
+    .filter(Boolean)
+    .join(", ");
 }
 
 /** Replaces the text of an element, if it differs. */

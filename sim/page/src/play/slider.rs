@@ -85,7 +85,7 @@ impl<'m> Slider<'m> {
         };
         let [value, low, high, step] = [shown, *low, *high, step].map(format_number);
         html! {
-            div.control data-kind=(kind) data-place=(place) data-factor=(format_number(*factor)) {
+            div.control data-kind=(kind) data-place=(place) data-factor=(format_number(*factor)) data-name=(name) data-unit=(unit) {
                 label.name for=(id) {
                     span { (label) }
                     @if unit != "1" { span.unit { (unit) } }

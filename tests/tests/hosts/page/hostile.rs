@@ -50,6 +50,11 @@ fn texts_cannot_inject_scripts() {
             seen["zero"], true,
             "no message about the pendulum without mass: {seen}"
         );
+        let obstacle = seen["obstacle"].as_str().expect("a message");
+        assert!(
+            obstacle.starts_with("There is no motion from here on with m = 0 kg: "),
+            "{obstacle}"
+        );
     }
 }
 

@@ -18,10 +18,49 @@ function ink(element) {
   return [base - measured.actualBoundingBoxAscent, base + measured.actualBoundingBoxDescent];
 }
 
+/** Largest overlap of the boxes of two texts, px; boxes are higher than the ink of their letters. */
+const OVERLAP = 3;
+
+/** Returns the pairs of overlapping texts. `texts`: text and box of each. */
+function overlaps(texts) {
+  const pairs = [];
+  for (const [index, [text, a]] of texts.entries()) {
+    for (const [other, b] of texts.slice(index + 1)) {
+      const across = Math.min(a.right, b.right) - Math.max(a.left, b.left);
+      const down = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
+      if (across > OVERLAP && down > OVERLAP) pairs.push([text, other]);
+    }
+  }
+  return pairs;
+}
+
+/** Texts of the current picture of every canvas, by canvas. */
+const written = new Map();
+
+/** Records the texts that the page writes on canvases. A picture begins when its canvas is cleared. */
+function recordCanvasTexts() {
+  const { fillText, clearRect } = CanvasRenderingContext2D.prototype;
+  CanvasRenderingContext2D.prototype.clearRect = function (...arguments_) {
+    written.set(this.canvas, []);
+    return clearRect.apply(this, arguments_);
+  };
+  CanvasRenderingContext2D.prototype.fillText = function (text, x, y, widest) {
+    const measured = this.measureText(text);
+    const squeeze = Math.min(1, (widest ?? Infinity) / (measured.width || 1));
+    const matrix = this.getTransform();
+    const at = (dx, dy) => new DOMPoint(x + dx, y + dy).matrixTransform(matrix);
+    const low = at(-measured.actualBoundingBoxLeft * squeeze, measured.actualBoundingBoxDescent);
+    const high = at(measured.actualBoundingBoxRight * squeeze, -measured.actualBoundingBoxAscent);
+    if (text !== "") written.get(this.canvas)?.push([text, { left: low.x, right: high.x, top: high.y, bottom: low.y }]);
+    return fillText.call(this, text, x, y, ...(widest === undefined ? [] : [widest]));
+  };
+}
+
 (async () => {
+  recordCanvasTexts();
   const wait = (time) => new Promise((done) => setTimeout(done, time));
   for (const folded of document.querySelectorAll("details")) folded.open = true;
-  await wait(500);
+  await wait(2000);
   const seen = { smallest: Infinity, smallestText: "", identifiers: [], cut: [], fields: [], columns: [], dots: [], backgrounds: [] };
   const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   for (let node = walker.nextNode(); node; node = walker.nextNode()) {
@@ -52,6 +91,11 @@ function ink(element) {
   }
   for (const svg of document.querySelectorAll("figure svg")) {
     if (svg.getClientRects().length > 0) seen.backgrounds.push(getComputedStyle(svg.querySelector("rect")).fill);
+  }
+  seen.overlaps = [...written.values()].flatMap(overlaps);
+  for (const svg of document.querySelectorAll("figure svg")) {
+    const texts = [...svg.querySelectorAll("text")].filter((text) => text.getClientRects().length > 0);
+    seen.overlaps.push(...overlaps(texts.map((text) => [text.textContent, text.getBoundingClientRect()])));
   }
   seen.page = getComputedStyle(document.body).backgroundColor;
   seen.excess = document.documentElement.scrollWidth - document.documentElement.clientWidth;

@@ -1,6 +1,6 @@
 //! Tests of the legibility of the tour, of reports and of interactive pages. No text is smaller than 11 px in any
-//! window. No names of the program appear in prose. No commands and numbers are cut, no column consists of single
-//! words, dots of rates are above their letters, and figures have the colours of the page.
+//! window. No names of the program appear in prose. No commands and numbers are cut, no texts overlap in figures, no
+//! column consists of single words, dots of rates are above their letters, and figures have the colours of the page.
 
 use std::path::Path;
 
@@ -36,7 +36,14 @@ fn assert_legible(browser: &str, page: &Path) {
         let size = seen["smallest"].as_f64().expect("a number");
         // Font sizes in scaled figures are rounded.
         assert!(size > SMALLEST - 0.05, "{seen}");
-        for key in ["identifiers", "cut", "fields", "columns", "dots"] {
+        for key in [
+            "identifiers",
+            "cut",
+            "fields",
+            "columns",
+            "dots",
+            "overlaps",
+        ] {
             assert_eq!(seen[key], json!([]), "{key}: {seen}");
         }
         let figures = seen["backgrounds"].as_array().expect("a list");

@@ -37,6 +37,7 @@
     seen.refused = !number.checkValidity();
     change(number, "0");
     seen.zero = await until(() => find("status").textContent !== "");
+    seen.obstacle = find("status").textContent;
     find("defaults").click();
     seen.restored = number.checkValidity() && number.value === number.defaultValue;
   }
