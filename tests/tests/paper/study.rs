@@ -72,13 +72,13 @@ fn study_writes_all_files_of_its_document() {
     check_closed_form(&cases[0]);
     check_frequencies(&cases[0]);
     let drawn = |name: &str| figures.iter().any(|figure| figure["file"] == name);
-    assert!(drawn("bifurcation.svg") && drawn("machine.svg"));
-    let shown = std::fs::read(project().join("docs/machine.svg")).expect("a figure");
-    let left = std::fs::read(out.join("machine.svg")).expect("a figure");
-    assert!(
-        left == shown,
-        "docs/machine.svg differs from the study's figure"
-    );
+    assert!(drawn("bifurcation.svg"));
+    for name in ["arm.svg", "machine.svg"] {
+        assert!(drawn(name), "{name}");
+        let shown = std::fs::read(project().join("docs").join(name)).expect("a figure");
+        let left = std::fs::read(out.join(name)).expect("a figure");
+        assert!(left == shown, "docs/{name} differs from the study's figure");
+    }
 }
 
 /// Checks the first frequency. If the meshes are closed, the drive turns with the arm. The frequency is higher than the

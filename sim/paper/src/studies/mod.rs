@@ -8,7 +8,8 @@
 //! - [`sets`] distributes the undisclosed values over plausible ranges, [`search`] judges all claims for each set,
 //!   [`tally`] counts verdicts, [`charts`] draws them.
 //! - [`responses`] and [`order`] are the studies; `report` creates their files.
-//! - `display` samples cases for `figures` and `planes`, `bifurcation` varies the backlash, `machine` draws the arm.
+//! - `display` samples cases for `figures` and `planes`, `bifurcation` varies the backlash, `machine` draws the signs of
+//!   the paper and `overview` the arm.
 
 pub mod arm;
 mod bifurcation;
@@ -25,6 +26,7 @@ mod kind;
 mod machine;
 mod neighbours;
 pub mod order;
+mod overview;
 mod planes;
 pub mod reading;
 pub mod report;

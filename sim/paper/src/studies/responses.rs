@@ -15,6 +15,7 @@ use super::display::SampledCase;
 use super::error::StudyError;
 use super::figures::{FigureRow, Heading, Quantity, Row, draw_rows};
 use super::machine::draw_machine;
+use super::overview::draw_overview;
 use super::report::{Figure, Study, Table, case_json, format_case_name, list_sampled_tables};
 
 /// Truncation order of the paper.
@@ -81,10 +82,10 @@ pub fn flexibility(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
     Ok((study, arm))
 }
 
-/// Adds the bifurcation diagrams and the drawing of the machine.
+/// Adds the bifurcation diagrams and the drawings of the machine.
 fn add_bifurcations(study: &mut Study, found: &[Bifurcation]) -> Result<(), StudyError> {
     study.figures.push(bifurcation_figure(found)?);
-    study.figures.push(draw_machine());
+    study.figures.extend([draw_overview(), draw_machine()]);
     study.tables.extend(found.iter().map(Bifurcation::table));
     Ok(())
 }
