@@ -123,20 +123,34 @@ pub fn table(times: &[Times]) -> String {
     format!("order,calls,floor,generated,hand_written,equation_22\n{lines}")
 }
 
-/// Draws the times of overlapping calls as a function of the order (SVG).
+/// Returns the times of overlapping calls as a table in ns.
+pub fn overlapping_table(times: &[Times]) -> String {
+    let lines = times.iter().map(|times| {
+        let c = &times.overlapping;
+        let all = [c.floor, c.generated, c.hand_written, c.equation_22].map(|time| 1e9 * time);
+        let [floor, generated, hand_written, equation_22] = all;
+        let order = times.order;
+        format!("{order},{floor:.3},{generated:.3},{hand_written:.3},{equation_22:.3}\n")
+    });
+    let lines: String = lines.collect();
+    format!("order,floor,generated,hand_written,equation_22\n{lines}")
+}
+
+/// Draws a [table](overlapping_table) of times as a function of the order (SVG).
 ///
 /// # Errors
 /// An empty figure.
-pub fn curves(times: &[Times]) -> Result<String, PlotError> {
-    let orders: Vec<f64> = times.iter().map(|times| times.order as f64).collect();
-    let of = |time: fn(&Contenders) -> f64| -> Vec<f64> {
-        times.iter().map(|times| time(&times.overlapping)).collect()
+pub fn curves(table: &str) -> Result<String, PlotError> {
+    let orders = column(table, "order");
+    let of = |name: &str| -> Vec<f64> {
+        let times = column(table, name).into_iter();
+        times.map(|time| 1e-9 * time).collect()
     };
     let contenders = [
-        ("Eq. (22) by hand", of(|times| times.equation_22)),
-        ("O(S) by hand", of(|times| times.hand_written)),
-        ("generated", of(|times| times.generated)),
-        ("floor: one sine and a copy", of(|times| times.floor)),
+        ("Eq. (22) by hand", of("equation_22")),
+        ("O(S) by hand", of("hand_written")),
+        ("generated", of("generated")),
+        ("floor: one sine and a copy", of("floor")),
     ];
     let named: Named<'_> = contenders
         .iter()
@@ -184,12 +198,12 @@ pub fn development(table: &str) -> Result<String, PlotError> {
 fn column(table: &str, name: &str) -> Vec<f64> {
     let mut lines = table.lines();
     let heading = lines.next().unwrap_or_default();
-    let Some(place) = heading.split(',').position(|column| column == name) else {
+    let Some(index) = heading.split(',').position(|column| column == name) else {
         return Vec::new();
     };
     lines
         .map(|line| {
-            let cell = line.split(',').nth(place);
+            let cell = line.split(',').nth(index);
             cell.and_then(|cell| cell.parse().ok()).unwrap_or(f64::NAN)
         })
         .collect()
@@ -248,6 +262,27 @@ mod tests {
             overlapping,
             waiting,
         }
+    }
+
+    #[test]
+    fn figures_show_the_recorded_runs() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let read = |name: &str| std::fs::read_to_string(folder.join(name)).expect(name);
+        let rates = curves(&read("times.csv")).expect("a figure");
+        assert!(rates == read("../docs/rates.svg"), "rates.svg differs");
+        let history = development(&read("history.csv")).expect("a figure");
+        assert!(
+            history == read("../docs/history.svg"),
+            "history.svg differs"
+        );
+    }
+
+    #[test]
+    fn table_has_the_times_of_overlapping_calls() {
+        let table = overlapping_table(&[4, 16].map(times));
+        assert_eq!(column(&table, "order"), [4.0, 16.0]);
+        assert_eq!(column(&table, "floor"), [10.0, 10.0]);
+        assert_eq!(column(&table, "equation_22"), [80.0, 80.0]);
     }
 
     #[test]

@@ -1,5 +1,5 @@
-//! Measures the right-hand sides, counts their instructions, appends a line to `benches/history.csv` and draws
-//! `docs/rates.svg` and `docs/history.svg`:
+//! Measures the right-hand sides, counts their instructions, writes `benches/times.csv`, appends a line to
+//! `benches/history.csv` and draws both files as `docs/rates.svg` and `docs/history.svg`:
 //!
 //!     cargo run --release -p eomgen-benches --bin history
 
@@ -11,7 +11,9 @@ use std::time::Instant;
 
 use eomgen_benches::contenders::{equation_22, floor};
 use eomgen_benches::eliminated_arm::EliminatedArm;
-use eomgen_benches::history::{Contenders, Times, curves, development, heading, line, table};
+use eomgen_benches::history::{
+    Contenders, Times, curves, development, heading, line, overlapping_table, table,
+};
 use eomgen_benches::instructions::{ARGUMENT, available, counted, names};
 use eomgen_benches::{at_all_orders, cases, state, variants};
 use eomgen_validate::references::planetary_arm::dimensionless_equation_22::Equation22;
@@ -167,9 +169,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let line = line(&run, &times, &counts);
     history.push_str(&line);
     let docs = folder.join("../docs");
+    let drawn = overlapping_table(&times);
     let written = [
         (path, history.clone()),
-        (docs.join("rates.svg"), curves(&times)?),
+        (folder.join("times.csv"), drawn.clone()),
+        (docs.join("rates.svg"), curves(&drawn)?),
         (docs.join("history.svg"), development(&history)?),
     ];
     for (path, text) in written {
