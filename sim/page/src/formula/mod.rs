@@ -22,9 +22,9 @@ const APPLY_FUNCTION: &str = "\u{2061}";
 pub fn formula(formula: &Formula) -> Markup {
     match formula {
         Formula::Sum(terms) => html! {
-            @for (place, of) in terms.iter().enumerate() {
-                @if place > 0 { " " }
-                math { (term(of, place == 0)) }
+            @for (index, of) in terms.iter().enumerate() {
+                @if index > 0 { " " }
+                math { (term(of, index == 0)) }
             }
         },
         other => html! { math { (formula_at_level(other, Level::Sum)) } },
@@ -78,7 +78,7 @@ fn formula_at_level(formula: &Formula, level: Level) -> Markup {
         Formula::Symbol(of) => symbol(of),
         Formula::Table(kind) => basis::table(*kind),
         Formula::Sum(terms) => {
-            html! { @for (place, of) in terms.iter().enumerate() { (term(of, place == 0)) } }
+            html! { @for (index, of) in terms.iter().enumerate() { (term(of, index == 0)) } }
         }
         Formula::Quotient { above, below } => products::quotient(1.0, above, below),
         Formula::Power(base, exponent) => power(base, exponent),
@@ -99,8 +99,8 @@ fn formula_at_level(formula: &Formula, level: Level) -> Markup {
             msup { mrow { (formula_at_level(matrix, Level::Base)) } mi mathvariant="normal" { "T" } }
         },
         Formula::Matrix(parts) => html! {
-            @for (place, part) in parts.iter().enumerate() {
-                @if place > 0 { mo { "+" } }
+            @for (index, part) in parts.iter().enumerate() {
+                @if index > 0 { mo { "+" } }
                 (matrix_part(part))
             }
         },
@@ -160,8 +160,8 @@ fn applied(name: &Markup, arguments: &[Formula]) -> Markup {
 
 fn argument_list(arguments: &[Formula]) -> Markup {
     let arguments = html! {
-        @for (place, argument) in arguments.iter().enumerate() {
-            @if place > 0 { mo { "," } }
+        @for (index, argument) in arguments.iter().enumerate() {
+            @if index > 0 { mo { "," } }
             (formula_at_level(argument, Level::Sum))
         }
     };
@@ -264,8 +264,8 @@ fn with_subscripts(head: &Markup, subscripts: impl Iterator<Item = Markup>) -> M
         msub {
             (head)
             mrow {
-                @for (place, subscript) in subscripts.enumerate() {
-                    @if place > 0 { mo { "," } }
+                @for (index, subscript) in subscripts.enumerate() {
+                    @if index > 0 { mo { "," } }
                     (subscript)
                 }
             }

@@ -171,8 +171,8 @@ impl Arm {
     }
 
     fn shipped_value(&self, name: &str) -> f64 {
-        let place = self.names.iter().position(|known| known == name);
-        let value = place.and_then(|place| self.values.get(place));
+        let index = self.names.iter().position(|known| known == name);
+        let value = index.and_then(|index| self.values.get(index));
         value.copied().unwrap_or(f64::NAN)
     }
 

@@ -144,8 +144,8 @@ impl Measurement {
     /// Returns the number, from 1, of the mode with the largest vibration at the tip.
     pub fn dominant_mode(&self) -> Option<usize> {
         let most = self.vibration.iter().copied().fold(0.0, f64::max);
-        let place = self.vibration.iter().position(|power| *power == most);
-        place.filter(|_| most > 0.0).map(|mode| mode + 1)
+        let index = self.vibration.iter().position(|power| *power == most);
+        index.filter(|_| most > 0.0).map(|mode| mode + 1)
     }
 
     /// Returns the number, from 1, of the mode whose band has the most power of dr.

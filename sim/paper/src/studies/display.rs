@@ -75,10 +75,10 @@ impl SampledCase {
 
 impl SampledCase {
     /// Returns one component of all points of the section: x_sp, x_pr, or their rates.
-    pub(super) fn extract_section_column(&self, place: usize) -> Vec<f64> {
+    pub(super) fn extract_section_column(&self, index: usize) -> Vec<f64> {
         let points = self.section.chunks_exact(SECTION_COMPONENTS);
         points
-            .filter_map(|point| point.get(place).copied())
+            .filter_map(|point| point.get(index).copied())
             .collect()
     }
 

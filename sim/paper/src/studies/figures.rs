@@ -100,7 +100,7 @@ fn ids(row: &FigureRow<'_>) -> Vec<String> {
 fn section_columns(row: &FigureRow<'_>) -> [Vec<f64>; 2] {
     match row {
         FigureRow::TimeHistory(_) => [Vec::new(), Vec::new()],
-        FigureRow::Planes(_, display) => [0, 2].map(|place| display.extract_section_column(place)),
+        FigureRow::Planes(_, display) => [0, 2].map(|index| display.extract_section_column(index)),
     }
 }
 

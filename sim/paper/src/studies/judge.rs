@@ -133,8 +133,8 @@ fn judge_route(found: &[&Reading]) -> Verdict {
     let kinds: Vec<Kind> = found.iter().map(|reading| reading.kind).collect();
     // A chaotic case before a regular one is a return to regular motion; an unknown case may be chaotic or regular.
     let pairs = |before: &[Kind], after: &[Kind]| {
-        let turns = |(place, kind): (usize, &Kind)| {
-            before.contains(kind) && kinds.iter().skip(place + 1).any(|k| after.contains(k))
+        let turns = |(index, kind): (usize, &Kind)| {
+            before.contains(kind) && kinds.iter().skip(index + 1).any(|k| after.contains(k))
         };
         kinds.iter().enumerate().any(turns)
     };

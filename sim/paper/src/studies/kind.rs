@@ -61,10 +61,10 @@ fn weigh(
     let section: Vec<f64> = neighbours
         .states()
         .iter()
-        .flat_map(|state| places.map(|place| state.get(place).copied().unwrap_or_default()))
+        .flat_map(|state| places.map(|index| state.get(index).copied().unwrap_or_default()))
         .collect();
     // A constant coordinate has no scale; any value will do.
-    let scale = places.map(|place| match known.extents.get(place) {
+    let scale = places.map(|index| match known.extents.get(index) {
         Some(scale) if *scale > 0.0 => *scale,
         _ => 1.0,
     });

@@ -116,11 +116,11 @@ fn draw_meshes() -> Vec<Part> {
 
 /// Draws the forces of both meshes on the right planet. The radial components push the planet out of the meshes.
 fn draw_forces() -> Vec<Part> {
-    let place = PLANETS[2];
-    let planet = point_on_circle(CENTRE, SUN + PLANET, place);
+    let angle = PLANETS[2];
+    let planet = point_on_circle(CENTRE, SUN + PLANET, angle);
     let contacts = [
-        (place + 180.0, place + 90.0 - PRESSURE),
-        (place, place + 90.0 + PRESSURE),
+        (angle + 180.0, angle + 90.0 - PRESSURE),
+        (angle, angle + 90.0 + PRESSURE),
     ];
     let arrow = |(contact, direction): (f64, f64)| {
         let from = point_on_circle(planet, PLANET, contact);
@@ -270,8 +270,8 @@ fn draw_formulas() -> Vec<Part> {
         "f_la = l dtheta + tip: the sum that Eq. (24) prints",
         "f_la_signed = tip − l dtheta: the error of the arm's end",
     ];
-    for (place, line) in lines.iter().enumerate() {
-        parts.push(words((470.0, 380.0 + 26.0 * place as f64), -1, line));
+    for (index, line) in lines.iter().enumerate() {
+        parts.push(words((470.0, 380.0 + 26.0 * index as f64), -1, line));
     }
     parts
 }

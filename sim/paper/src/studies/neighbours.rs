@@ -99,8 +99,8 @@ fn compute_weights(case: &Case, lengths: &ConversionFactors) -> Vec<f64> {
         .chain(mesh_rates)
         .chain(modes)
         .chain(carrier);
-    for (place, weight) in all {
-        if let Some(slot) = weights.get_mut(place) {
+    for (index, weight) in all {
+        if let Some(slot) = weights.get_mut(index) {
             *slot = weight;
         }
     }

@@ -147,8 +147,8 @@ impl Reading {
     /// Returns the number, from 1, of the mode with the largest vibration.
     pub fn dominant_mode(&self) -> Option<usize> {
         let most = self.vibration.iter().copied().fold(0.0, f64::max);
-        let place = self.vibration.iter().position(|power| *power == most);
-        place.filter(|_| most > 0.0).map(|mode| mode + 1)
+        let index = self.vibration.iter().position(|power| *power == most);
+        index.filter(|_| most > 0.0).map(|mode| mode + 1)
     }
 }
 

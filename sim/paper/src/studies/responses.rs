@@ -51,7 +51,7 @@ pub fn flexibility(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
         .flat_map(|b| [0, PAPER_ORDER].map(|order| create_paper_case(order, b, 10.0 * PI)))
         .collect();
     let (displays, mut study) = run(&arm, &cases, progress)?;
-    for (place, pair) in displays.chunks(2).enumerate() {
+    for (index, pair) in displays.chunks(2).enumerate() {
         let [rigid, flexible] = pair else { continue };
         let row = |title: &str, display| Row {
             title: format!("{title}, {}", format_short_title(&rigid.case)),
@@ -70,8 +70,8 @@ pub fn flexibility(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
             FigureRow::Planes("(d) flexible arm,", flexible),
         ];
         let heading = Heading {
-            file: format!("fig_{:02}.svg", 16 + place),
-            paper: format!("Fig. {}", 16 + place),
+            file: format!("fig_{:02}.svg", 16 + index),
+            paper: format!("Fig. {}", 16 + index),
             caption,
         };
         study.figures.push(draw_rows(heading, &drawn)?);
@@ -108,10 +108,10 @@ fn responses(
     let arm = Arm::new(&[PAPER_ORDER])?;
     let cases = HALF_BACKLASHES_UM.map(|b| create_paper_case(PAPER_ORDER, b, omega));
     let (displays, mut study) = run(&arm, &cases, progress)?;
-    for (place, display) in displays.iter().enumerate() {
+    for (index, display) in displays.iter().enumerate() {
         study
             .figures
-            .push(draw_response(first_figure + place, display)?);
+            .push(draw_response(first_figure + index, display)?);
     }
     let backlash = first_figure == 5;
     let paper = if backlash { "Fig. 10" } else { "" };

@@ -63,8 +63,8 @@ impl Record {
         states: &[Vec<f64>],
         lengths: &ConversionFactors,
     ) -> Self {
-        let column = |place: usize| -> Vec<f64> {
-            let values = states.iter().map(|state| state.get(place).copied());
+        let column = |index: usize| -> Vec<f64> {
+            let values = states.iter().map(|state| state.get(index).copied());
             values.map(Option::unwrap_or_default).collect()
         };
         let (x_sp, x_pr) = (column(X_SP), column(X_PR));

@@ -59,8 +59,8 @@ pub fn find_exclusive_pairs(judged: &[JudgedSet]) -> Vec<(usize, usize)> {
         .filter(|claim| judged.iter().any(|set| holds(set, *claim)))
         .collect();
     let mut pairs = Vec::new();
-    for (place, &one) in somewhere.iter().enumerate() {
-        for &other in somewhere.iter().skip(place + 1) {
+    for (index, &one) in somewhere.iter().enumerate() {
+        for &other in somewhere.iter().skip(index + 1) {
             if !judged
                 .iter()
                 .any(|set| holds(set, one) && holds(set, other))
