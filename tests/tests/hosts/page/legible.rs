@@ -127,11 +127,12 @@ fn reports_are_legible_and_name_their_records() {
     }
 }
 
-/// Evaluates an expression with the page's canvas functions and returns the printed text.
+/// Evaluates an expression with the functions of the page's scripts and returns the printed text.
 fn run_on_canvas(expression: &str) -> String {
     let read = |file: &str| std::fs::read_to_string(project().join(file)).expect("a script");
     let script = [
         read("sim/page/src/play/canvas.js"),
+        read("sim/page/src/play/slider.js"),
         read("cli/src/page/play/curves.js"),
         format!("console.log(JSON.stringify({expression}))"),
     ];
@@ -163,6 +164,16 @@ fn rounding_errors_on_canvas_are_zero_or_constant() {
     assert_eq!(written, r#"["8.1","24.3"]"#);
     let written = run_on_canvas("endLabels(...ends([16.2, 16.21]))");
     assert_eq!(written, r#"["16.2","16.21"]"#);
+}
+
+#[test]
+fn changed_values_are_a_list() {
+    if browser().is_none() {
+        return;
+    }
+    let controls = "[\"m = 0 kg\", \"\", \"l = 2 m\"].map((text) => ({ changed: () => text }))";
+    let written = run_on_canvas(&format!("changedValues({controls})"));
+    assert_eq!(written, r#""m = 0 kg, l = 2 m""#);
 }
 
 #[test]
