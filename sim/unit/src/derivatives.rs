@@ -51,6 +51,7 @@ impl Unit {
         let columns = self.compute_columns(&knowns)?;
         for (place, (known, column)) in knowns.iter().zip(&columns).enumerate() {
             for (row, unknown) in unknowns.iter().enumerate() {
+                // States of controllers are constant between events.
                 let entry = match unknown {
                     Variable::Rate(rate) => column[*rate],
                     Variable::Observable(observable) => column[self.layout.states + observable],
