@@ -8,10 +8,10 @@ programs: lines about the test bench, a line of names, a line of units, semicolo
 not use eomgen.
 """
 
+import argparse
 import math
 import pathlib
 import random
-import sys
 
 MASS, VISCOUS, DRY = 4.0, 12.0, 2.5  # kg, N s/m, N
 STEP, PARTS, SAMPLES = 5e-3, 200, 800  # sample time (s), steps per sample, number of samples
@@ -45,6 +45,8 @@ def record(name, turn):
     return "\n".join(lines) + "\n"
 
 
-folder = pathlib.Path(sys.argv[1])
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("folder", type=pathlib.Path, help="folder for the two records")
+folder = parser.parse_args().folder
 for name, turn in [("first.csv", 0.0), ("second.csv", 1.0)]:
     (folder / name).write_text(record(name, turn), encoding="utf-8")

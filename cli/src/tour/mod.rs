@@ -258,7 +258,7 @@ fn page_text(run: &Instance<'_>, parts: &Parts<'_>, watch: &Stopwatch) -> Result
         arm,
         generated_by: concat!("eomgen ", env!("CARGO_PKG_VERSION")),
         specification: page::Specification {
-            path: SPECIFICATION_PATH,
+            path: ARM_FILE,
             reference: REFERENCE,
             text: SPECIFICATION,
             warnings: Vec::new(),
@@ -302,7 +302,7 @@ fn check_rows(certificate: &Certificate) -> Vec<page::CheckRow> {
         let first = group[0];
         let regimes = match group.len() {
             1 => String::new(),
-            count => format!(" {count} regimes."),
+            count => format!(" This holds in {count} regimes."),
         };
         page::CheckRow {
             sentence: statement(&first.name) + &regimes,

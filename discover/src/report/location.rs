@@ -1,5 +1,7 @@
 //! Sentences about the difference between model and records: channel, time, speed and frequency.
 
+use eomgen_records::record::Record;
+
 use crate::fit::fit_result::Fit;
 use crate::fit::noise_floor::NoiseFloor;
 use crate::fit::residual_spectrum::{SpectralLine, SpectralPeak, find_training_peak};
@@ -56,10 +58,10 @@ fn describe_channel(problem: &EstimationProblem<'_>, fit: &Fit, floor: &NoiseFlo
         let window = &problem.train.windows[worst];
         let record = &problem.train.records[window.record];
         text += &format!(
-            " It is largest from {:.3} s to {:.3} s of `{}`.",
+            " It is largest from {:.3} s to {:.3} s of the {}.",
             record.origin + window.times[0],
             record.origin + window.times[window.times.len() - 1],
-            record.name
+            describe_record(record)
         );
     }
     if let Some(more) = describe_speed_dependence(problem, fit, worst) {
@@ -79,6 +81,22 @@ fn describe_channel(problem: &EstimationProblem<'_>, fit: &Fit, floor: &NoiseFlo
         None => {}
     }
     text
+}
+
+/// Describes a record for a reader: `training record 1`, with its file.
+pub(crate) fn describe_record(record: &Record) -> String {
+    let path = &record.path;
+    let file = path.file_name().unwrap_or(path.as_os_str());
+    let number = |list: &str| {
+        let index = record.name.strip_prefix(list)?.strip_suffix(']')?;
+        index.parse::<usize>().ok().map(|index| index + 1)
+    };
+    let name = match (number("train["), number("test[")) {
+        (Some(number), _) => format!("training record {number}"),
+        (_, Some(number)) => format!("held-out record {number}"),
+        _ => record.name.clone(),
+    };
+    format!("{name} (`{}`)", file.to_string_lossy())
 }
 
 /// Formats the frequency of a line with a tenth of the resolution as the last decimal.

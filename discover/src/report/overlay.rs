@@ -10,7 +10,8 @@ use crate::fit::residuals::{Residuals, channel_residuals};
 use crate::ids::WindowId;
 use crate::model::problem::EstimationProblem;
 use crate::report::location::find_worst_window;
-use crate::report::pictures::{name_record, responsive_figure, stage_label};
+use crate::report::location::describe_record;
+use crate::report::pictures::{responsive_figure, stage_label};
 
 /// Maximum length of the enlarged figure, as a fraction of the record.
 const ENLARGED_FRACTION: f64 = 0.1;
@@ -27,8 +28,8 @@ pub(crate) fn draw_overlays(
     let test = list_residuals(before, after, |fit| &fit.test);
     let seen = RecordColumns::from_records(problem, (&problem.test, 0), &test);
     let caption = format!(
-        "{}, which was not used in the fit. {}",
-        name_record(&problem.test.records[0]),
+        "The {}, which was not used in the fit. {}",
+        describe_record(&problem.test.records[0]),
         explain_windows(problem)
     );
     let whole = seen.draw(0..seen.times.len(), &caption);
@@ -39,13 +40,13 @@ pub(crate) fn draw_overlays(
     let trained = RecordColumns::from_records(problem, (&problem.train, record), &train);
     let stretch = trained.choose_samples(&problem.train, &problem.train.windows[worst]);
     let caption = format!(
-        "{}, which was used in the fit.",
-        name_record(&problem.train.records[record])
+        "The {}, which was used in the fit.",
+        describe_record(&problem.train.records[record])
     );
     html! {
         (whole)
         @if !stretch.is_empty() {
-            h3 { "Largest residual of the original model" }
+            h3 { (match after { Some(_) => "Largest residual of the original model", None => "Largest residual" }) }
             (trained.draw(stretch, &caption))
         }
     }

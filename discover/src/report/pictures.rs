@@ -6,7 +6,6 @@ use eomgen_plot::{
     FigureWidth, FrequencyAxis, Panel, PlotError, Series, SeriesRole, Spectrum, TimeHistory,
     scaled_unit, spectrum_at, time_history_at,
 };
-use eomgen_records::record::Record;
 use eomgen_records::windows::Window;
 use maud::{Markup, html};
 
@@ -14,6 +13,7 @@ use crate::fit::fit_result::Fit;
 use crate::fit::residual_spectrum::compute_residual_spectrum;
 use crate::fit::residuals::channel_residuals;
 use crate::model::problem::EstimationProblem;
+use crate::report::location::describe_record;
 use crate::residual_force::figures::draw_profiles as figures_of_force;
 use crate::residual_force::types::ResidualForce;
 
@@ -67,16 +67,6 @@ pub(crate) fn responsive_figure(
         caption,
     };
     html! { @if !svg.is_empty() { (figure(drawn)) } }
-}
-
-/// Returns name and file of a record for a caption.
-pub(crate) fn name_record(record: &Record) -> String {
-    let file = record.path.file_name().unwrap_or(record.path.as_os_str());
-    format!(
-        "Record `{}`, file `{}`",
-        record.name,
-        file.to_string_lossy()
-    )
 }
 
 /// Returns the label of a simulation, followed by its stage if there are two.
@@ -194,11 +184,11 @@ pub(crate) fn draw_residuals(
             })
             .collect(),
     };
-    let record = name_record(&problem.test.records[0]);
+    let record = describe_record(&problem.test.records[0]);
     let over_time = format!(
-        "{record}: residuals of the compared samples. Between the windows nothing is compared."
+        "Residuals of the compared samples of the {record}. Between the windows nothing is compared."
     );
-    let spectra = format!("{record}: mean spectrum of the residuals in its windows.");
+    let spectra = format!("Mean spectrum of the residuals in the windows of the {record}.");
     html! {
         (responsive_figure(&over_time, |width| time_history_at(&history, width)))
         (responsive_figure(&spectra, |width| spectrum_at(&plot, width)))

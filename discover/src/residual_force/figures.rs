@@ -152,7 +152,7 @@ fn list_pictures(equation: &Equation) -> [Picture; 6] {
             of: |force| &force.position,
         },
         Picture {
-            title: "over time, record train[0]",
+            title: "over time, training record 1",
             axes: Axes::Time,
             is_line: true,
             is_amplitude: false,

@@ -19,7 +19,10 @@ pub fn describe(name: &str) -> Option<String> {
     }
     let sentence = match first {
         "reference" => {
-            let equations = rest.replace('_', " ");
+            let equations = match rest {
+                "equation_22_dimensionless" => "Eq. (22) in dimensionless form".to_owned(),
+                name => name.replace('_', " "),
+            };
             return Some(format!(
                 "The accelerations satisfy the hand-written equations: {equations}."
             ));

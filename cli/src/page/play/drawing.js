@@ -278,7 +278,10 @@ class Instruments {
     context.fillStyle = colour.soft;
     context.textAlign = "left";
     // The scale along the field is that of its length, if both are lengths.
-    const times = unit === "m" && length > 0 && this.deflections[place] > 0 ? `, drawn ${shown((scale * length) / (right - left), 2)} times larger` : "";
+    const ratio = (scale * length) / (right - left);
+    const factor = shown(ratio, 2);
+    const size = ratio < 1 ? `, drawn at ${factor} of its size` : `, drawn ${factor} times larger`;
+    const times = unit === "m" && length > 0 && this.deflections[place] > 0 ? size : "";
     const scaled = multiple(this.deflections[place], unit);
     const end = `${shown(line.at(-1) / scaled.size, 3)} ${scaled.unit}`;
     writeSymbol(context, symbol, `(${along}) = ${end} at the end${times}`, [left, top + tall - 8], right - left);

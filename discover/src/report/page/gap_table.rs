@@ -45,7 +45,7 @@ fn format_before_after(gap: &ChannelGap, has_after: bool, of: fn(TrainTest<f64>)
         html! {
             td.number {
                 (format_quantity(value, 3, &gap.unit))
-                @if value.is_finite() { " " small { "(" (format_number(value / gap.floor, 2)) ")" } }
+                @if value.is_finite() { " " small { "(" (format_number(value / gap.floor, 3)) ")" } }
             }
         }
     };
