@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use eomgen_records::dataset::Channel;
 
-use crate::catalogue::candidate::Candidate;
 use crate::empirical::EMPIRICAL_EFFECT;
 use crate::experiment::next_experiment::Experiments;
 use crate::fit::fit_result::Fit;
@@ -14,10 +13,11 @@ use crate::model::input_faults::{find_declared, find_delayed_input};
 use crate::model::problem::{EstimationProblem, TestCounter};
 use crate::model::unknowns::{Unknown, UnknownKind};
 use crate::report::effect_sizes::{SizesByMember, list_equivalents, list_sizes};
+use crate::report::names::{locate, name_unknown};
 use crate::report::quantity::{format_estimate, format_quantity};
 use crate::report::result::{
     ChannelGap, EffectSite, EffectStatus, EstimateWithUnit, FoundEffect, Nuisance, RejectedEffect,
-    SearchStep, SensorEstimate, ShaftOrder, TrainTest,
+    SearchStep, SensorEstimate, TrainTest,
 };
 use crate::search::member_fits::MemberFit;
 use crate::search::search_result::{AcceptedEffect, RejectedCandidate, SearchResult};
@@ -201,16 +201,6 @@ fn create_found_effect<'a>(
     }
 }
 
-/// Returns effect, site and order of a candidate.
-pub(crate) fn locate(candidate: &Candidate) -> EffectSite {
-    let order = candidate.angle_order.clone();
-    EffectSite {
-        effect: candidate.effect.clone(),
-        site: candidate.site.clone(),
-        order: order.map(|(angle, order)| ShaftOrder { angle, order }),
-    }
-}
-
 /// Returns the nuisances of a fit with their declared priors.
 pub(crate) fn list_nuisances(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Nuisance> {
     let of = |(id, unknown): (UnknownId, &Unknown)| {
@@ -266,32 +256,6 @@ pub(crate) fn describe_deviations(nuisances: &[Nuisance]) -> Vec<String> {
         )
     };
     far.map(note).collect()
-}
-
-/// Returns the name of an unknown of the null model, the value of one SI unit in its unit, and the
-/// unit.
-pub(crate) fn name_unknown(
-    problem: &EstimationProblem<'_>,
-    fit: &Fit,
-    what: &UnknownKind,
-) -> Option<(String, f64, String)> {
-    match what {
-        UnknownKind::Gain(_) => Some(("gain".to_owned(), 1.0, "1".to_owned())),
-        UnknownKind::Bias(at) => {
-            let unit = problem.dataset.channels[*at].unit.clone();
-            Some(("bias".to_owned(), 1.0, unit))
-        }
-        UnknownKind::Delay(_) | UnknownKind::InputDelay => {
-            Some(("delay".to_owned(), 1.0, "s".to_owned()))
-        }
-        UnknownKind::Parameter(name) => {
-            let mut parameters = fit.model.specification().parameters.iter();
-            let parameter = parameters.find(|p| p.name == *name)?;
-            let unit = parameter.unit.text.clone();
-            Some((name.clone(), parameter.unit.from_si(1.0), unit))
-        }
-        UnknownKind::InverseParameter(_) => None,
-    }
 }
 
 /// Returns the parameters of the null model, by name.

@@ -8,7 +8,7 @@ use crate::fit::fit_result::Fit;
 use crate::ids::UnknownId;
 use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::UnknownKind;
-use crate::report::discovery::{locate, name_unknown};
+use crate::report::names::{locate, name_unknown};
 use crate::report::result::{ConditionalSize, EquivalentEffect, EstimateWithUnit};
 use crate::search::member_fits::MemberFit;
 use crate::search::search_result::AcceptedEffect;

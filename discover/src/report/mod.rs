@@ -1,7 +1,7 @@
 //! Results of a comparison or search. Computation: [`run`] from the input ([`origin`]) to the
 //! [`result`], filled in `discovery` and `effect_sizes`; extended specification ([`write_back`]), its simulation
 //! ([`mod@resimulation`]) and validation (`certification`). Texts: [`location`] of the difference,
-//! `remaining_gap`, `summary`, formatted numbers (`quantity`), `experiment`. Documents: `json`, and
+//! `remaining_gap`, `summary`, `names`, formatted numbers (`quantity`), `experiment`. Documents: `json`, and
 //! the HTML page (`page`) with `pictures`, `overlay` of measured and simulated motion, and the
 //! interactive model (`playback`). Checks that return notes: wrong units (`units`), noise of a
 //! given motion (`motion_noise`), noise declared too small (`declared_noise`), high noise floor (`high_floor`), common delay, lag and lead of
@@ -21,6 +21,7 @@ mod initial_states;
 mod json;
 pub mod location;
 mod motion_noise;
+mod names;
 pub mod origin;
 mod overlay;
 mod page;

@@ -9,8 +9,8 @@ use crate::fit::fit_result::Fit;
 use crate::fit::residuals::{Residuals, channel_residuals};
 use crate::ids::WindowId;
 use crate::model::problem::EstimationProblem;
-use crate::report::location::find_worst_window;
 use crate::report::location::describe_record;
+use crate::report::location::find_worst_window;
 use crate::report::pictures::{responsive_figure, stage_label};
 
 /// Maximum length of the enlarged figure, as a fraction of the record.
