@@ -107,6 +107,11 @@ fn check_driven(
     inputs: &[String],
 ) -> Result<Vec<usize>, String> {
     let count = inputs.len();
+    if requested.outputs == 0 {
+        return Err(
+            "`outputs` of the controller is 0: the number of driven inputs must be set".to_owned(),
+        );
+    }
     let Some(driven) = requested.driven.get(..requested.outputs) else {
         return Err(format!(
             "the controller drives {} inputs, but the model has {count}",

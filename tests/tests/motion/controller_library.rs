@@ -185,6 +185,10 @@ fn faulty_libraries_are_rejected_with_their_cause() {
             "drives 9 inputs, but the model has 1",
         ),
         (
+            ("outputs = 1;", "delay = 0;"),
+            "`outputs` of the controller is 0: the number of driven inputs must be set",
+        ),
+        (
             ("== 1 ? 0 : 7", "== 3 ? 0 : 7"),
             "rejects the model `furuta_pendulum`: eomgen_controller_start returned 7",
         ),
