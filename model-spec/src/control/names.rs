@@ -1,6 +1,6 @@
 //! Resolves the names in the expressions of a controller.
 
-use crate::ast::{Syntax, SyntaxKind};
+use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
 use crate::diagnostic::{Diagnostic, quote};
 use crate::functions::FORMS;
 use crate::model::{Function, MeasuredQuantity, SampledExpression, SampledKind};
@@ -190,7 +190,10 @@ impl ControlResolver<'_> {
         let boxed: Vec<Box<SampledExpression>> = resolved.iter().cloned().map(Box::new).collect();
         Ok(match (name, function) {
             ("clamp", _) => match <[_; 3]>::try_from(boxed) {
-                Ok(arguments) => SampledKind::Clamp(arguments),
+                Ok(arguments) => {
+                    check_limits(&arguments)?;
+                    SampledKind::Clamp(arguments)
+                }
                 Err(_) => SampledKind::Number(f64::NAN),
             },
             ("quantise", _) => match <[_; 2]>::try_from(boxed) {
@@ -239,5 +242,41 @@ impl ControlResolver<'_> {
         Diagnostic::error(format!("unknown function {}", quote(name)))
             .with_span(span, "not known")
             .with_optional_help(did_you_mean(name, known))
+    }
+}
+
+/// Rejects numbers as limits of `clamp` if the lower limit is above the upper one.
+fn check_limits([_, low, high]: &[Box<SampledExpression>; 3]) -> Result<(), Diagnostic> {
+    match (find_constant(low), find_constant(high)) {
+        (Some(lower), Some(upper)) if lower > upper => Err(Diagnostic::error(
+            "the lower limit of `clamp` is above the upper limit",
+        )
+        .with_span(
+            Span::new(low.span.start, high.span.end),
+            format!("{lower} is above {upper}"),
+        )
+        .with_help(format!(
+            "the lower limit is the second argument: write clamp(x, {upper}, {lower})"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Returns the value of an expression of numbers; `None` if the expression contains a quantity or a function.
+fn find_constant(expression: &SampledExpression) -> Option<f64> {
+    match &expression.kind {
+        SampledKind::Number(value) => Some(*value),
+        SampledKind::Negate(operand) => find_constant(operand).map(|value| -value),
+        SampledKind::Binary(operator, left, right) => {
+            let (left, right) = (find_constant(left)?, find_constant(right)?);
+            Some(match operator {
+                BinaryOperator::Add => left + right,
+                BinaryOperator::Subtract => left - right,
+                BinaryOperator::Multiply => left * right,
+                BinaryOperator::Divide => left / right,
+                BinaryOperator::Power => left.powf(right),
+            })
+        }
+        _ => None,
     }
 }

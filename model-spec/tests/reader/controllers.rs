@@ -200,6 +200,15 @@ fn mistakes_are_rejected_with_their_place() {
             2,
             &["`clamp` does not accept 2 arguments", "clamp(x, low, high)"],
         ),
+        (
+            output("k*clamp(x/length, 1, -1/2)"),
+            2,
+            &[
+                "above the upper limit",
+                "1 is above -0.5",
+                "clamp(x, -0.5, 1)",
+            ],
+        ),
         (output("k*xx"), 2, &["unknown name `xx`"]),
         (
             output("k*twice"),
