@@ -173,7 +173,8 @@ impl Inference<'_> {
                 let parameter = &self.model.parameters[*index];
                 let name = parameter.name.as_str();
                 let has_no_unit = ["", "1"].contains(&parameter.unit.text.as_str());
-                if has_no_unit && !found.contains(&name) {
+                // Measured quantities of a controller other than parameters have no name here.
+                if has_no_unit && !name.is_empty() && !found.contains(&name) {
                     found.push(name);
                 }
             }

@@ -115,7 +115,10 @@ fn sampled_model(model: &Model, controller: &Controller) -> Model {
         Unit::coherent(dimension.unwrap_or(Dimension::DIMENSIONLESS))
     };
     let parameter = |quantity: &MeasuredQuantity| Parameter {
-        name: String::new(),
+        name: match quantity {
+            MeasuredQuantity::Parameter(id) => model.parameters[*id].name.clone(),
+            _ => String::new(),
+        },
         unit: unit(quantity),
         doc: String::new(),
         origin: String::new(),

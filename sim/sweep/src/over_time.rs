@@ -79,6 +79,13 @@ fn find_number(model: &CompiledModel, measure_name: &str) -> Result<NumberOfQuan
     } else if let Some(place) = place(&states) {
         (Quantity::State(place), model.state_units()[place].clone())
     } else {
+        if let Some(controller) = find_controller(model, name) {
+            return Err(SweepError::Request(format!(
+                "{}: `{name}` is a state of the controller `{controller}`, which a sweep does not measure: measure an \
+                 observable, a coordinate or a rate; `simulate` writes the states of controllers",
+                Argument::Measure.with_text(measure_name)
+            )));
+        }
         let known = observables.iter().chain(&states).map(String::as_str);
         let hint = suggest_state(name, known).unwrap_or_else(|| {
             format!(
@@ -99,6 +106,13 @@ fn find_number(model: &CompiledModel, measure_name: &str) -> Result<NumberOfQuan
         name: name.to_owned(),
         unit,
     })
+}
+
+/// Returns the name of the controller with the given state, if any.
+fn find_controller<'m>(model: &'m CompiledModel, state: &str) -> Option<&'m str> {
+    let mut controllers = model.model().controllers.iter();
+    let own = controllers.find(|own| own.states.iter().any(|known| known.name == state));
+    own.map(|own| own.name.as_str())
 }
 
 /// Measures of quantities at many parameter values, from one motion per point.

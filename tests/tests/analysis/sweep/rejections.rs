@@ -57,6 +57,26 @@ fn invalid_engine_options_are_rejected() {
 }
 
 #[test]
+fn controller_state_as_measure_is_rejected_by_its_name() {
+    let place = SweepFolder::new();
+    let controlled = OSCILLATOR.replace("\"F*sin(omega*t)\"", "\"u\"")
+        + "[inputs]\nu = { unit = \"N\" }\n[controllers.pi]\nperiod = 0.1\n\
+           states = { total = { unit = \"m\", next = \"total + x\" } }\noutputs = { u = \"-k*total\" }\n";
+    fs::write(place.path_to("oscillator.toml"), controlled).expect("a specification");
+    let given = place.sweep("map", &["--vary", "m=1:2:2", "--until", "1"]);
+    let given = given.into_iter().map(|argument| match &*argument {
+        "poincare" => "final:total".to_owned(),
+        _ => argument,
+    });
+    let message = expect_rejection(&given.collect::<Vec<_>>());
+    assert!(
+        message.contains("`total` is a state of the controller `pi`"),
+        "{message}"
+    );
+    assert!(!message.contains("did you mean"), "{message}");
+}
+
+#[test]
 fn points_without_result_have_a_reason() {
     let place = SweepFolder::new();
     // Without mass the model cannot be simulated, and at frequency 0 there is no forcing period.
