@@ -169,6 +169,19 @@ def test_ctrl_c_interrupts_a_controlled_simulation(interrupt):
         m.simulate(until=1e4, interval=1e3, inputs={"r": 0.0}, controller=pd, period=1e-3)
 
 
+def test_ctrl_c_interrupts_a_controller_that_does_not_return(interrupt):
+    def never(t, x, y):
+        while t > 0.1:
+            pass
+        return {"u": 0.0}
+
+    m = eomgen.load(MASS)
+    with pytest.raises(KeyboardInterrupt), interrupt(0.5):
+        m.simulate(until=1, inputs={"r": 0.0}, controller=never, period=0.01)
+    # The interrupt does not remain pending for the next call.
+    assert m.simulate(until=1, inputs={"r": 0.0}, controller=pd, period=0.01).t[-1] == 1
+
+
 STEP = 'u_step = { value = 0.5, unit = "N" }\n'
 
 QUANTISED = """
