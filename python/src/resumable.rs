@@ -1,12 +1,16 @@
 //! Simulations that continue over several calls, as a Python class.
 
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::time::Instant;
+
 use eomgen_compiled_model::{InitialChange, LoggedEvent, Simulation as Continued, SolverOptions};
 use eomgen_sim::inputs::HeldInputs;
 use numpy::{PyArray1, PyReadonlyArray1, ToPyArray};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::error;
+use crate::error::{self, SimulationError};
+use crate::interruption::{Interrupted, SIGNAL_INTERVAL};
 use crate::model::Model;
 use crate::simulation::{EventTuple, describe_event, parse_solver};
 
@@ -15,6 +19,20 @@ use crate::simulation::{EventTuple, describe_event, parse_solver};
 pub struct Simulation {
     continued: Continued<'static>,
     observables: Vec<f64>,
+    /// True after a signal stopped the solver within [`Simulation::advance`]: its state is then incomplete.
+    is_interrupted: bool,
+}
+
+impl Simulation {
+    /// Rejects an interrupted simulation.
+    fn check(&self) -> PyResult<()> {
+        match self.is_interrupted {
+            true => Err(SimulationError::new_err(
+                "the simulation was interrupted and cannot continue: start another one with `simulation`",
+            )),
+            false => Ok(()),
+        }
+    }
 }
 
 #[pymethods]
@@ -44,6 +62,7 @@ impl Simulation {
         Ok(Self {
             continued: continued.map_err(error::model)?,
             observables: vec![0.0; program.observables.len()],
+            is_interrupted: false,
         })
     }
 
@@ -53,19 +72,47 @@ impl Simulation {
         InitialChange::describe_all("state", self.continued.initial_changes())
     }
 
-    /// Continues to a time, s.
-    fn advance(&mut self, until: f64) -> PyResult<()> {
-        self.continued.advance(until).map_err(error::model)
+    /// Continues to a time, s. Checks for signals between steps.
+    fn advance(&mut self, py: Python<'_>, until: f64) -> PyResult<()> {
+        self.check()?;
+        let mut raised = None;
+        let mut checked = Instant::now();
+        let mut check = |_: f64| {
+            if checked.elapsed() < SIGNAL_INTERVAL {
+                return;
+            }
+            checked = Instant::now();
+            // Other threads run here.
+            py.detach(std::thread::yield_now);
+            if let Err(error) = py.check_signals() {
+                raised = Some(error);
+                resume_unwind(Box::new(Interrupted));
+            }
+        };
+        let continued = &mut self.continued;
+        let ended = catch_unwind(AssertUnwindSafe(|| {
+            continued.advance_with_progress(until, &mut check)
+        }));
+        match (ended, raised) {
+            (Ok(ended), _) => ended.map_err(error::model),
+            (Err(_), Some(raised)) => {
+                self.is_interrupted = true;
+                Err(raised)
+            }
+            (Err(panic), None) => resume_unwind(panic),
+        }
     }
 
     /// Changes the inputs from the current time on.
     fn set_inputs(&mut self, inputs: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
+        self.check()?;
         let set = self.continued.set_inputs(inputs.as_slice()?);
         set.map_err(error::model)
     }
 
     /// Continues from another state.
     fn set_state(&mut self, state: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
+        self.check()?;
         let set = self.continued.set_state(state.as_slice()?);
         set.map_err(error::model)
     }

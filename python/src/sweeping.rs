@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use eomgen_compiled_model::Error;
 use eomgen_sweep::{
-    Folder, MissingNumbers, Shard, Span, Sweep, SweepError, SweepRequest, Table, merge, run,
+    Folder, MissingNumbers, Shard, Span, Sweep, SweepError, SweepRequest, Table, merge,
+    run_with_check,
 };
 use pyo3::prelude::*;
 
@@ -82,11 +83,15 @@ fn compute(
     let folder = Folder::open(out, sweep.job(&measures)?)?;
     let columns = folder.job().columns().into_iter();
     let units = columns.map(|column| (column.name, column.unit)).collect();
-    let mut report = |computed: usize, whole: usize| {
-        line.check();
-        line.report((computed, whole));
-    };
-    run(&folder, &measures, Shard::WHOLE, threads, &mut report)?;
+    let mut report = |computed: usize, whole: usize| line.report((computed, whole));
+    let check = || line.check();
+    run_with_check(
+        (&folder, &measures),
+        Shard::WHOLE,
+        threads,
+        &mut report,
+        &check,
+    )?;
     let table = merge(&folder).map_err(|error: SweepError| Error::from(error))?;
     let missing = MissingNumbers::find(folder.job(), &table);
     if missing.is_without_crossings {

@@ -224,3 +224,10 @@ def test_ctrl_c_interrupts_a_sweep_that_can_be_resumed(chain, interrupt, tmp_pat
     with pytest.raises(KeyboardInterrupt), interrupt(0.5):
         chain.sweep("k=4:9:4000", "max:x", **slow)
     assert (tmp_path / "out").exists()
+
+
+def test_ctrl_c_interrupts_the_points_of_a_sweep(chain, interrupt, tmp_path):
+    # A single point takes minutes.
+    slow = dict(until=1e6, inputs={"u": "0.5*sin(2*t)"}, out=tmp_path / "out", threads=2)
+    with pytest.raises(KeyboardInterrupt), interrupt(1.0):
+        chain.sweep("k=4:9:40", "max:x", **slow)

@@ -62,3 +62,13 @@ def test_unknown_names_and_values_are_rejected(arm):
         s["nothing"]
     with pytest.raises(ValueError, match="expected one of"):
         arm.simulation(solver="euler")
+
+
+@pytest.mark.parametrize("solver, until", [("rk", 5e4), ("fixed", 190)])
+def test_ctrl_c_interrupts_a_simulation_that_continues(interrupt, cart, solver, until):
+    s = cart.simulation(solver=solver, max_step=1e-5)
+    s.advance(0.5)
+    with pytest.raises(KeyboardInterrupt), interrupt(0.5):
+        s.advance(until)
+    with pytest.raises(eomgen.SimulationError, match="was interrupted and cannot continue"):
+        s.advance(2 * until)

@@ -502,3 +502,23 @@ arc = "integral(F*(sqrt(1 + diff(w, x)^2) - 1), w)"
 def test_integral_that_quadrature_does_not_resolve_gives_a_warning():
     with pytest.warns(UserWarning, match=r"integrate `integral\(F\*\(sqrt.*relative error"):
         eomgen.load(ARC).simulate(until=0.01, interval=0.01, state={"q_1": 15, "q_2": 3})
+
+
+def test_ctrl_c_interrupts_an_input_function(interrupt, cart):
+    cleaned = []
+
+    def never(t):
+        try:
+            while True:
+                pass
+        finally:
+            cleaned.append(t)
+
+    with pytest.raises(KeyboardInterrupt), interrupt(0.5):
+        cart.simulate(until=1, inputs={cart.inputs[0]: never}, solver="rk")
+    assert len(cleaned) == 1
+
+
+def test_ctrl_c_interrupts_fixed_steps(interrupt, cart):
+    with pytest.raises(KeyboardInterrupt), interrupt(0.5):
+        cart.simulate(until=190, interval=10, solver="fixed", max_step=1e-5)

@@ -123,7 +123,8 @@ class Simulation:
     def advance(self, until: float) -> None:
         """Continues to the time `until`, s.
 
-        Raises SimulationError if the solver stops early; `t` and `state` are then those of the stop.
+        Raises SimulationError if the solver stops early; `t` and `state` are then those of the stop. After Ctrl-C the
+        simulation cannot continue.
         """
         self._native.advance(_arguments.number("until", until, "a time in s"))
 

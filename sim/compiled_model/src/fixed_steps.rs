@@ -14,6 +14,9 @@ use crate::motion::{EarlyStop, StopCause};
 /// far above the rounding errors of times.
 const GRID_TOLERANCE: f64 = 1e-6;
 
+/// Number of steps between two reports of progress.
+const STEPS_PER_REPORT: u64 = 256;
+
 /// Motion with fixed steps from a start: step k begins at start + k step.
 pub struct FixedSteps {
     evaluator: Evaluator,
@@ -121,6 +124,7 @@ impl FixedSteps {
         inputs: &HeldInputs,
         trajectory: &mut Trajectory,
         names: &dyn Fn() -> Vec<String>,
+        progress: &mut dyn FnMut(f64),
     ) -> Result<Option<EarlyStop>, Error> {
         for row in samples
             .iter()
@@ -143,6 +147,9 @@ impl FixedSteps {
                     let cause = StopCause::NotFinite;
                     let t = Some(t);
                     return Ok(Some(EarlyStop { t, reason, cause }));
+                }
+                if self.count.is_multiple_of(STEPS_PER_REPORT) {
+                    progress(self.time());
                 }
                 trajectory.statistics.steps += 1;
                 trajectory.statistics.evaluations += 4;

@@ -352,8 +352,20 @@ impl Simulation<'_> {
     /// # Errors
     /// A time before the current one; [`Error::Stopped`] with the last time if the solver stops early.
     pub fn advance(&mut self, until: f64) -> Result<(), Error> {
+        self.advance_with_progress(until, &mut |_| {})
+    }
+
+    /// Continues to the time `until` (s) like [`Simulation::advance`]. Calls `progress` with the current time, s.
+    ///
+    /// # Errors
+    /// Those of [`Simulation::advance`].
+    pub fn advance_with_progress(
+        &mut self,
+        until: f64,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<(), Error> {
         let mut trajectory = Trajectory::default();
-        let ended = self.advance_through((until, &[]), &mut trajectory, &mut |_| {});
+        let ended = self.advance_through((until, &[]), &mut trajectory, progress);
         self.log.events.append(&mut trajectory.events);
         self.log.jumps.append(&mut trajectory.jumps);
         match ended? {
@@ -387,7 +399,8 @@ impl Simulation<'_> {
         self.check_times(until, samples)?;
         if let Engine::Fixed(steps) = &mut self.engine {
             let names = || self.instance.model().state_names();
-            let stop = steps.advance((until, samples), &self.inputs, trajectory, &names)?;
+            let asked = (until, samples);
+            let stop = steps.advance(asked, &self.inputs, trajectory, &names, progress)?;
             progress(until);
             return Ok(stop);
         }

@@ -109,10 +109,10 @@ impl Propagator {
     /// Same as [`Propagator::simulate`], or an invalid request.
     pub fn measure_lyapunov(
         &mut self,
-        initial: &[f64],
-        t: f64,
+        (t, initial): (f64, &[f64]),
         inputs: &HeldInputs,
         request: &LyapunovRequest,
+        check: &dyn Fn(),
     ) -> Result<LyapunovGrowth, ExactError> {
         request.check()?;
         let felt = self.influential_states();
@@ -137,6 +137,7 @@ impl Propagator {
         let mut growths = vec![Vec::with_capacity(request.interval_count); wanted];
         let mut section = Vec::with_capacity(request.interval_count);
         for index in 1..=request.interval_count {
+            check();
             let end = measured_from + index as f64 * request.interval;
             self.continue_to(&mut carried, end, inputs)?;
             for (all, growth) in growths.iter_mut().zip(carried.growth_exponents()) {

@@ -65,7 +65,7 @@ pub fn measure_growth(
     system: &dyn System,
     initial: &[f64],
     felt: &[bool],
-    stretches: &MeasurementTimes,
+    (stretches, check): (&MeasurementTimes, &dyn Fn()),
     settings: &Settings,
 ) -> Result<GrowthMeasurements, GrowthError> {
     let MeasurementTimes {
@@ -90,10 +90,13 @@ pub fn measure_growth(
     carried.simulate_motion(start + 0.5 * transient)?;
     let turns = (0.5 * transient / interval).ceil();
     for turn in 1..=turns as usize {
+        check();
         carried.simulate_interval(start + 0.5 * transient * (1.0 + turn as f64 / turns))?;
     }
-    let growths = (1..=intervals)
-        .map(|index| carried.simulate_interval(start + transient + index as f64 * interval));
+    let growths = (1..=intervals).map(|index| {
+        check();
+        carried.simulate_interval(start + transient + index as f64 * interval)
+    });
     Ok(GrowthMeasurements {
         growth_exponents: growths.collect::<Result<_, _>>()?,
         switches: carried.switches,
@@ -306,7 +309,7 @@ mod tests {
             intervals: 5,
         };
         let settings = Settings::default();
-        let found = measure_growth(&system, &[0.1, 0.0], &FELT, &stretches, &settings)?;
+        let found = measure_growth(&system, &[0.1, 0.0], &FELT, (&stretches, &|| {}), &settings)?;
         // A vector returns to its direction after half a period.
         for growth in found.growth_exponents {
             assert!((growth / period + 0.15).abs() < 1e-8, "{growth}");
@@ -331,7 +334,7 @@ mod tests {
             };
             let settings = Settings::with_tolerance(1e-12);
             let start = [0.1, 0.4];
-            let found = measure_growth(&system, &start, &FELT, &stretches, &settings)?;
+            let found = measure_growth(&system, &start, &FELT, (&stretches, &|| {}), &settings)?;
             assert!(found.switches > 1, "{damper}");
             let (small, norm) = (1e-6, 1.0_f64.hypot(0.05));
             let end = |side: f64| {

@@ -79,7 +79,7 @@ pub use missing_numbers::MissingNumbers;
 pub use over_time::OverTime;
 pub use poincare::{Poincare, Section};
 pub use points::Points;
-pub use run::{RunSummary, run};
+pub use run::{RunSummary, run, run_with_check};
 pub use samples::{SampledParameter, Samples};
 pub use shard::Shard;
 pub use span::Span;

@@ -129,7 +129,12 @@ impl Measure for Lyapunov<'_> {
 }
 
 impl Worker for &Lyapunov<'_> {
-    fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
+    fn measure(
+        &mut self,
+        settings: &[(&str, f64)],
+        out: &mut [f64],
+        check: &dyn Fn(),
+    ) -> Result<(), Failure> {
         let instance = self.model.with_parameters(settings)?;
         let stretches = self
             .times
@@ -139,8 +144,8 @@ impl Worker for &Lyapunov<'_> {
             growth_exponents: growths,
             switches,
         } = match self.is_exact() {
-            true => exact_growth(&instance, &start, &stretches)?,
-            false => variational_growth(&instance, &start, &stretches)?,
+            true => exact_growth(&instance, &start, &stretches, check)?,
+            false => variational_growth(&instance, &start, &stretches, check)?,
         };
         let exponent =
             mean_exponent(&growths, stretches.interval).map_err(|_| Failure::Undefined)?;
@@ -158,6 +163,7 @@ fn exact_growth(
     instance: &Instance<'_>,
     start: &Start,
     stretches: &MeasurementTimes,
+    check: &dyn Fn(),
 ) -> Result<GrowthMeasurements, Failure> {
     let request = Request {
         transient: stretches.transient,
@@ -166,8 +172,8 @@ fn exact_growth(
         exponent_count: 1,
     };
     let mut propagator = instance.propagator()?;
-    let growth =
-        propagator.measure_lyapunov(&start.state, stretches.start, &start.inputs, &request)?;
+    let begin = (stretches.start, &start.state[..]);
+    let growth = propagator.measure_lyapunov(begin, &start.inputs, &request, check)?;
     Ok(GrowthMeasurements {
         growth_exponents: growth
             .growth_exponents
@@ -182,6 +188,7 @@ fn variational_growth(
     instance: &Instance<'_>,
     start: &Start,
     stretches: &MeasurementTimes,
+    check: &dyn Fn(),
 ) -> Result<GrowthMeasurements, Failure> {
     let evaluator = RefCell::new(instance.evaluator()?);
     let system = DrivenModel::new(&evaluator, &start.inputs)
@@ -197,7 +204,7 @@ fn variational_growth(
         &system,
         &start.state,
         &felt,
-        stretches,
+        (stretches, check),
         &settings,
     )?)
 }

@@ -55,8 +55,14 @@ pub trait Measure: Sync {
 /// Worker with its own memory. Its results must not depend on previous points.
 pub trait Worker {
     /// Measures at a point. `settings` are the varied parameters in their declared units. `out` has
-    /// one number per column of all descriptions, NaN before the call.
-    fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure>;
+    /// one number per column of all descriptions, NaN before the call. `check` is called between steps of the solver
+    /// and unwinds to stop the sweep.
+    fn measure(
+        &mut self,
+        settings: &[(&str, f64)],
+        out: &mut [f64],
+        check: &dyn Fn(),
+    ) -> Result<(), Failure>;
 }
 
 /// Reason why a point has no number: the numbers are NaN, except the number of crossings, and the status is

@@ -182,8 +182,12 @@ impl<'a> OverTime<'a> {
         std::iter::repeat_n(start, before).chain(rows).collect()
     }
 
-    /// Simulates and measures the motion at a point.
-    fn simulate(&self, settings: &[(&str, f64)]) -> Result<(Instance<'a>, Motion), Failure> {
+    /// Simulates and measures the motion at a point. Calls `check` between steps.
+    fn simulate(
+        &self,
+        settings: &[(&str, f64)],
+        check: &dyn Fn(),
+    ) -> Result<(Instance<'a>, Motion), Failure> {
         let instance = self.model.with_parameters(settings)?;
         let (begin, end) = self.times.range(&instance, self.conditions)?;
         let start = self.conditions.start_at(&instance, settings)?;
@@ -211,7 +215,7 @@ impl<'a> OverTime<'a> {
             Number::Final => None,
         });
         let measurements: Vec<Measurement> = measurements.collect();
-        let motion = instance.simulate_measured(&request, &measurements, &mut |_| {});
+        let motion = instance.simulate_measured(&request, &measurements, &mut |_| check());
         Ok((instance, require_finished_motion(motion)?))
     }
 }
@@ -261,8 +265,13 @@ impl Measure for OverTime<'_> {
 }
 
 impl Worker for &OverTime<'_> {
-    fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
-        let (instance, motion) = self.simulate(settings)?;
+    fn measure(
+        &mut self,
+        settings: &[(&str, f64)],
+        out: &mut [f64],
+        check: &dyn Fn(),
+    ) -> Result<(), Failure> {
+        let (instance, motion) = self.simulate(settings, check)?;
         let is_final = |own: &NumberOfQuantity| own.number == Number::Final;
         let (state, observables) = match self.numbers.iter().any(is_final) {
             true => evaluate_last_row(&instance, &motion)?,

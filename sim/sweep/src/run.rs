@@ -41,6 +41,21 @@ pub fn run(
     threads: usize,
     progress: &mut (dyn FnMut(usize, usize) + Send),
 ) -> Result<RunSummary, SweepError> {
+    run_with_check((folder, measures), shard, threads, progress, &|| {})
+}
+
+/// Computes the missing chunks like [`run`]. `check` is called before each point and between steps of the solvers. It
+/// stops the run if it unwinds: then each thread ends its point at the next check, and no further point starts.
+///
+/// # Errors
+/// Those of [`run`].
+pub fn run_with_check(
+    (folder, measures): (&Folder, &[Box<dyn Measure + '_>]),
+    shard: Shard,
+    threads: usize,
+    progress: &mut (dyn FnMut(usize, usize) + Send),
+    check: &(dyn Fn() + Sync),
+) -> Result<RunSummary, SweepError> {
     let job = folder.job();
     let (missing, found) = missing_chunks(folder, shard)?;
     let whole = missing
@@ -65,7 +80,7 @@ pub fn run(
         missing.par_iter().try_for_each_init(
             || workers(measures),
             |workers, chunk| {
-                let numbers = compute_chunk(job, *chunk, workers, &point_is_done);
+                let numbers = compute_chunk(job, *chunk, workers, (check, &point_is_done));
                 folder.store(*chunk, &numbers)
             },
         )
@@ -114,15 +129,18 @@ fn compute_chunk(
     job: &Job,
     chunk: usize,
     workers: &mut [WorkerColumns<'_>],
-    point_is_done: &dyn Fn(),
+    (check, point_is_done): (&dyn Fn(), &dyn Fn()),
 ) -> Vec<f64> {
     let points = job.chunk_range(chunk);
     let mut numbers = vec![f64::NAN; points.len() * job.measured_count()];
     for (point, row) in points.zip(numbers.chunks_mut(job.measured_count())) {
         let settings = job.points().settings(point);
+        check();
         for columns in workers.iter_mut() {
             columns.numbers.fill(f64::NAN);
-            let outcome = columns.worker.measure(&settings, &mut columns.numbers);
+            let outcome = columns
+                .worker
+                .measure(&settings, &mut columns.numbers, check);
             let status = outcome.map_or_else(|failure| f64::from(failure.code()), |()| 0.0);
             let mut found = &columns.numbers[..];
             for range in &columns.ranges {
@@ -161,7 +179,12 @@ mod tests {
     }
 
     impl Worker for Reciprocal {
-        fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
+        fn measure(
+            &mut self,
+            settings: &[(&str, f64)],
+            out: &mut [f64],
+            _check: &dyn Fn(),
+        ) -> Result<(), Failure> {
             out[0] = 1.0 / settings[0].1;
             if settings[0].1 == 0.0 {
                 return Err(Failure::Undefined);

@@ -94,7 +94,7 @@ fn lyapunov_exponents_of_damped_oscillator_equal_its_decay() {
         exponent_count: 2,
     };
     let growth = propagator
-        .measure_lyapunov(&[0.1, 0.0], 0.0, &HeldInputs::zero(0), &request)
+        .measure_lyapunov((0.0, &[0.1, 0.0]), &HeldInputs::zero(0), &request, &|| {})
         .expect("exponents");
     // Both exponents are -c/(2 m), up to the rotation of a vector within the last interval divided by the total
     // time.

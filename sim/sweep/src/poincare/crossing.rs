@@ -107,6 +107,7 @@ pub struct CrossingResult {
 }
 
 /// Returns `kept` crossings after the first `transient` ones, in every turn of a periodic angle. `span` is in s.
+/// `settings` contains the settings of the solver and a check that is called between its steps.
 ///
 /// # Errors
 /// [`Failure::FewCrossings`], or a motion that the solver does not support.
@@ -115,7 +116,7 @@ pub fn find_crossings(
     crossing: &Crossing,
     (transient, kept): (usize, usize),
     span: (f64, f64),
-    settings: &Settings,
+    settings: (&Settings, &dyn Fn()),
 ) -> Result<CrossingResult, Failure> {
     let find = |in_every_turn| {
         let wanted = (transient, kept);
@@ -141,12 +142,12 @@ fn follow_crossings(
     (crossing, in_every_turn): (&Crossing, bool),
     wanted: (usize, usize),
     span: (f64, f64),
-    settings: &Settings,
+    settings: (&Settings, &dyn Fn()),
 ) -> Result<CrossingResult, Failure> {
     let evaluator = RefCell::new(instance.evaluator()?);
     let Start { state, inputs } = start;
     let watched = SectionSystem {
-        system: instance.driven_model(&evaluator, inputs, settings.tolerance)?,
+        system: instance.driven_model(&evaluator, inputs, settings.0.tolerance)?,
         surface: Surface {
             crossing,
             turn_start: in_every_turn.then(Cell::default),
@@ -226,7 +227,7 @@ impl<S: System> SectionSystem<'_, S> {
         initial: &[f64],
         (start, until): (f64, f64),
         (transient, kept): (usize, usize),
-        settings: &Settings,
+        (settings, check): (&Settings, &dyn Fn()),
     ) -> Result<Vec<Vec<f64>>, SolveError> {
         let (mut state, mut between, mut settings) = (initial.to_vec(), Vec::new(), *settings);
         let count = || self.found_crossings.borrow().len();
@@ -244,7 +245,7 @@ impl<S: System> SectionSystem<'_, S> {
                 })
                 .collect();
             self.surface.set_turn(&state);
-            let motion = simulate(self, &state, span, &samples, &settings, &mut |_| {})?;
+            let motion = simulate(self, &state, span, &samples, &settings, &mut |_| check())?;
             let work = motion.statistics;
             let steps = work.steps + work.rejected_steps + work.trial_steps;
             settings.max_steps = settings.max_steps.saturating_sub(steps);

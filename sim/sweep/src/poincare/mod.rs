@@ -290,15 +290,20 @@ impl Measure for Poincare<'_> {
 }
 
 impl Worker for &Poincare<'_> {
-    fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
+    fn measure(
+        &mut self,
+        settings: &[(&str, f64)],
+        out: &mut [f64],
+        check: &dyn Fn(),
+    ) -> Result<(), Failure> {
         let instance = self.model.with_parameters(settings)?;
         let start = self.conditions.start_at(&instance, settings)?;
         let found = match &self.places {
             ResolvedSection::Forcing(frequency) => {
-                self.sample_points_per_period(&instance, &start, frequency)
+                self.sample_points_per_period((&instance, &start), frequency, check)
             }
             ResolvedSection::Crossing(crossing, until) => {
-                self.find_points_at_crossings(&instance, &start, crossing, *until)
+                self.find_points_at_crossings((&instance, &start), (crossing, *until), check)
             }
         };
         if let Err(Failure::FewCrossings(count)) = found
@@ -345,12 +350,12 @@ impl Poincare<'_> {
 
     fn sample_points_per_period(
         &self,
-        instance: &Instance<'_>,
-        start: &Start,
+        (instance, start): (&Instance<'_>, &Start),
         frequency: &Frequency,
+        check: &dyn Fn(),
     ) -> Result<SectionPoints, Failure> {
         let times = self.compute_sample_times(frequency.period(instance)?);
-        let motion = self.motion(instance, start, &times)?;
+        let motion = self.motion((instance, start), &times, check)?;
         let seen: Vec<[f64; 2]> = self.extract_quantity(&motion.states);
         let points = seen.iter().step_by(SAMPLES_PER_PERIOD).copied().collect();
         let looks = MotionSamples {
@@ -394,14 +399,19 @@ impl Poincare<'_> {
 
     fn find_points_at_crossings(
         &self,
-        instance: &Instance<'_>,
-        start: &Start,
-        crossing: &Crossing,
-        until: f64,
+        (instance, start): (&Instance<'_>, &Start),
+        (crossing, until): (&Crossing, f64),
+        check: &dyn Fn(),
     ) -> Result<SectionPoints, Failure> {
         let wanted = (self.span.transient, self.span.periods);
         let span = (self.conditions.start(), until);
-        let found = find_crossings((instance, start), crossing, wanted, span, &self.settings)?;
+        let found = find_crossings(
+            (instance, start),
+            crossing,
+            wanted,
+            span,
+            (&self.settings, check),
+        )?;
         let (points, between) = (
             self.extract_quantity(&found.points),
             self.extract_quantity(&found.states_between),
@@ -426,18 +436,18 @@ impl Poincare<'_> {
 
     fn motion(
         &self,
-        instance: &Instance<'_>,
-        start: &Start,
+        (instance, start): (&Instance<'_>, &Start),
         times: &[f64],
+        check: &dyn Fn(),
     ) -> Result<Trajectory, Failure> {
         let end = times.last().copied().ok_or(Failure::Undefined)?;
         let span = (self.conditions.start(), end);
         require_inputs(end, self.conditions)?;
-        let quiet = &mut |_: f64| {};
+        let progress = &mut |_: f64| check();
         let Start { state, inputs } = start;
         if self.is_exact() {
             let mut propagator = instance.propagator()?;
-            return Ok(propagator.simulate(state, span, times, inputs, quiet)?);
+            return Ok(propagator.simulate(state, span, times, inputs, progress)?);
         }
         let evaluator = RefCell::new(instance.evaluator()?);
         let system = instance.driven_model(&evaluator, inputs, self.settings.tolerance)?;
@@ -448,7 +458,7 @@ impl Poincare<'_> {
             span,
             times,
             &self.settings,
-            quiet,
+            progress,
         )?)
     }
 

@@ -113,7 +113,8 @@ fn growth_of_difference_and_tangent(
         interval_count: 1,
         exponent_count: 1,
     };
-    let growth = propagator.measure_lyapunov(&subject.initial, 0.0, &subject.inputs, &request);
+    let growth =
+        propagator.measure_lyapunov((0.0, &subject.initial), &subject.inputs, &request, &|| {});
     let growth = growth.expect("a growth").growth_exponents[0][0];
     // Initial tangent vector: 1 for the first relevant state, 0.1/(1 + k) for the others.
     let mut direction = vec![0.0; subject.initial.len()];
