@@ -51,6 +51,8 @@ unsafe extern "C" {
     fn controller_prepare(parameters: *const Parameters, prepared: *mut Coefficients);
     fn controller_displaced(state: *mut Real);
     fn controller_step(t: Real, state: *const Real, arm: *const Coefficients, next: *mut Real);
+    // The header adds the number type, unless it is double, to the external names.
+    #[cfg_attr(single, link_name = "planetary_arm_rig_rates_float")]
     fn planetary_arm_rig_rates(
         t: Real,
         state: *const Real,

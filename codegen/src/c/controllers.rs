@@ -47,6 +47,15 @@ pub(super) fn check_name_collisions(program: &Program) -> EmitResult<()> {
     Ok(())
 }
 
+/// Returns the names of all functions of controllers.
+pub(super) fn list_functions(program: &Program) -> Vec<String> {
+    let named = |controller: &ProgramController| {
+        let stem = format!("{}_controller_{}", program.name, controller.name);
+        ["start", "update"].map(|function| format!("{stem}_{function}"))
+    };
+    program.controllers.iter().flat_map(named).collect()
+}
+
 /// Returns the declarations for the header.
 pub(super) fn write_declarations(program: &Program) -> String {
     let all = program.controllers.iter();

@@ -4,7 +4,7 @@ use super::comments::{comment, resolve_links};
 use super::controllers;
 use super::expression::number;
 use super::jacobians;
-use super::names::fill_template;
+use super::names::{fill_template, item_name};
 use super::real::Real;
 use super::regimes::{REGIME, write_regime_head};
 use super::stages::{nest_lines, write_declaration};
@@ -12,7 +12,7 @@ use super::standard_macros::{find_macros, hide_macros};
 use super::step;
 use super::types;
 use super::types::write_structures;
-use crate::program::Program;
+use crate::program::{Output, Program};
 use crate::statements::{
     DataElements, EmitResult, File, Indices, Preparation, Stage, list_data_arrays, list_indices,
 };
@@ -97,6 +97,7 @@ pub(super) fn write_header(
          #define NAME_IS_SINGLE(type) NAME_IS_TYPE(type)\n"
             .replace("NUMBER", number),
     );
+    let text = text + &write_external_names(program, stages);
     let mut declared = write_sizes(file);
     declared += &jacobians::write_sizes(program);
     declared += &step::write_sizes(program);
@@ -114,6 +115,52 @@ pub(super) fn write_header(
     declared += &controllers::write_declarations(program);
     let [hide, restore] = hide_macros(find_macros(&declared));
     Ok(text + &hide + &declared + &restore + "#ifdef __cplusplus\n}\n#endif\n#endif\n")
+}
+
+/// Writes macros that add the number type, unless it is double, to the external names of all functions and arrays with
+/// numbers. A linker cannot compare types, but rejects missing names.
+fn write_external_names(program: &Program, stages: &[Stage]) -> String {
+    let mut text = fill_template(
+        program,
+        "/** 1 if the type of numbers is double. External names contain any other type: files that are compiled with \
+         different types do not link. */\n\
+         #define NAME_DOUBLE_float 0\n\
+         #define NAME_DOUBLE_double 1\n\
+         #define NAME_IS_DOUBLE_TYPE(type) NAME_DOUBLE_##type\n\
+         #define NAME_IS_DOUBLE(type) NAME_IS_DOUBLE_TYPE(type)\n\
+         #if !NAME_IS_DOUBLE(NAME_REAL)\n\
+         #define NAME_JOIN(name, type) name##type\n\
+         #define NAME_WITH_TYPE(name, type) NAME_JOIN(name, type)\n",
+    );
+    for name in list_external_names(program, stages) {
+        let line = format!("#define {name} NAME_WITH_TYPE({name}_, NAME_REAL)\n");
+        text += &fill_template(program, &line);
+    }
+    text + "#endif\n"
+}
+
+/// Returns the external names of functions and arrays with numbers.
+fn list_external_names(program: &Program, stages: &[Stage]) -> Vec<String> {
+    let has = |output: Output| program.outputs.kinds.contains(&output);
+    let optional = [
+        (program.outputs.regimes.is_some(), "regime"),
+        (has(Output::Step), "step"),
+        (jacobians::has_linearisation(program), "linearise"),
+    ];
+    let filling = types::FILLING.iter().map(|(name, _, _)| *name);
+    let optional = optional.iter().filter(|(is_emitted, _)| *is_emitted);
+    let items = filling
+        .chain(stages.iter().map(|stage| stage.name))
+        .chain(optional.map(|(_, name)| *name));
+    let arrays = list_data_arrays(program).into_iter();
+    let arrays = arrays.filter(|array| matches!(array.elements, DataElements::Numbers(_)));
+    let arrays: Vec<String> = arrays
+        .map(|array| format!("{}_{}", program.name, array.name))
+        .collect();
+    let mut names: Vec<String> = items.map(|item| item_name(program, item)).collect();
+    names.extend(controllers::list_functions(program));
+    names.extend(arrays);
+    names
 }
 
 fn write_sizes(file: &File<'_>) -> String {

@@ -51,7 +51,8 @@ pub(super) fn write_sizes(program: &Program) -> String {
     program.outputs.jacobians.iter().map(size).collect()
 }
 
-fn has_linearisation(program: &Program) -> bool {
+/// Returns true if the linearisation in dense matrices is emitted.
+pub(super) fn has_linearisation(program: &Program) -> bool {
     program.outputs.kinds.contains(&Output::Linearisation)
 }
 

@@ -69,13 +69,13 @@ fn write_field(file: &File<'_>, quantity: &Quantity, origin: &str) -> EmitResult
 }
 
 /// Function that fills a structure: name, arguments by type and name, documentation.
-type Filling = (
+pub(super) type Filling = (
     &'static str,
     &'static [(&'static str, &'static str)],
     &'static str,
 );
 
-const FILLING: [Filling; 4] = [
+pub(super) const FILLING: [Filling; 4] = [
     (
         "default_parameters",
         &[("NAME_parameters *", "parameters")],

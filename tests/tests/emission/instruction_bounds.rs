@@ -115,7 +115,9 @@ fn measure(
     let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     let listed = document["functions"].as_array().expect("functions");
     let bounds = |function: &str| {
-        let name = format!("{machine}_{function}");
+        // The header adds the type to the names.
+        let end = if number == "float" { "_float" } else { "" };
+        let name = format!("{machine}_{function}{end}");
         let found = listed
             .iter()
             .find(|listed| listed["name"] == *name)
@@ -371,15 +373,15 @@ fn loop_over_data_has_no_bound() {
     let printed = String::from_utf8_lossy(&output.stdout).into_owned();
     let rates = printed
         .lines()
-        .find(|line| line.starts_with("  crane_rates "));
+        .find(|line| line.starts_with("  crane_rates_float "));
     let rates = rates.expect("the rates");
     assert!(
-        rates.contains("not bounded: a loop") && rates.contains("at crane_rates+"),
+        rates.contains("not bounded: a loop") && rates.contains("at crane_rates_float+"),
         "{printed}"
     );
     let energy = printed
         .lines()
-        .find(|line| line.starts_with("  crane_energy "));
+        .find(|line| line.starts_with("  crane_energy_float "));
     assert!(
         energy.expect("the energy").contains(" instructions, "),
         "{printed}"
@@ -437,7 +439,7 @@ fn certificate_contains_bounds_that_verify_recomputes() {
     let functions = bounds["functions"].as_array().expect("functions");
     let rates = functions
         .iter()
-        .find(|function| function["name"] == "pendulum_rates");
+        .find(|function| function["name"] == "pendulum_rates_float");
     let stated = format!(
         "\"instructions\": {},",
         rates.expect("the rates")["instructions"]

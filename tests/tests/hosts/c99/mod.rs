@@ -19,6 +19,7 @@ mod data;
 mod header_only;
 mod hostile;
 mod linked;
+mod number_types;
 mod reordered;
 
 /// Compiler warnings for all emitted C.
