@@ -79,8 +79,8 @@ functions! {
     Pow pow(x, y) "x to the power y.";
     Quantise quantise(x, step)
         "Multiple of a step that is nearest to x, halves away from zero.";
-    Deadzone deadzone(p, b) "Deflection beyond the backlash: f_k of Eq. (7).";
-    Contact contact(p, b) "1 if |p| > b, else 0: the contact of Eq. (8).";
+    Deadzone deadzone(p, b) "Deflection beyond the play b: p - b above it, p + b below it, else 0.";
+    Contact contact(p, b) "1 if |p| > b, else 0.";
     Above above(p) "1 if p > 0, else 0.";
     PivotReciprocal pivot_reciprocal(pivot)
         "1/pivot for a positive pivot, else NaN: the mass matrix is not positive definite.";

@@ -176,7 +176,7 @@ fn write_sine_and_cosine<P: CFormat>(program: &Program) -> String {
 
 /// Dead-zone function f_k of Eq. (7) on a given side of the play.
 const DEADZONE_ON_SIDE: &str = "\
-/** Deflection beyond the play on a given side: f_k of Eq. (7). */
+/** Deflection beyond the play on a given side. */
 static NAME_real NAME_deadzone_on_side(uint32_t above, uint32_t beyond, NAME_real p, NAME_real b) {
     return (above != 0U) ? (p - b) : ((beyond != 0U) ? R(0.0) : (p + b));
 }

@@ -3,7 +3,7 @@
 
 /// Dead-zone function f_k of Eq. (7) on a given side of the play.
 pub const DEADZONE_ON_SIDE: &str = "\
-/// Returns the deflection beyond the play on a given side: f_k of Eq. (7).
+/// Returns the deflection beyond the play on a given side.
 #[inline(always)]
 fn deadzone_on_side<T: Scalar>(above: bool, beyond: bool, p: T, b: T) -> T {
     if above { p - b } else if beyond { T::number(0.0) } else { p + b }

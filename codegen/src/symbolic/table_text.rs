@@ -105,7 +105,7 @@ pub fn latex(kind: TableKind) -> String {
 pub fn doc(table: &Table) -> String {
     match table.kind {
         TableKind::Wavenumber => "Wave numbers beta_r l of the modes".to_owned(),
-        TableKind::Mixing => "Factors xi_r of the modes, Eq. (17)".to_owned(),
+        TableKind::Mixing => "Factors xi_r of the modes".to_owned(),
         TableKind::GrowingAmplitude => "Factors (1 + xi_r) exp(beta_r l) of the modes".to_owned(),
         TableKind::FallingAmplitude => "Factors of exp(-beta_r l s) in the modes".to_owned(),
         TableKind::RisingAmplitude => "Factors of exp(-beta_r l (1 - s)) in the modes".to_owned(),

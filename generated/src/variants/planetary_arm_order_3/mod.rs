@@ -324,7 +324,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_3 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=3207220e92d790369d61cb91f9bd3d0b236ba72797184990ef3f747710146709 generator=0.2.0;";
+pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_3 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=266ba2af4533e91cd2d3815ff0339fa6877373debdf69bf9d9c3c3ec19919d38 generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1620,14 +1620,14 @@ impl Function for Cos {
     }
 }
 
-/// Deflection beyond the backlash: f_k of Eq. (7).
+/// Deflection beyond the play b: p - b above it, p + b below it, else 0.
 #[inline(always)]
 fn deadzone<T: Scalar>(p: T, b: T) -> T {
     let v2 = T::select_greater(p, b, b, p);
     p - T::select_greater(-b, v2, -b, v2)
 }
 
-/// 1 if |p| > b, else 0: the contact of Eq. (8).
+/// 1 if |p| > b, else 0.
 #[inline(always)]
 fn contact<T: Scalar>(p: T, b: T) -> T {
     T::select_greater(T::select_greater(-p, p, -p, p), b, T::number(1.0), T::number(0.0))

@@ -352,7 +352,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_5 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=58689785e150ba7011762ff3d455f99ab3f01b338b9a0780684511f8e5e36c72 generator=0.2.0;";
+pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_5 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=62f44fa1d82ecd5092ce57a21b898d4be3502a9c1e67eca84c9d136a8869fc70 generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1656,14 +1656,14 @@ impl Function for Cos {
     }
 }
 
-/// Deflection beyond the backlash: f_k of Eq. (7).
+/// Deflection beyond the play b: p - b above it, p + b below it, else 0.
 #[inline(always)]
 fn deadzone<T: Scalar>(p: T, b: T) -> T {
     let v2 = T::select_greater(p, b, b, p);
     p - T::select_greater(-b, v2, -b, v2)
 }
 
-/// 1 if |p| > b, else 0: the contact of Eq. (8).
+/// 1 if |p| > b, else 0.
 #[inline(always)]
 fn contact<T: Scalar>(p: T, b: T) -> T {
     T::select_greater(T::select_greater(-p, p, -p, p), b, T::number(1.0), T::number(0.0))

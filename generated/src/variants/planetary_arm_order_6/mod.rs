@@ -366,7 +366,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_6 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=20628851f250c8b2ad3d18d5e3a8bc05b248ec13bce0d897fae8fe5345e348d1 generator=0.2.0;";
+pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_6 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=370eaf07e55f26e8b06cd841b1a7fab9b7c084f70dd79ee34270b2ff6922257a generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1676,14 +1676,14 @@ impl Function for Cos {
     }
 }
 
-/// Deflection beyond the backlash: f_k of Eq. (7).
+/// Deflection beyond the play b: p - b above it, p + b below it, else 0.
 #[inline(always)]
 fn deadzone<T: Scalar>(p: T, b: T) -> T {
     let v2 = T::select_greater(p, b, b, p);
     p - T::select_greater(-b, v2, -b, v2)
 }
 
-/// 1 if |p| > b, else 0: the contact of Eq. (8).
+/// 1 if |p| > b, else 0.
 #[inline(always)]
 fn contact<T: Scalar>(p: T, b: T) -> T {
     T::select_greater(T::select_greater(-p, p, -p, p), b, T::number(1.0), T::number(0.0))

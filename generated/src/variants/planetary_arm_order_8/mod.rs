@@ -394,7 +394,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_8 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=a91e4df2846c6aadfe0d31a3ecd3574c5d1e15f79ef29c0206dea620dacb54a7 generator=0.2.0;";
+pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_8 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=3ff09a6e356e0f250704a5a9defcd81a92bd0328aa08ea27f2cc961c3c65a8da generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1712,14 +1712,14 @@ impl Function for Cos {
     }
 }
 
-/// Deflection beyond the backlash: f_k of Eq. (7).
+/// Deflection beyond the play b: p - b above it, p + b below it, else 0.
 #[inline(always)]
 fn deadzone<T: Scalar>(p: T, b: T) -> T {
     let v2 = T::select_greater(p, b, b, p);
     p - T::select_greater(-b, v2, -b, v2)
 }
 
-/// 1 if |p| > b, else 0: the contact of Eq. (8).
+/// 1 if |p| > b, else 0.
 #[inline(always)]
 fn contact<T: Scalar>(p: T, b: T) -> T {
     T::select_greater(T::select_greater(-p, p, -p, p), b, T::number(1.0), T::number(0.0))
