@@ -19,6 +19,7 @@ mod misra;
 mod regimes;
 mod reserved_names;
 mod routes;
+mod seeded_faults;
 mod settings;
 mod single_precision;
 mod trace_file;

@@ -64,6 +64,17 @@ pub struct Evaluator {
     bounds: Option<BoundsMemory>,
 }
 
+/// State of an element of a prepared pivot of the mass matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PivotState {
+    /// Positive and finite; for a factor of a matrix, finite.
+    Positive,
+    /// Zero or negative.
+    NotPositive,
+    /// Infinite or NaN.
+    NotFinite,
+}
+
 impl Evaluator {
     /// Prepares a program with the parameters of the specification.
     pub fn new(program: Program) -> Self {
@@ -185,11 +196,20 @@ impl Evaluator {
 
     /// Returns true if every prepared pivot of the mass matrix is positive; otherwise the rates are NaN.
     pub fn pivots_are_positive(&self) -> bool {
-        self.program.pivots.iter().all(|id| {
+        self.pivot_states()
+            .all(|state| state == PivotState::Positive)
+    }
+
+    /// Returns the state of each element of the prepared pivots of the mass matrix.
+    pub fn pivot_states(&self) -> impl Iterator<Item = PivotState> {
+        self.program.pivots.iter().flat_map(|id| {
             let matrix = matches!(self.program.value(*id).extent, Extent::Matrix(..));
-            self.slice(*id)
-                .iter()
-                .all(|p| p.is_finite() && (matrix || *p > 0.0))
+            let state = move |pivot: &f64| match pivot.is_finite() {
+                false => PivotState::NotFinite,
+                true if matrix || *pivot > 0.0 => PivotState::Positive,
+                true => PivotState::NotPositive,
+            };
+            self.slice(*id).iter().map(state)
         })
     }
 

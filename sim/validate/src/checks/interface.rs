@@ -1,9 +1,12 @@
 //! Bit-for-bit comparison of the interface of emitted source with its program, in double and in single precision. It
 //! covers sizes, names, indices, units, initial state, ranges, default parameters, conversions from arrays and
-//! preparation with other parameters. All functions are called at zeros, in the domain and at large values.
+//! preparation with other parameters. All functions are called at zeros, in the domain and at large values. Parameters
+//! for which the mass matrix is not positive definite test `positive_definite` and the NaN results of the rates.
 
-use eomgen_codegen::program::evaluator::{Evaluator, Point};
-use eomgen_codegen::program::{Output, Program, SURFACES_OF_A_REGIME};
+use eomgen_codegen::program::evaluator::{Evaluator, PivotState, Point};
+use eomgen_codegen::program::{
+    BlockPlace, Jacobian, Output, Program, SURFACES_OF_A_REGIME, ValueId,
+};
 use eomgen_codegen::statements::{
     DataElements, Indices, collect_coefficients, list_data_arrays, list_indices,
 };
@@ -61,6 +64,8 @@ impl Precision {
 struct Call {
     parameters: Vec<f64>,
     sample: Sample,
+    /// True if the mass matrix is positive definite for these parameters.
+    is_definite: bool,
 }
 
 /// Calls of the harnesses.
@@ -92,8 +97,17 @@ impl<'p> Calls<'p> {
                 calls.push(Call {
                     parameters: parameters.clone(),
                     sample,
+                    is_definite: true,
                 });
             }
+        }
+        if let Some(sample) = samples.first() {
+            let all = indefinite_parameters(program).into_iter();
+            calls.extend(all.map(|parameters| Call {
+                parameters,
+                sample: sample.clone(),
+                is_definite: false,
+            }));
         }
         let parameters: Vec<&[f64]> = calls.iter().map(|call| &*call.parameters).collect();
         Self {
@@ -139,12 +153,16 @@ impl<'p> Calls<'p> {
         let (mut differing, mut first) = (0, None);
         for (what, expected) in &expected {
             let found = found.next().unwrap_or("nothing");
-            let wrong = match what.starts_with("vector_jacobian_product") {
-                true => count_differences(
-                    &without_sign_of_zero(found),
-                    &without_sign_of_zero(expected),
-                ),
-                false => count_differences(found, expected),
+            let wrong = match expected {
+                Expected::Line(expected) if what.starts_with("vector_jacobian_product") => {
+                    count_differences(
+                        &without_sign_of_zero(found),
+                        &without_sign_of_zero(expected),
+                    )
+                }
+                Expected::Line(expected) => count_differences(found, expected),
+                Expected::NaNs(expected) => count_differences(&nan_places(found), expected),
+                Expected::Any => 0,
             };
             differing += wrong;
             if wrong > 0 && first.is_none() {
@@ -164,7 +182,7 @@ impl<'p> Calls<'p> {
         &self,
         precision: Precision,
         functions: usize,
-        lines: &mut Vec<(String, String)>,
+        lines: &mut Vec<(String, Expected)>,
     ) {
         let mut evaluator = Evaluator::new(self.program.clone());
         let mut double = Evaluator::new(self.program.clone());
@@ -198,7 +216,7 @@ impl<'p> Calls<'p> {
             };
             lines.push((
                 format!("positive_definite, call {count}"),
-                definite.to_string(),
+                Expected::Line(definite.to_string()),
             ));
             let all = results(&mut evaluator, point);
             let printed = |place: usize, name: &str| place < functions || name == "step";
@@ -206,14 +224,85 @@ impl<'p> Calls<'p> {
             for (_, (name, numbers)) in all.filter(|(place, (name, _))| printed(*place, name)) {
                 // The evaluator adds the two numbers of this product in double precision, so the sum must be rounded.
                 let numbers: Vec<f64> = numbers.iter().map(round).collect();
-                lines.push((format!("{name}, call {count}"), format_bits(&numbers)));
+                let line = format_bits(&numbers);
+                let expected = match (call.is_definite, &*name) {
+                    (true, _) => Expected::Line(line),
+                    (false, "rates") => Expected::NaNs(nan_places(&line)),
+                    (false, _) => Expected::Any,
+                };
+                lines.push((format!("{name}, call {count}"), expected));
             }
             if precision == Precision::Double {
-                let call = (count - 1, &call.parameters[..]);
-                lines.extend(expected_lines(&self.controllers, call));
+                let of_controllers =
+                    expected_lines(&self.controllers, (count - 1, &call.parameters[..]));
+                lines.extend(of_controllers.into_iter().map(|(name, line)| {
+                    let expected = match call.is_definite {
+                        true => Expected::Line(line),
+                        false => Expected::Any,
+                    };
+                    (name, expected)
+                }));
             }
         }
     }
+}
+
+/// Expected line of a harness.
+enum Expected {
+    /// The line itself.
+    Line(String),
+    /// Places of NaN, as [`nan_places`] returns them.
+    NaNs(String),
+    /// Any line: results that are not specified.
+    Any,
+}
+
+/// Replaces every number of a line of bits by `nan` or `number`.
+fn nan_places(line: &str) -> String {
+    let is_nan =
+        |word: &str| u64::from_str_radix(word, 16).is_ok_and(|b| f64::from_bits(b).is_nan());
+    let words = line.split(' ').map(|word| match is_nan(word) {
+        true => "nan",
+        false => "number",
+    });
+    words.collect::<Vec<_>>().join(" ")
+}
+
+/// Returns parameters for which a prepared pivot is not positive or not finite. Each has another combination of such
+/// pivots. A single parameter is negated, set to zero or infinite.
+fn indefinite_parameters(program: &Program) -> Vec<Vec<f64>> {
+    let defaults = program.default_parameters();
+    let mut evaluator = Evaluator::new(program.clone());
+    let mut known: Vec<Vec<PivotState>> = Vec::new();
+    let mut found = Vec::new();
+    for place in 0..defaults.len() {
+        for factor in [-1.0, -LARGE, 0.0, f64::INFINITY] {
+            let mut parameters = defaults.clone();
+            parameters[place] *= factor;
+            evaluator.prepare(&parameters);
+            let states: Vec<PivotState> = evaluator.pivot_states().collect();
+            if !evaluator.pivots_are_positive() && !known.contains(&states) {
+                known.push(states);
+                found.push(parameters);
+            }
+        }
+    }
+    found
+}
+
+/// Returns rows and columns of the structural nonzeros, in their order.
+fn nonzero_places(jacobian: &Jacobian<ValueId>) -> [Vec<usize>; 2] {
+    let mut places = [vec![0; jacobian.nonzeros()], vec![0; jacobian.nonzeros()]];
+    for (entry, BlockPlace { start, width }) in jacobian.entries.iter().zip(jacobian.places()) {
+        for row in 0..entry.rows {
+            for place in 0..entry.width() {
+                let column = if entry.diagonal { row } else { place };
+                places[0][start + width * row + place] = entry.row + row;
+                places[1][start + width * row + place] = entry.column + column;
+            }
+        }
+    }
+    places
 }
 
 /// Replaces -0 by 0: a product that is added to a zero entry cannot be -0.
@@ -353,8 +442,8 @@ fn linearised(program: &Program) -> Vec<&'static str> {
 }
 
 /// Collects the expected lines of sizes, names, indices, default parameters and conversions from arrays.
-fn interface_lines(program: &Program, precision: Precision, lines: &mut Vec<(String, String)>) {
-    let mut add = |what: &str, text: String| lines.push((what.to_owned(), text));
+fn interface_lines(program: &Program, precision: Precision, lines: &mut Vec<(String, Expected)>) {
+    let mut add = |what: &str, text: String| lines.push((what.to_owned(), Expected::Line(text)));
     let guards = Evaluator::new(program.clone()).guard_count();
     let sizes = [
         program.degrees_of_freedom(),
@@ -375,6 +464,15 @@ fn interface_lines(program: &Program, precision: Precision, lines: &mut Vec<(Str
         for (place, (name, _)) in entries.iter().enumerate() {
             add(&format!("the names of kind {kind}"), name.clone());
             add(&format!("the indices of kind {kind}"), place.to_string());
+        }
+    }
+    for jacobian in &program.outputs.jacobians {
+        let what = format!("the nonzeros of {}", jacobian.name);
+        add(&what, jacobian.nonzeros().to_string());
+        for places in nonzero_places(jacobian) {
+            for place in places {
+                add(&what, place.to_string());
+            }
         }
     }
     for data in list_data_arrays(program) {
@@ -427,6 +525,17 @@ pub fn c_harness(all: &Calls<'_>, name: &str) -> String {
                 "    printf(\"%s\\n%d\\n\", NAME_{kind}_names[{place}], (int)NAME_{capitals}_{constant});\n"
             );
         }
+    }
+    for jacobian in &program.outputs.jacobians {
+        let (name, count) = (jacobian.name, jacobian.nonzeros());
+        let size = format!("NAME_{}_NONZEROS", name.to_uppercase());
+        let room = count + 1;
+        interface += &format!(
+            "    {{ static int rows[{room}], columns[{room}]; printf(\"%d\\n\", (int){size}); \
+             NAME_{name}_places(rows, columns); \
+             for (int i = 0; i < {count}; ++i) {{ printf(\"%d\\n\", rows[i]); }} \
+             for (int i = 0; i < {count}; ++i) {{ printf(\"%d\\n\", columns[i]); }} }}\n"
+        );
     }
     for data in list_data_arrays(program) {
         let name = data.name;
@@ -589,6 +698,13 @@ pub fn rust_harness(all: &Calls<'_>, emitted: &str) -> String {
                 "    println!(\"{{}}\\n{{}}\", model::{capitals}_NAMES[{place}], model::{kind}::{constant});\n"
             );
         }
+    }
+    for jacobian in &program.outputs.jacobians {
+        let name = jacobian.name.to_uppercase();
+        interface += &format!(
+            "    println!(\"{{}}\", model::{name}.rows.len());\n    \
+             for place in model::{name}.rows.iter().chain(&model::{name}.columns) {{ println!(\"{{place}}\"); }}\n"
+        );
     }
     for data in list_data_arrays(program) {
         let name = data.name.to_uppercase();
