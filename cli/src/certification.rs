@@ -1,5 +1,6 @@
 //! Summaries of certificates, and certificates as JSON.
 
+use eomgen_model_spec::source::sha256;
 use eomgen_validate::certificate::{Certificate, Check, SkipKind, Verdict};
 use eomgen_validate::meaning::describe;
 use eomgen_validate::rounding::Bounds;
@@ -7,10 +8,29 @@ use eomgen_validate::rounding::Bounds;
 use crate::error::{Error, Result};
 use crate::instruction_table::table;
 
+/// Key of the hash over all other keys of a certificate; the last key.
+const CONTENT_HASH: &str = "content_sha256";
+
+/// Returns the certificate as JSON with the hash of its content.
 pub fn document(certificate: &Certificate) -> Result<String> {
     let text = serde_json::to_string_pretty(certificate)
         .map_err(|error| Error::input(error.to_string()))?;
-    Ok(text + "\n")
+    let hash = sha256(compact(&text));
+    let open = text.strip_suffix("\n}").unwrap_or(&text);
+    Ok(format!("{open},\n  \"{CONTENT_HASH}\": \"{hash}\"\n}}\n"))
+}
+
+/// Returns true if the text of a certificate ends with the hash of its content; `None` without a hash.
+pub fn has_valid_hash(text: &str) -> Option<bool> {
+    let text = compact(text);
+    let (content, rest) = text.rsplit_once(&format!(",\"{CONTENT_HASH}\":\""))?;
+    let hash = rest.strip_suffix("\"}")?;
+    Some(sha256(format!("{content}}}")) == hash)
+}
+
+/// Removes white space, which programs that format JSON change.
+fn compact(text: &str) -> String {
+    text.split_ascii_whitespace().collect()
 }
 
 /// Returns one line for each kind of check, then coverage and verdict.

@@ -7,14 +7,14 @@ use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::{Source, sha256};
 use eomgen_targets::parse_output;
-use eomgen_validate::certificate::{CSourceHashes, CasadiHash, UnitHash};
+use eomgen_validate::certificate::{CSourceHashes, CasadiHash, UnitHash, Verdict};
 use eomgen_validate::certify::{CCompiler, CasadiSource};
 use eomgen_validate::instructions::InstructionBounds;
 use eomgen_validate::model_certificate::{Sources, certify_sources};
 use serde_json::{Value, json};
 
 use crate::arguments::Verify;
-use crate::certification::summary;
+use crate::certification::{has_valid_hash, summary};
 use crate::document::SCHEMA;
 use crate::emission::{c_source, casadi_source, header_only_source, instructions, unit_source};
 use crate::error::{Error, Result, print_json, print_text, warn};
@@ -45,11 +45,16 @@ pub fn run(options: &Verify) -> Result {
         serde_json::to_value(&repeated).map_err(|error| Error::input(error.to_string()))?;
     certificate.compare_statements(&document, &options.certificate)?;
     let bounds = certificate.repeat_bounds(&sources, &options.instructions)?;
+    certificate.check_content(&options.certificate)?;
+    let is_partial = bounds.is_partial && repeated.verdict == Verdict::Passed;
     if options.output.json {
         document["schema"] = json!(SCHEMA);
         document["file"] = json!(options.file.display().to_string());
         document["hash"] = json!({"expected": expected, "found": found, "same": is_same});
         document["instructions"] = json!(bounds.found);
+        if is_partial {
+            document["verdict"] = json!(Verdict::Partial);
+        }
         document["passed"] = json!(repeated.passed && is_same);
         print_json(&document)?;
     } else {
@@ -60,7 +65,15 @@ pub fn run(options: &Verify) -> Result {
             }
             false => format!("hash: DIFFERENT, {found} instead of {expected}\n"),
         };
-        print_text(&(summary(&repeated) + &bounds.text + &hash))?;
+        let summary = summary(&repeated);
+        let text = match summary.strip_suffix("passed\n") {
+            Some(checks) if is_partial => {
+                let text = format!("{checks}{}{hash}", bounds.text);
+                text + "PARTIAL: no check failed, but bounds of instructions were not computed again\n"
+            }
+            _ => summary + &bounds.text + &hash,
+        };
+        print_text(&text)?;
     }
     if !is_same {
         warn(&format!(
@@ -79,12 +92,16 @@ pub fn run(options: &Verify) -> Result {
 struct RepeatedBounds {
     /// Recomputed bounds; they equal the bounds in the certificate.
     found: Vec<InstructionBounds>,
+    /// True if bounds of the certificate were not recomputed.
+    is_partial: bool,
     /// Text with one line for each compiler.
     text: String,
 }
 
 /// Certificate with the model that its checks need.
 struct Certificate {
+    /// Text of the certificate.
+    text: String,
     /// The whole certificate.
     document: Value,
     /// Model with the parameter values of `settings`.
@@ -182,6 +199,7 @@ impl Certificate {
             casadi,
             unit,
             document,
+            text,
         })
     }
 
@@ -231,6 +249,7 @@ impl Certificate {
                 Some(given) => instructions(given, &command),
                 None => Err(format!("the certificate has the bounds of {source}")),
             };
+            repeated.is_partial |= !matches!(&found, Ok(found) if found.compiler == compiler);
             let result = match found {
                 Err(reason) => format!("NOT RUN ({reason})"),
                 Ok(found) if found.compiler != compiler => format!(
@@ -299,10 +318,64 @@ impl Certificate {
                 "{shown}: the certificate has no check `{missing}`: it was edited"
             )));
         }
-        match self.document["verdict"].as_str() {
-            Some("passed" | "partial") => Ok(()),
-            _ => Err(Error::input(format!(
+        let verdict = self.document["verdict"].as_str().unwrap_or_default();
+        if !matches!(verdict, "passed" | "partial") {
+            return Err(Error::input(format!(
                 "{shown}: the certificate states that checks failed: generate the file again"
+            )));
+        }
+        if self.document["passed"] != json!(verdict == "passed") {
+            return Err(Error::input(format!(
+                "{shown}: `passed` is {}, but `verdict` is \"{verdict}\": the certificate was edited",
+                self.document["passed"]
+            )));
+        }
+        self.compare_checks(repeated, &shown)
+    }
+
+    /// Compares the stated results of checks with the repeated checks.
+    ///
+    /// # Errors
+    /// A check that did not pass, or with another tolerance.
+    fn compare_checks(&self, repeated: &Value, shown: &impl std::fmt::Display) -> Result {
+        let all = |document: &'_ Value| document["checks"].as_array().cloned().unwrap_or_default();
+        let repeated = all(repeated);
+        for stated in all(&self.document) {
+            let name = &stated["name"];
+            let was_run = |check: &Value| check["skipped"] == json!(false);
+            if was_run(&stated) && stated["passed"] != json!(true) {
+                return Err(Error::input(format!(
+                    "{shown}: the certificate states that the check {name} failed, but not its `verdict`: it was edited"
+                )));
+            }
+            let mut again = repeated.iter().filter(|check| check["name"] == *name);
+            let tolerance = again
+                .next()
+                .filter(|check| was_run(check) && was_run(&stated))
+                .map(|check| &check["tolerance"]);
+            if let Some(tolerance) = tolerance.filter(|of| **of != stated["tolerance"]) {
+                return Err(Error::input(format!(
+                    "{shown}: the tolerance of the check {name} is {} instead of {tolerance}: the certificate was edited",
+                    stated["tolerance"]
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Compares the hash at the end of the certificate with its content.
+    ///
+    /// # Errors
+    /// A different hash, or none.
+    fn check_content(&self, path: &Path) -> Result {
+        let shown = path.display();
+        match has_valid_hash(&self.text) {
+            Some(true) => Ok(()),
+            Some(false) => Err(Error::input(format!(
+                "{shown}: the content does not have the hash `content_sha256`: the certificate was edited"
+            ))),
+            None => Err(Error::input(format!(
+                "{shown}: the certificate does not end with `content_sha256`: generate the file and its certificate again"
             ))),
         }
     }

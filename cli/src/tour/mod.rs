@@ -19,7 +19,7 @@ use eomgen_plot::{FigureWidth, Panel, Reference, Series, TimeHistory, time_histo
 use eomgen_validate::certificate::{Certificate, Check};
 use eomgen_validate::model_certificate::certify_model;
 
-use crate::certification::{applicable_checks, group_checks, statement};
+use crate::certification::{applicable_checks, document, group_checks, statement};
 use crate::count::count;
 use crate::emitted_files::CERTIFICATE;
 use crate::engines::quote;
@@ -149,11 +149,10 @@ fn write_files(
     table: &Table,
     figure: &str,
 ) -> Result {
-    let json = serde_json::to_string_pretty(certificate)
-        .map_err(|error| Error::input(error.to_string()))?;
+    let json = document(certificate)?;
     write_file(&out.join(ARM_FILE), compiled.model().source.text.as_bytes())?;
     write_file(&out.join("lib.rs"), rust.as_bytes())?;
-    write_file(&out.join(CERTIFICATE), format!("{json}\n").as_bytes())?;
+    write_file(&out.join(CERTIFICATE), json.as_bytes())?;
     let trajectory = out.join("trajectory.csv");
     write_file(&trajectory, &table.encode(Path::new("trajectory.csv"))?)?;
     write_file(&out.join("trajectory.svg"), figure.as_bytes())
