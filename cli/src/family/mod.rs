@@ -47,6 +47,10 @@ pub fn run(options: &Options<'_>) -> Result {
     let chosen: Vec<usize> = (0..findings.len())
         .filter(|index| is_chosen(&findings[*index]))
         .collect();
+    let root = write::root_files(&family);
+    if !options.check {
+        write::check_foreign_files(&[], &root, &manifest, options.out)?;
+    }
     let built = build_all(&family, &chosen, options)?;
     collisions::check_declarations(&family, &built, options.out)?;
     let mut result = manifest.clone();
@@ -63,7 +67,6 @@ pub fn run(options: &Options<'_>) -> Result {
         );
         result.insert(variant, built);
     }
-    let root = write::root_files(&family);
     let mut different: BTreeSet<String> = write::different_files(&built, &root, options.out);
     let removed = manifest.files_not_in(&result, &root);
     for path in removed
@@ -88,6 +91,7 @@ pub fn run(options: &Options<'_>) -> Result {
         .collect();
     let is_written = !options.check && failed.is_empty();
     if is_written {
+        write::check_foreign_files(&built, &root, &manifest, options.out)?;
         write::write(&built, &root, options.out)?;
         write::remove(&removed, &manifest, options.out)?;
         write::manifest(&text, options.out)?;

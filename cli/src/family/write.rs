@@ -73,6 +73,36 @@ pub fn different_files(
         .collect()
 }
 
+/// Texts of which every emitted file contains one.
+const MARKS: [&str; 3] = ["mitted by eomgen", "mitted by `eomgen", "\"eomgen "];
+
+/// Checks that no file that this program did not write would be replaced.
+///
+/// # Errors
+/// The first file that is neither in the manifest nor has the text of an emitted file.
+pub fn check_foreign_files(
+    built: &[BuiltVariant],
+    root: &BTreeMap<String, Vec<u8>>,
+    manifest: &Manifest,
+    out: &Path,
+) -> Result {
+    let is_foreign = |path: &&String| {
+        let present = std::fs::read(out.join(path)).unwrap_or_default();
+        let text = String::from_utf8_lossy(&present);
+        manifest.file_hash(path).is_none()
+            && !present.is_empty()
+            && !MARKS.iter().any(|mark| text.contains(mark))
+    };
+    match different_files(built, root, out).iter().find(is_foreign) {
+        None => Ok(()),
+        Some(path) => Err(Error::input(format!(
+            "{} exists, and `eomgen family` did not write it: move or delete the file, or give another folder with \
+             --out; nothing was written",
+            out.join(path).display()
+        ))),
+    }
+}
+
 /// Writes all files that differ.
 pub fn write(built: &[BuiltVariant], root: &BTreeMap<String, Vec<u8>>, out: &Path) -> Result {
     let different = different_files(built, root, out);

@@ -325,6 +325,33 @@ fn link_in_the_output_folder_is_replaced() {
 }
 
 #[test]
+fn files_of_others_are_not_overwritten() {
+    let copy = copy();
+    let models = copy.path().join("models");
+    for name in ["mod.rs", "models.c"] {
+        let path = models.join(name);
+        let emitted = std::fs::read(&path).expect("an emitted file");
+        std::fs::write(&path, "// mine\n").expect("written");
+        for has_manifest in [true, false] {
+            let manifest = models.join("manifest.json");
+            if !has_manifest {
+                std::fs::remove_file(&manifest).expect("removed");
+            }
+            let before = files(copy.path());
+            let (status, said) = family(copy.path(), &[]);
+            assert_eq!(status, Some(2), "{said}");
+            assert!(
+                said.contains(name) && said.contains("move or delete the file"),
+                "{said}"
+            );
+            assert_eq!(files(copy.path()), before);
+        }
+        std::fs::write(&path, emitted).expect("written");
+        assert_eq!(family(copy.path(), &[]).0, Some(0));
+    }
+}
+
+#[test]
 fn truncated_manifest_is_rejected_and_nothing_written() {
     let copy = copy();
     let manifest = copy.path().join("models/manifest.json");
@@ -681,6 +708,31 @@ fn invalid_files_and_certificates_are_rejected_by_verify() {
             "\"coordinate_names\"",
             "\"others\"",
             "has no check `coordinate_names`",
+        ),
+        (
+            "\"passed\": true,",
+            "\"passed\": false,",
+            "`passed` is false",
+        ),
+        (
+            "\"tolerance\": 1e-12",
+            "\"tolerance\": 1e9",
+            "the tolerance of the check",
+        ),
+        (
+            "\"source_sha256\": \"",
+            "\"source_sha256\": \"0",
+            "does not have the hash `content_sha256`",
+        ),
+        (
+            "\"generator\": \"eomgen",
+            "\"generator\": \"other",
+            "does not have the hash `content_sha256`",
+        ),
+        (
+            "\"content_sha256\"",
+            "\"other_sha256\"",
+            "does not end with `content_sha256`",
         ),
     ] {
         edit(&certificate, from, to);
