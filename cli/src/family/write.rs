@@ -9,6 +9,7 @@ use super::hashes::hash_file;
 use super::interface::{self, CVariant};
 use super::manifest::{self, Manifest};
 use crate::arguments::Target;
+use crate::emitted_files::CERTIFICATE;
 use crate::error::{Error, Result, warn};
 use crate::output::write_file;
 
@@ -73,25 +74,42 @@ pub fn different_files(
         .collect()
 }
 
-/// Texts of which every emitted file contains one.
-const MARKS: [&str; 3] = ["mitted by eomgen", "mitted by `eomgen", "\"eomgen "];
+/// Texts of which an emitted file contains one, except test vectors and constants.
+const MARKS: [&str; 4] = [
+    "mitted by eomgen",
+    "mitted by `eomgen",
+    "Do not edit: generate again.",
+    "\"eomgen ",
+];
+
+/// Returns true if the file contains a text of emitted files.
+fn is_marked(path: &Path) -> bool {
+    let text = std::fs::read(path).unwrap_or_default();
+    let text = String::from_utf8_lossy(&text);
+    MARKS.iter().any(|mark| text.contains(mark))
+}
 
 /// Checks that no file that this program did not write would be replaced.
 ///
 /// # Errors
-/// The first file that is neither in the manifest nor has the text of an emitted file.
+/// The first file that is not in the manifest, has no text of emitted files, and is not in the folder of a variant.
 pub fn check_foreign_files(
     built: &[BuiltVariant],
     root: &BTreeMap<String, Vec<u8>>,
     manifest: &Manifest,
     out: &Path,
 ) -> Result {
+    // The folder of a variant, which contains a certificate, has no files of others.
+    let is_in_variant = |place: &Path| {
+        let folder = place.parent().filter(|folder| *folder != out);
+        folder.is_some_and(|folder| is_marked(&folder.join(CERTIFICATE)))
+    };
     let is_foreign = |path: &&String| {
-        let present = std::fs::read(out.join(path)).unwrap_or_default();
-        let text = String::from_utf8_lossy(&present);
-        manifest.file_hash(path).is_none()
-            && !present.is_empty()
-            && !MARKS.iter().any(|mark| text.contains(mark))
+        let place = out.join(path);
+        place.is_file()
+            && manifest.file_hash(path).is_none()
+            && !is_marked(&place)
+            && !is_in_variant(&place)
     };
     match different_files(built, root, out).iter().find(is_foreign) {
         None => Ok(()),
