@@ -75,16 +75,20 @@ pub(crate) fn list_equivalents(
         .collect()
 }
 
-/// Sizes of an effect with each member of the classes of other effects.
-pub(crate) struct SizesByMember<'a> {
-    /// Other effect and the member of its class that replaces it.
-    replaced: Vec<(&'a AcceptedEffect, &'a MemberFit)>,
-    /// Sizes with this member.
-    sizes: Vec<Sizes>,
+/// Sizes of an effect with a member of the class of another effect.
+struct SizesWithMember<'a> {
+    /// Other effect.
+    other: &'a AcceptedEffect,
+    /// Member of its class that replaces it.
+    member: &'a MemberFit,
+    sizes: Sizes,
 }
 
+/// Sizes of an effect with each member of the classes of other effects.
+pub(crate) struct SizesByMember<'a>(Vec<SizesWithMember<'a>>);
+
 impl<'a> SizesByMember<'a> {
-    /// Collects the sizes of an effect. `unknowns`: its unknowns in the fit `best`; `others`: the
+    /// Collects the sizes of an effect. `best`: the fit that contains its unknowns; `others`: the
     /// other accepted effects with the members of their classes.
     pub(crate) fn collect(
         problem: &EstimationProblem<'_>,
@@ -92,32 +96,24 @@ impl<'a> SizesByMember<'a> {
         others: impl Iterator<Item = (&'a AcceptedEffect, &'a Vec<MemberFit>)>,
         floor: f64,
     ) -> Self {
-        let mut collected = Self {
-            replaced: Vec::new(),
-            sizes: Vec::new(),
+        let members = others.flat_map(|(other, class)| class.iter().map(move |own| (other, own)));
+        let with_member = |(other, member): (&'a AcceptedEffect, &'a MemberFit)| {
+            let (fit, _) = member.fitted.as_ref()?;
+            // Fits have different numbers of unknowns; the kind identifies an unknown.
+            let find = |id: &UnknownId| {
+                let kind = &best.unknowns[*id].kind;
+                let mut unknowns = fit.unknowns();
+                let found = unknowns.find(|(_, own)| own.kind == *kind);
+                found.map(|(id, _)| id)
+            };
+            let unknowns: Option<Vec<UnknownId>> = effect.unknowns.iter().map(find).collect();
+            Some(SizesWithMember {
+                other,
+                member,
+                sizes: list_sizes(problem, (fit, &unknowns?), &effect.candidate, floor),
+            })
         };
-        for (other, class) in others {
-            for member in class {
-                let Some((fit, _)) = &member.fitted else {
-                    continue;
-                };
-                // Fits have different numbers of unknowns; the kind identifies an unknown.
-                let find = |id: &UnknownId| {
-                    let kind = &best.unknowns[*id].kind;
-                    let mut unknowns = fit.unknowns();
-                    unknowns
-                        .find(|(_, own)| own.kind == *kind)
-                        .map(|(id, _)| id)
-                };
-                let unknowns: Option<Vec<UnknownId>> = effect.unknowns.iter().map(find).collect();
-                if let Some(unknowns) = unknowns {
-                    let sizes = list_sizes(problem, (fit, &unknowns), &effect.candidate, floor);
-                    collected.replaced.push((other, member));
-                    collected.sizes.push(sizes);
-                }
-            }
-        }
-        collected
+        Self(members.filter_map(with_member).collect())
     }
 
     /// Widens the standard deviations of sizes by the deviations with the members. The records do
@@ -125,33 +121,33 @@ impl<'a> SizesByMember<'a> {
     /// (Hoeting et al., Statistical Science 14, 1999).
     pub(crate) fn widen(&self, sizes: &mut Sizes) {
         for (name, size) in sizes {
-            let others = self.sizes.iter().filter_map(|sizes| sizes.get(name));
+            let others = self.0.iter().filter_map(|with| with.sizes.get(name));
+            let square =
+                |other: &EstimateWithUnit| other.sd.powi(2) + (other.value - size.value).powi(2);
             let mut squares = vec![size.sd * size.sd];
-            squares
-                .extend(others.map(|other| other.sd.powi(2) + (other.value - size.value).powi(2)));
+            squares.extend(others.map(square));
             size.sd = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
         }
     }
 
     /// Returns the sizes that differ significantly from the sizes of the best fit.
     pub(crate) fn list_different(&self, sizes: &Sizes) -> Vec<ConditionalSize> {
-        let mut different = Vec::new();
-        for ((other, member), with_member) in self.replaced.iter().zip(&self.sizes) {
-            for (name, size) in with_member {
-                let Some(own) = sizes.get(name) else {
-                    continue;
-                };
+        let differs = |name: &str, size: &EstimateWithUnit| {
+            sizes.get(name).is_some_and(|own| {
                 let sd = own.sd.hypot(size.sd);
-                if (size.value - own.value).abs() > thresholds::MIN_NOTED_DEVIATION * sd {
-                    different.push(ConditionalSize {
-                        parameter: name.clone(),
-                        size: size.clone(),
-                        with: locate(&member.candidate),
-                        in_place_of: locate(&other.candidate),
-                    });
-                }
-            }
-        }
-        different
+                (size.value - own.value).abs() > thresholds::MIN_NOTED_DEVIATION * sd
+            })
+        };
+        let of_member = |with: &SizesWithMember<'_>| {
+            let different = with.sizes.iter().filter(|(name, size)| differs(name, size));
+            let conditional = different.map(|(name, size)| ConditionalSize {
+                parameter: name.clone(),
+                size: size.clone(),
+                with: locate(&with.member.candidate),
+                in_place_of: locate(&with.other.candidate),
+            });
+            conditional.collect::<Vec<_>>()
+        };
+        self.0.iter().flat_map(of_member).collect()
     }
 }

@@ -1,9 +1,10 @@
 //! Drawing of the machine with the positive direction of every angle, deflection and error. Radii and the length of the
 //! arm are to scale (Table I); deflections are exaggerated.
 
-use eomgen_plot::drawing::{Drawing, LineStyle, Part, arc_points, draw_sketch, point_on_circle};
+use eomgen_plot::drawing::{LineStyle, Part, arc_points, point_on_circle};
 
 use super::report::Figure;
+use super::sketch::{circle, draw_figure, words};
 
 /// Centre of the sun, px.
 const CENTRE: (f64, f64) = (200.0, 236.0);
@@ -36,25 +37,7 @@ pub(super) fn draw_machine() -> Figure {
         draw_mesh_force(),
         draw_formulas(),
     ];
-    Figure {
-        file: "machine.svg".to_owned(),
-        paper: String::new(),
-        caption: caption.to_owned(),
-        cases: Vec::new(),
-        svg: draw_sketch(&Drawing {
-            title: caption.to_owned(),
-            size: (980.0, 640.0),
-            parts: parts.concat(),
-        }),
-    }
-}
-
-fn words(at: (f64, f64), side: i8, text: &str) -> Part {
-    Part::Text(at, side, text.to_owned())
-}
-
-fn circle(centre: (f64, f64), radius: f64) -> Part {
-    Part::Line(LineStyle::Body, arc_points(centre, radius, (0.0, 360.0)))
+    draw_figure("machine.svg", caption, (980.0, 640.0), parts.concat())
 }
 
 /// Draws sun, planets, ring and carrier with their angles.

@@ -9,7 +9,7 @@
 //!   [`tally`] counts verdicts, [`charts`] draws them.
 //! - [`responses`] and [`order`] are the studies; `report` creates their files.
 //! - `display` samples cases for `figures` and `planes`, `bifurcation` varies the backlash, `machine` draws the signs of
-//!   the paper and `overview` the arm.
+//!   the paper and `overview` the arm, with parts of `sketch`.
 
 pub mod arm;
 mod bifurcation;
@@ -36,6 +36,7 @@ pub mod search;
 pub mod search_report;
 mod series;
 pub mod sets;
+mod sketch;
 pub mod tally;
 
 pub use error::StudyError;

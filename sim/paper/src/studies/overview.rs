@@ -1,9 +1,10 @@
 //! Picture of the arm for readers without the notation of the paper: the gear, the lag of the arm, and the play of a
 //! mesh. Numbers of teeth and length of the arm are to scale (Table I); play and deflection are exaggerated.
 
-use eomgen_plot::drawing::{Drawing, LineStyle, Part, arc_points, draw_sketch, point_on_circle};
+use eomgen_plot::drawing::{LineStyle, Part, arc_points, point_on_circle};
 
 use super::report::Figure;
+use super::sketch::{circle, draw_figure, words};
 
 /// Centre of the sun, px.
 const CENTRE: (f64, f64) = (150.0, 190.0);
@@ -30,21 +31,7 @@ pub(super) fn draw_overview() -> Figure {
                    The teeth of a mesh have play: they transmit no force until one flank touches the other. \
                    The arm lags behind a rigid arm without play and bends";
     let parts = [draw_gears(), draw_arm(), draw_teeth(), draw_force()];
-    Figure {
-        file: "arm.svg".to_owned(),
-        paper: String::new(),
-        caption: caption.to_owned(),
-        cases: Vec::new(),
-        svg: draw_sketch(&Drawing {
-            title: caption.to_owned(),
-            size: (720.0, 400.0),
-            parts: parts.concat(),
-        }),
-    }
-}
-
-fn words(at: (f64, f64), side: i8, text: &str) -> Part {
-    Part::Text(at, side, text.to_owned())
+    draw_figure("arm.svg", caption, (720.0, 400.0), parts.concat())
 }
 
 /// Returns the outline of a gear. `phase` is the angle of a tooth, degrees; `outward` is -1 for a ring.
@@ -83,10 +70,7 @@ fn ring_phase() -> f64 {
 
 fn draw_gears() -> Vec<Part> {
     let mut parts = vec![
-        Part::Line(
-            LineStyle::Body,
-            arc_points(CENTRE, RING + 12.0, (0.0, 360.0)),
-        ),
+        circle(CENTRE, RING + 12.0),
         gear(CENTRE, TEETH_OF_RING, ring_phase(), -1.0),
         gear(CENTRE, TEETH_OF_SUN, 0.0, 1.0),
     ];
@@ -94,7 +78,7 @@ fn draw_gears() -> Vec<Part> {
         let centre = point_on_circle(CENTRE, SUN + PLANET, angle);
         parts.extend([
             gear(centre, TEETH_OF_PLANET, planet_phase(angle), 1.0),
-            Part::Line(LineStyle::Body, arc_points(centre, 4.0, (0.0, 360.0))),
+            circle(centre, 4.0),
             Part::Line(LineStyle::Body, vec![CENTRE, centre]),
         ]);
     }
